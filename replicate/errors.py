@@ -1,0 +1,42 @@
+"""All exceptions of the package outside the numerical core.
+
+ReplicateError                 shown to the user as one line, exit status 2
+├── PaperDefinitionError       a paper's package contradicts itself
+├── UnknownPaperError          no such paper or exhibit
+├── PrintedFileError           a printed CSV is malformed (file, line, cell)
+├── LedgerError                a ledger entry names nothing, or no longer applies
+├── TemplateError              prose asks for a result that does not exist
+└── OutputError                a result cannot be written
+
+`replicate.loops` has its own tree (`replicate.loops.errors`), because it knows nothing of papers.
+"""
+
+from __future__ import annotations
+
+
+class ReplicateError(Exception):
+    """Base of every error that is reported to the user as one line."""
+
+
+class PaperDefinitionError(ReplicateError):
+    """A paper's package contradicts itself (duplicate ids, missing keys)."""
+
+
+class UnknownPaperError(ReplicateError):
+    """The paper or exhibit asked for does not exist."""
+
+
+class PrintedFileError(ReplicateError):
+    """A printed CSV is malformed."""
+
+
+class LedgerError(ReplicateError):
+    """A ledger entry names no cell, or a cell that no longer differs."""
+
+
+class TemplateError(ReplicateError):
+    """Prose asks for a result that does not exist."""
+
+
+class OutputError(ReplicateError):
+    """A result cannot be written where it should go."""
