@@ -1,0 +1,77 @@
+"""What computing an exhibit leaves behind: plain records that every later stage (verdicts, report, diff) reads.
+
+The records hold data only, no functions, so that a worker process can send them back and the cache can keep them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from replicate.exhibits import Finding
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class TableResult:
+    """A table, worked example or formula, computed under each of its readings.
+
+    Attributes
+    ----------
+    frames
+        By reading id, in the exhibit's order: the whole exhibit, indexed by row key. Missing where computing failed.
+    errors
+        By reading id: a one-line reason for each reading that raised.
+    """
+
+    paper: str
+    exhibit: str
+    frames: dict[str, pd.DataFrame] = field(default_factory=dict)
+    errors: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FigureResult:
+    """A figure: drawn, and read back out of its axes as data.
+
+    Attributes
+    ----------
+    curves
+        Columns ``panel, curve, x, y`` (text, text, float, float), points in drawing order.
+    axes
+        One description per panel: title, limits, scales, labels, legend, annotation texts.
+    error
+        A one-line reason if drawing raised; the other fields are then empty.
+    """
+
+    paper: str
+    exhibit: str
+    svg: str
+    png: bytes
+    curves: pd.DataFrame
+    axes: list[dict[str, Any]]
+    error: str = ""
+
+
+@dataclass(frozen=True)
+class ClaimsResult:
+    """The claims of a paper: what each check found.
+
+    Attributes
+    ----------
+    findings
+        By claim id, in the paper's order. Missing where the check raised.
+    errors
+        By claim id: a one-line reason for each check that raised.
+    """
+
+    paper: str
+    exhibit: str
+    findings: dict[str, Finding] = field(default_factory=dict)
+    errors: dict[str, str] = field(default_factory=dict)
+
+
+Result = TableResult | FigureResult | ClaimsResult
+Results = dict[tuple[str, str], Result]
