@@ -1,0 +1,114 @@
+# Needs Python 3.11 or newer and make, nothing else: each target creates .venv from requirements.lock when it
+# is missing or stale. Another Python: make report PYTHON=python3.12
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --quiet --disable-pip-version-check --no-input
+
+# Work is parallel over processes; threads of the linear algebra would only compete with them.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+export MKL_NUM_THREADS ?= 1
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+##@ What the project is for
+
+.PHONY: report
+report: $(VENV)/.ready ## recompute every exhibit and write build/report/index.html
+	$(BIN)/replicate report
+
+.PHONY: handouts
+handouts: $(VENV)/.ready ## build the handouts of all papers, build/handouts/*.pdf
+	$(BIN)/replicate handout
+
+##@ Does it still hold?
+
+.PHONY: test
+test: $(VENV)/.ready ## run the tests and the examples in the docstrings
+	$(BIN)/python -m pytest -n auto --dist loadscope $(ARGS)
+
+.PHONY: check
+check: $(VENV)/.ready ## every printed value holds or is explained, and nothing has moved
+	$(BIN)/replicate check
+
+.PHONY: diff
+diff: $(VENV)/.ready ## say what differs from the accepted state: make diff [ONLY=khan/fig-4]
+	$(BIN)/replicate diff $(ONLY)
+
+.PHONY: accept
+accept: $(VENV)/.ready ## make the present state the accepted one: make accept REASON="why" [ONLY=...]
+	$(BIN)/replicate accept $(ONLY) --reason "$$REASON"
+
+.PHONY: drift
+drift: build/drift/.ready ## the same comparison under an older matplotlib and other BLAS kernels
+	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/replicate diff $(ONLY)
+
+.PHONY: bench
+bench: $(VENV)/.ready ## measure speed and accuracy against python-control
+	set -e; for script in benchmarks/*.py; do $(BIN)/python "$$script"; done
+
+##@ Working on it
+
+.PHONY: lint
+lint: $(VENV)/.ready ## ruff and mypy --strict
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+.PHONY: lock
+lock: $(VENV)/.ready ## remake requirements.lock from pyproject.toml: make lock [ARGS=--upgrade]
+	$(BIN)/uv pip compile pyproject.toml --group dev --output-file requirements.lock --quiet \
+	    --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+	    --custom-compile-command "make lock" $(ARGS)
+
+.PHONY: clean
+clean: ## remove what runs leave behind (build/ and caches); .venv stays
+	rm -rf build dist .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+.PHONY: help
+help: ## list the targets
+	@awk 'BEGIN { FS = ":.*## " } \
+	    /^##@/ { printf "%s%s\n", (n++ ? "\n" : ""), substr($$0, 5) } \
+	    /^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+# ------------------------------------------------------------------------------------------- environments
+
+# A Python named on the command line that is not the one .venv was made with makes .venv stale.
+ifeq ($(origin PYTHON),command line)
+ifneq ($(shell cat $(VENV)/.locked 2>/dev/null),$(PYTHON))
+.PHONY: $(VENV)/.locked
+endif
+endif
+
+# $(call create,folder): an environment with exactly what the lock names, every file checked by its hash.
+define create
+	@$(PYTHON) -c 'import sys; sys.exit("Python 3.11 or newer is needed, $(PYTHON) is " \
+	    + sys.version.split()[0] if sys.version_info < (3, 11) else 0)'
+	@echo "creating $(1) from requirements.lock"
+	@$(PYTHON) -m venv --clear $(1)
+	@$(1)/bin/python -m pip --quiet --disable-pip-version-check --no-input \
+	    install --require-hashes --only-binary :all: -r requirements.lock
+endef
+
+$(VENV)/.locked: requirements.lock
+	$(call create,$(VENV))
+	@echo $(PYTHON) > $@
+
+$(VENV)/.ready: $(VENV)/.locked pyproject.toml
+	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# Not from the lock, on purpose: the point is to run with another matplotlib than the locked one.
+DRIFT_MATPLOTLIB ?= 3.9.*
+DRIFT_CORE ?= $(if $(filter x86_64,$(shell uname -m)),Prescott,ARMV8)
+
+build/drift/.ready: requirements.lock pyproject.toml
+	$(call create,build/drift)
+	@build/drift/bin/python -m pip --quiet --disable-pip-version-check --no-input \
+	    install --only-binary :all: 'matplotlib==$(DRIFT_MATPLOTLIB)'
+	@build/drift/bin/python -m pip --quiet --disable-pip-version-check --no-input \
+	    install --no-deps --no-build-isolation --editable .
+	@touch $@
