@@ -3,8 +3,7 @@
 Importing this package loads nothing else: take the numerical core from `replicate.loops`.
 """
 
-from typing import TYPE_CHECKING
-
+TYPE_CHECKING = False  # type checkers know it by its name; importing `typing` would cost ten times the rest
 if TYPE_CHECKING:
     __version__: str
 else:
