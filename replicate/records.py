@@ -1,6 +1,6 @@
-"""What computing an exhibit leaves behind: plain records that every later stage (verdicts, report, diff) reads.
+"""What computing an exhibit leaves behind: records that every later stage (verdicts, report, diff) reads.
 
-The records hold data only, no functions, so that a worker process can send them back and the cache can keep them.
+The records hold data only, no functions: a worker process can send them back and the cache can keep them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ class TableResult:
     Attributes
     ----------
     frames
-        By reading id, in the exhibit's order: the whole exhibit, indexed by row key. Missing where computing failed.
+        By reading id, in the exhibit's order: the whole exhibit, indexed by row key. Missing where computing
+        failed.
     errors
         By reading id: a one-line reason for each reading that raised.
     """
@@ -39,7 +40,8 @@ class FigureResult:
     Attributes
     ----------
     curves
-        Columns ``panel, curve, x, y`` (text, text, float, float), points in drawing order.
+        Columns ``panel, curve, x, y`` (text, text, float, float), points in drawing order; a row without x
+        and y is a break in the curve.
     axes
         One description per panel: title, limits, scales, labels, legend, annotation texts.
     error

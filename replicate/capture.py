@@ -1,0 +1,109 @@
+"""Draw a figure off-screen and read what it shows back out of its axes.
+
+A paper's function draws on an ordinary matplotlib figure and knows nothing of files. Here the figure becomes
+an SVG, a PNG, the curves as data (for download and for comparing with the accepted state) and a description
+of its axes.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure as Canvas
+
+from replicate import plotstyle
+from replicate.exhibits import Figure
+from replicate.readback import describe, read_curves
+from replicate.records import FigureResult
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def capture(paper: str, exhibit: Figure) -> FigureResult:
+    """Draw a figure exhibit.
+
+    Parameters
+    ----------
+    paper
+        Id of the paper; with the exhibit's id it seeds the ids inside the SVG.
+
+    Returns
+    -------
+    FigureResult
+        SVG (transparent, ink and paper colours as in `replicate.plotstyle`), PNG (white), curves and axes.
+
+    Raises
+    ------
+    Exception
+        Whatever the exhibit's own function raises.
+    """
+    with plotstyle.style(hashsalt=f"{paper}/{exhibit.id}"):
+        canvas = Canvas(figsize=exhibit.size)
+        exhibit.draw(canvas)
+        panels = list(_panels(canvas))
+        curves = [row for name, axes in panels for row in read_curves(name, axes)]
+        frame = pd.DataFrame(curves, columns=["panel", "curve", "x", "y"])
+        described = [describe(name, axes) for name, axes in panels]
+        if described:
+            described[0] |= _outside_the_axes(canvas)
+        return FigureResult(
+            paper=paper,
+            exhibit=exhibit.id,
+            svg=_svg(canvas, exhibit.title),
+            png=_png(canvas),
+            curves=frame.astype({"panel": object, "curve": object, "x": float, "y": float}),
+            axes=described,
+        )
+
+
+def no_figure(paper: str, exhibit: str, error: str) -> FigureResult:
+    """Return the record of a figure that could not be drawn."""
+    curves = pd.DataFrame({"panel": [], "curve": [], "x": np.empty(0), "y": np.empty(0)})
+    return FigureResult(paper, exhibit, svg="", png=b"", curves=curves, axes=[], error=error)
+
+
+def _panels(canvas: Canvas) -> Iterator[tuple[str, Axes]]:
+    """Name every axes by its title, or by its place where it has none; a name used again gets a number."""
+    used: dict[str, int] = {}
+    for place, axes in enumerate((axes for axes in canvas.axes if axes.get_visible()), start=1):
+        title = axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right")
+        name = " ".join(title.split()) or f"panel {place}"
+        used[name] = used.get(name, 0) + 1
+        yield (name if used[name] == 1 else f"{name} ({used[name]})"), axes
+
+
+def _outside_the_axes(canvas: Canvas) -> dict[str, Any]:
+    """Describe texts and legends that belong to the figure as a whole; they are kept with the first panel."""
+    texts = [text.get_text() for text in canvas.texts if text.get_text()]
+    legends = [entry.get_text() for legend in canvas.legends for entry in legend.get_texts()]
+    found: dict[str, Any] = {}
+    if canvas.get_suptitle():
+        found["figure_title"] = canvas.get_suptitle()
+    if texts:
+        found["figure_texts"] = texts
+    if legends:
+        found["figure_legend"] = legends
+    return found
+
+
+def _svg(canvas: Canvas, title: str) -> str:
+    """Return the SVG without date and versions."""
+    buffer = io.StringIO()
+    unknown = dict.fromkeys(("Date", "Creator", "Format", "Type"))
+    canvas.savefig(buffer, format="svg", transparent=True, metadata={**unknown, "Title": title})
+    svg = buffer.getvalue().replace("#000000", plotstyle.INK)
+    # matplotlib writes no fill for black shapes and texts: let them inherit the ink colour.
+    return svg.replace("<g ", f'<g fill="{plotstyle.INK}" ', 1)
+
+
+def _png(canvas: Canvas) -> bytes:
+    buffer = io.BytesIO()
+    canvas.savefig(
+        buffer, format="png", dpi=plotstyle.PNG_DPI, facecolor="white", metadata={"Software": None}
+    )
+    return buffer.getvalue()
