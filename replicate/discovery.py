@@ -1,0 +1,99 @@
+"""Find the papers: sub-packages of `replicate.papers`, and installed packages that announce themselves.
+
+A package outside this project adds a paper with an entry point in the group ``replicate.papers`` that names
+its `Paper`, for example ``mypaper = "mypaper:paper"``.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.metadata
+import pkgutil
+from collections.abc import Iterable
+
+from replicate.errors import PaperDefinitionError, UnknownPaperError
+from replicate.exhibits import Exhibit, Paper
+
+ENTRY_POINTS = "replicate.papers"
+
+
+def known_papers() -> dict[str, Paper]:
+    """Return every paper by id, in alphabetical order; their exhibits are not loaded yet.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If a package defines no paper, or two packages define the same one.
+    """
+    papers: dict[str, Paper] = {}
+    for where, paper in (*_own_papers(), *_installed_papers()):
+        if not isinstance(paper, Paper):
+            msg = f"{where}: defines no 'paper' that is a replicate.exhibits.Paper"
+            raise PaperDefinitionError(msg)
+        if paper.id in papers:
+            msg = f"{where}: there is a paper '{paper.id}' already, in {papers[paper.id].package}"
+            raise PaperDefinitionError(msg)
+        papers[paper.id] = paper
+    return dict(sorted(papers.items()))
+
+
+def find_paper(id: str) -> Paper:
+    """Return one paper with its exhibits.
+
+    Raises
+    ------
+    UnknownPaperError
+        If there is none of this name; the message lists the known ones.
+    """
+    papers = known_papers()
+    if id not in papers:
+        msg = f"there is no paper '{id}'; known: {', '.join(papers) or 'none'}"
+        raise UnknownPaperError(msg)
+    return papers[id].load()
+
+
+def find_papers(ids: Iterable[str] = ()) -> list[Paper]:
+    """Return the papers named, or all of them if none is named, with their exhibits.
+
+    Raises
+    ------
+    UnknownPaperError
+        If one of the names is unknown.
+    """
+    wanted = dict.fromkeys(ids)
+    return [find_paper(id) for id in wanted or known_papers()]
+
+
+def find_exhibit(paper: Paper, id: str) -> Exhibit:
+    """Return one exhibit of a loaded paper.
+
+    Raises
+    ------
+    UnknownPaperError
+        If the paper has none of this name; the message lists those it has.
+    """
+    if id not in paper.exhibits:
+        msg = f"{paper.id} has no exhibit '{id}'; known: {', '.join(paper.exhibits) or 'none'}"
+        raise UnknownPaperError(msg)
+    return paper.exhibits[id]
+
+
+def _own_papers() -> list[tuple[str, object]]:
+    import replicate.papers as home
+
+    names = [
+        module.name for module in pkgutil.iter_modules(home.__path__, f"{home.__name__}.") if module.ispkg
+    ]
+    return [(name, getattr(importlib.import_module(name), "paper", None)) for name in sorted(names)]
+
+
+def _installed_papers() -> list[tuple[str, object]]:
+    found: list[tuple[str, object]] = []
+    for point in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS)):
+        where = f"entry point '{point.name}'"
+        try:
+            found.append((where, point.load()))
+        except (ImportError, AttributeError) as error:
+            msg = f"{where}: {point.value} cannot be loaded: {error}"
+            raise PaperDefinitionError(msg) from error
+    return found
