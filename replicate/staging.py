@@ -1,0 +1,71 @@
+"""Replace files and folders all together or not at all.
+
+What is written goes into a folder beside the final place, and takes its place by renaming when everything is
+there. An interrupted or failing run leaves the earlier state whole.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from replicate.errors import OutputError
+
+
+@contextmanager
+def staged(target: Path) -> Iterator[Path]:
+    """Yield an empty folder; whatever it holds at the end replaces what has the same name in `target`.
+
+    Other things in `target` stay as they are. If the block raises, nothing is replaced.
+
+    Parameters
+    ----------
+    target
+        The folder to write to; it is created if it does not exist.
+
+    Raises
+    ------
+    OutputError
+        If something cannot be written.
+    """
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        aside = Path(tempfile.mkdtemp(prefix=".partial-", dir=target))
+    except OSError as error:
+        raise _unwritable(target, error) from error
+    try:
+        fresh, old = aside / "new", aside / "old"
+        fresh.mkdir()
+        old.mkdir()
+        yield fresh
+        _swap(fresh, target, old)
+    except OSError as error:
+        raise _unwritable(target, error) from error
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _swap(fresh: Path, target: Path, old: Path) -> None:
+    """Move every entry of `fresh` into `target`, and everything back if one of the moves fails."""
+    moved: list[str] = []
+    try:
+        for entry in sorted(fresh.iterdir()):
+            place = target / entry.name
+            if place.exists():
+                place.rename(old / entry.name)
+            moved.append(entry.name)
+            entry.rename(place)
+    except BaseException:
+        for name in moved:
+            if (target / name).exists():
+                (target / name).rename(fresh / name)
+            if (old / name).exists():
+                (old / name).rename(target / name)
+        raise
+
+
+def _unwritable(target: Path, error: OSError) -> OutputError:
+    return OutputError(f"{error.filename or target} cannot be written: {error.strerror or error}")
