@@ -1,0 +1,89 @@
+"""The verdicts on the sentences of a paper: the checks have decided, here the decisions go on record."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from replicate.exhibits import AS_WRITTEN, Claim, Claims, Finding
+from replicate.judgement import (
+    CLAIM_COLUMN,
+    CLAIM_VERDICTS,
+    ExhibitRow,
+    Judgement,
+    ResultRow,
+    Status,
+    VerdictRow,
+)
+from replicate.matching import computed_text, match
+from replicate.printed import ALLOWED, parse_number
+from replicate.records import ClaimsResult
+
+
+def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement:
+    """Judge the claims of one exhibit.
+
+    Parameters
+    ----------
+    paper
+        Its id.
+
+    Returns
+    -------
+    Judgement
+        One verdict per claim, one result per claim that prints a number, and the exhibit's row. A claim whose
+        check failed is unexplained, and a problem.
+    """
+    judgement = Judgement()
+    failed = []
+    for id, claim in exhibit.claims.items():
+        place = f"{paper} {exhibit.id}: claim '{id}'"
+        finding = result.findings.get(id)
+        wrong = _wrong(finding, result.errors.get(id))
+        row = VerdictRow(paper, exhibit.id, id, CLAIM_COLUMN, claim.printed, "unexplained", AS_WRITTEN, "")
+        if finding is None or wrong:
+            judgement.problems.append(f"{place}: {wrong}")
+            failed.append(id)
+        else:
+            evidence = " ".join(finding.evidence.split())
+            if not evidence and finding.verdict != "holds":
+                judgement.problems.append(f"{place}: {finding.verdict}, but its evidence is empty")
+            computed = computed_text(finding.value)
+            row = replace(row, verdict=finding.verdict, computed=computed, explanation=evidence)
+        judgement.verdicts.append(row)
+        if claim.printed and parse_number(claim.printed) is None:
+            judgement.problems.append(
+                f"{place}: printed = '{claim.printed}' is not a number; allowed: {ALLOWED}"
+            )
+        elif claim.printed:
+            judgement.results.append(_result_row(row, claim, None if wrong else finding))
+    status: Status = "done"
+    if failed:
+        status = "partly" if len(failed) < len(exhibit.claims) else "not-computable"
+    reason = f"not checked: {', '.join(failed)}" if failed else ""
+    judgement.exhibits.append(ExhibitRow(paper, exhibit.id, exhibit.kind, exhibit.title, status, reason))
+    return judgement
+
+
+def _wrong(finding: Finding | None, error: str | None) -> str:
+    if error is not None:
+        return f"the check failed: {error}"
+    if finding is None:
+        return "was not checked"
+    if finding.verdict not in CLAIM_VERDICTS:
+        return f"verdict '{finding.verdict}'; allowed: {', '.join(CLAIM_VERDICTS)}"
+    return ""
+
+
+def _result_row(row: VerdictRow, claim: Claim, finding: Finding | None) -> ResultRow:
+    found = match(claim.printed, finding.value if finding else None)
+    return ResultRow(
+        paper=row.paper,
+        exhibit=row.exhibit,
+        row=row.row,
+        column=row.column,
+        printed=claim.printed,
+        reading=AS_WRITTEN,
+        computed=row.computed,
+        match=found.kind,
+        how=found.how,
+    )

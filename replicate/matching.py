@@ -1,0 +1,141 @@
+"""Whether a computed number agrees with a printed one, at the printed precision.
+
+The computed number is first written with 12 significant digits, and every comparison is made exactly on that
+decimal. So a match can be recomputed from ``results.csv`` alone, and no binary rounding error decides one.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from decimal import ROUND_HALF_UP, Decimal, localcontext
+from typing import Literal
+
+from replicate.printed import PrintedValue
+
+MatchKind = Literal["equal", "near", "differs", "none"]
+MatchHow = Literal["rounded", "truncated", ""]
+
+COMPUTED_DIGITS = 12
+
+NEAR_UNITS = 2
+NEAR_FRACTION = Decimal("0.01")
+
+# Wide enough that sums of a 12-digit number and a printed one, of any magnitudes that can tie, are exact.
+_PRECISION = 200
+
+
+@dataclass(frozen=True)
+class Match:
+    """How a computed value compares with a printed one.
+
+    Attributes
+    ----------
+    kind
+        ``equal``: the computed value rounds, or truncates, to the print. ``near``: within 2 units of the
+        last printed digit or 1 % of the print. ``differs``: neither. ``none``: nothing was computed.
+    how
+        For ``equal``: ``rounded`` or, where only that fits, ``truncated``.
+    """
+
+    kind: MatchKind
+    how: MatchHow = ""
+
+
+def computed_text(value: float | None) -> str:
+    """Write a computed number with 12 significant digits; empty where there is none (``None`` or NaN).
+
+    Examples
+    --------
+    >>> computed_text(2 / 3)
+    '0.666666666667'
+    >>> computed_text(float("nan"))
+    ''
+    """
+    if value is None or math.isnan(value):
+        return ""
+    return f"{value + 0.0:.{COMPUTED_DIGITS}g}"  # + 0.0 turns -0 into 0
+
+
+def match(
+    printed: PrintedValue | str, computed: float | None, significant_digits: int | None = None
+) -> Match:
+    """Compare a computed value with a printed one.
+
+    Parameters
+    ----------
+    printed
+        The print, as text or as read from a printed CSV.
+    computed
+        The computed value; ``None`` or NaN where there is none.
+    significant_digits
+        If given: the paper prints so many significant digits and strips trailing zeros.
+
+    Returns
+    -------
+    Match
+        A tie rounds either way, because papers do.
+
+    Raises
+    ------
+    PrintedFileError
+        If the printed text is not a number.
+
+    Examples
+    --------
+    >>> match("6.968", 6.96849)
+    Match(kind='equal', how='rounded')
+    >>> match("6.968", 6.9689)
+    Match(kind='equal', how='truncated')
+    >>> match("6.9680", 6.9689).kind, match("6.968", 7.1).kind, match("6.968", None).kind
+    ('near', 'differs', 'none')
+    """
+    if isinstance(printed, str):
+        printed = PrintedValue(printed)
+    if significant_digits is not None:
+        printed = replace(printed, significant_digits=significant_digits)
+    text = computed_text(computed)
+    if not text:
+        return Match("none")
+    with localcontext(prec=_PRECISION):
+        return _compare(printed.value, printed.unit, Decimal(text))
+
+
+def _compare(printed: Decimal, unit: Decimal, computed: Decimal) -> Match:
+    distance = abs(computed - printed)
+    if 2 * distance <= unit:
+        return Match("equal", "rounded")
+    # Truncation goes toward zero: the computed value lies farther out, on the same side.
+    outward = abs(computed) - abs(printed)
+    if 0 <= outward < unit and computed * printed >= 0:
+        return Match("equal", "truncated")
+    if distance <= NEAR_UNITS * unit or distance <= NEAR_FRACTION * abs(printed):
+        return Match("near")
+    return Match("differs")
+
+
+def format_like(printed: PrintedValue, computed: float) -> str:
+    """Write a finite computed value with the precision of a printed one.
+
+    Parameters
+    ----------
+    printed
+        Where its table has fixed significant digits, so has the result, without trailing zeros; otherwise
+        the result ends at the same decimal place.
+    computed
+        A finite number.
+
+    Examples
+    --------
+    >>> format_like(PrintedValue("1.20"), 3.0)
+    '3.00'
+    >>> format_like(PrintedValue("1.9715", significant_digits=6), 1.671586)
+    '1.67159'
+    """
+    number = Decimal(computed_text(computed))
+    with localcontext(prec=_PRECISION):
+        if printed.significant_digits is None or not number:
+            return f"{number.quantize(printed.unit, rounding=ROUND_HALF_UP):f}"
+        place = Decimal(1).scaleb(number.adjusted() - printed.significant_digits + 1)
+        text = f"{number.quantize(place, rounding=ROUND_HALF_UP):f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

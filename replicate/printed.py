@@ -1,0 +1,219 @@
+"""The numbers of a paper, kept as the strings it prints.
+
+A printed CSV looks like the paper's own table, so that a person can proofread it against the page: the first
+column holds the row keys, the header the column keys, and a cell the paper leaves blank is blank. Trailing
+zeros are information: ``6.968`` and ``6.9680`` have different units in the last place and so accept
+different computed values.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from replicate.errors import PrintedFileError
+from replicate.exhibits import Table
+from replicate.locations import display_name
+
+MINUS = "\N{MINUS SIGN}"
+ALLOWED = "digits with an optional sign, decimal point and exponent"
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
+
+Key = tuple[str, str]
+
+
+def parse_number(text: str) -> Decimal | None:
+    """Read a printed number exactly; ``None`` if the text is not one.
+
+    Examples
+    --------
+    >>> parse_number("6.9680")
+    Decimal('6.9680')
+    >>> parse_number("1,2") is None
+    True
+    """
+    plain = text.replace(MINUS, "-")
+    return Decimal(plain) if _NUMBER.fullmatch(plain) else None
+
+
+@dataclass(frozen=True)
+class PrintedValue:
+    """A number as the paper prints it.
+
+    Attributes
+    ----------
+    text
+        The print: digits with an optional sign (``-`` or U+2212), decimal point and exponent.
+    row, column
+        The keys of its cell.
+    line
+        Its line in the printed CSV, from 1; 0 if it does not come from a file.
+    significant_digits
+        Set where the paper prints a fixed number of significant digits and strips trailing zeros; ``None``
+        where the text itself tells the precision.
+
+    Raises
+    ------
+    PrintedFileError
+        If the text is not a number.
+
+    Examples
+    --------
+    >>> PrintedValue("6.968").unit, PrintedValue("6.9680").unit, PrintedValue("100").unit
+    (Decimal('0.001'), Decimal('0.0001'), Decimal('1'))
+    >>> PrintedValue("6.968", significant_digits=6).unit
+    Decimal('0.00001')
+    """
+
+    text: str
+    row: str = ""
+    column: str = ""
+    line: int = 0
+    significant_digits: int | None = None
+
+    def __post_init__(self) -> None:
+        if parse_number(self.text) is None:
+            msg = f"'{self.text}' is not a number; allowed: {ALLOWED}"
+            raise PrintedFileError(msg)
+
+    @property
+    def value(self) -> Decimal:
+        """The number itself, exactly as printed."""
+        return Decimal(self.text.replace(MINUS, "-"))
+
+    @property
+    def unit(self) -> Decimal:
+        """The weight of the last printed digit.
+
+        With n significant digits it is that of the n-th digit, the first being the leading one: 10^-n for a
+        zero, which has no leading digit.
+        """
+        value = self.value
+        if self.significant_digits is None:
+            return Decimal(1).scaleb(_last_place(value))
+        leading = value.adjusted() if value else -1
+        return Decimal(1).scaleb(leading - self.significant_digits + 1)
+
+
+def _last_place(value: Decimal) -> int:
+    exponent = value.as_tuple().exponent
+    assert isinstance(exponent, int)  # noqa: S101  -- a letter for NaN and infinity only
+    return exponent
+
+
+def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedValue]:
+    """Read the printed numbers of a table.
+
+    Parameters
+    ----------
+    path
+        The CSV: UTF-8, comma separated, row keys in the first column, column keys in the header.
+    table
+        The exhibit. Its rows and columns must all be in the file, in the exhibit's order, and nothing else.
+
+    Returns
+    -------
+    dict
+        By (row, column), in the order of the exhibit. A cell that is blank in the paper is not there.
+
+    Raises
+    ------
+    PrintedFileError
+        If the file cannot be read, a cell is not a number, has more digits than the table prints, or a row
+        or column is missing, unknown, out of order or there twice. The message names file, line and cell.
+    """
+    name = display_name(path)
+    records = _records(path, name)
+    if not records:
+        msg = f"{name}:1: the file is empty; needed: a header with the columns {_listed(table.columns)}"
+        raise PrintedFileError(msg)
+    (header_line, header), *body = records
+    columns = header[1:]
+    _check_keys(f"{name}:{header_line}", "column", [(header_line, key) for key in columns], table.columns)
+    for line, cells in body:
+        if len(cells) != len(header):
+            msg = f"{name}:{line}: row '{cells[0]}' has {len(cells)} cells, the header has {len(header)}"
+            raise PrintedFileError(msg)
+    _check_keys(name, "row", [(line, cells[0]) for line, cells in body], table.rows)
+    return {
+        (cells[0], column): _value(name, (text, cells[0], column, line), table.significant_digits)
+        for line, cells in body
+        for column, text in zip(columns, cells[1:], strict=True)
+        if text
+    }
+
+
+def _records(path: Traversable | Path, name: str) -> list[tuple[int, list[str]]]:
+    """Return the non-empty records with the line on which each ends."""
+    try:
+        content = path.read_bytes().decode("utf-8-sig")
+    except OSError as error:
+        msg = f"{name}: cannot be read: {error.strerror or error}"
+        raise PrintedFileError(msg) from error
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        msg = f"{name}:{line}: is not UTF-8 text"
+        raise PrintedFileError(msg) from error
+    reader = csv.reader(io.StringIO(content, newline=""), strict=True)
+    records = []
+    try:
+        for cells in reader:
+            stripped = [cell.strip() for cell in cells]
+            if any(stripped):
+                records.append((reader.line_num, stripped))
+    except csv.Error as error:
+        msg = f"{name}:{reader.line_num}: is not a CSV file: {error}"
+        raise PrintedFileError(msg) from error
+    return records
+
+
+def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expected: Sequence[str]) -> None:
+    """Demand the expected keys, all of them, once each and in their order."""
+    first_line: dict[str, int] = {}
+    for line, key in found:
+        where = place if kind == "column" else f"{place}:{line}"
+        if key in first_line:
+            also = f" (first in line {first_line[key]})" if kind == "row" else ""
+            msg = f"{where}: {kind} '{key}' is there twice{also}"
+            raise PrintedFileError(msg)
+        if key not in expected:
+            msg = f"{where}: {kind} '{key}' is not one of the exhibit's; allowed: {_listed(expected)}"
+            raise PrintedFileError(msg)
+        first_line[key] = line
+    missing = [key for key in expected if key not in first_line]
+    if missing:
+        last = f":{found[-1][0]}" if kind == "row" and found else ""
+        msg = f"{place}{last}: {kind} {_listed(missing)} is missing"
+        raise PrintedFileError(msg)
+    for (line, key), wanted in zip(found, expected, strict=True):
+        if key != wanted:
+            where = place if kind == "column" else f"{place}:{line}"
+            order = _listed(expected)
+            msg = f"{where}: {kind} '{key}' is out of order, '{wanted}' comes first; the order is {order}"
+            raise PrintedFileError(msg)
+
+
+def _value(place: str, value: tuple[str, str, str, int], digits: int | None) -> PrintedValue:
+    text, _, column, line = value
+    where = f"{place}:{line}: column '{column}': '{text}'"
+    number = parse_number(text)
+    if number is None:
+        msg = f"{where} is not a number; allowed: {ALLOWED}"
+        raise PrintedFileError(msg)
+    printed = PrintedValue(*value, significant_digits=digits)
+    # Trailing zeros may be place holders: only digits that say something can be too many.
+    if digits is not None and number and _last_place(number.normalize()) < printed.unit.adjusted():
+        msg = f"{where} has more than the {digits} significant digits that this table prints"
+        raise PrintedFileError(msg)
+    return printed
+
+
+def _listed(keys: Iterable[str]) -> str:
+    return ", ".join(f"'{key}'" for key in keys)

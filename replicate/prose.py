@@ -1,0 +1,240 @@
+"""Prose that pulls its numbers from the results: ledger explanations, notes and handouts.
+
+The texts are Jinja2 templates over Markdown. They can call:
+
+``value(exhibit, row, column, reading="as-written", digits=6)``
+    a computed number as text, with so many significant digits;
+``number(exhibit, row, column, reading="as-written")``
+    the same as a number, to compute with (``{{ (number(...) / number(...)) | digits(3) }}``);
+``printed(exhibit, row, column)``
+    the text the paper prints;
+``verdict(exhibit, row, column="claim")``
+    the verdict on a printed value or claim;
+``count(exhibit=None, verdict=None)``
+    how many printed values (or claims, for a claims exhibit or a claim's verdict) there are;
+``claim(id, exhibit="claims")``
+    the `Finding` of a claim: ``.verdict``, ``.value``, ``.evidence``.
+
+Whatever does not exist is an error that names file, line and what was asked for: no text is ever silently
+empty. Comments are written ``<!--# ... #-->``, since ``{#`` begins an identifier in pandoc's Markdown.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from replicate.cells import CellError, cell
+from replicate.errors import TemplateError
+from replicate.exhibits import AS_WRITTEN, Finding, Paper
+from replicate.judgement import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
+from replicate.records import ClaimsResult, Result, TableResult
+
+if TYPE_CHECKING:
+    import jinja2
+
+_SHOWN_KEYS = 12
+
+
+class _MissingResultError(Exception):
+    """Raised inside a template; `Prose.render` adds file and line."""
+
+
+class Prose:
+    """Renders the texts of one paper.
+
+    Parameters
+    ----------
+    paper
+        The paper whose texts these are.
+    results
+        Results by (paper, exhibit).
+    verdicts
+        The verdict rows of the paper.
+    functions
+        More functions for the templates, for example the one that places an exhibit in the notes. They may
+        raise `TemplateError`.
+    """
+
+    def __init__(
+        self,
+        paper: Paper,
+        results: Mapping[tuple[str, str], Result],
+        verdicts: Sequence[VerdictRow],
+        functions: Mapping[str, Callable[..., object]] | None = None,
+    ) -> None:
+        self._paper = paper
+        self._results = results
+        self._verdicts = [row for row in verdicts if row.paper == paper.id]
+        self._by_cell = {(row.exhibit, row.row, row.column): row for row in self._verdicts}
+        self._environment = _environment()
+        self._environment.globals.update(
+            value=self._value,
+            number=self._number,
+            printed=self._printed,
+            verdict=self._verdict,
+            count=self._count,
+            claim=self._claim,
+        )
+        self._environment.globals.update(functions or {})
+
+    def render(self, text: str, source: str, first_line: int = 1, **variables: object) -> str:
+        """Fill in a text.
+
+        Parameters
+        ----------
+        text
+            The template.
+        source, first_line
+            File, and the line of it where the text begins, for error messages.
+        variables
+            Further names the template may use.
+
+        Raises
+        ------
+        TemplateError
+            If the template is malformed or asks for something that does not exist.
+        """
+        import jinja2
+
+        try:
+            return self._environment.from_string(text).render(**variables)
+        except jinja2.TemplateSyntaxError as error:
+            msg = f"{source}:{first_line + error.lineno - 1}: {error.message}"
+            raise TemplateError(msg) from error
+        except (
+            _MissingResultError,
+            TemplateError,
+            jinja2.TemplateError,
+            TypeError,
+            ValueError,
+            ArithmeticError,
+            LookupError,
+        ) as error:
+            line = first_line + _template_line(error) - 1
+            msg = f"{source}:{line}: {error}"
+            raise TemplateError(msg) from error
+
+    def _number(self, exhibit: str, row: str, column: str, reading: str = AS_WRITTEN) -> float:
+        where = f"value('{exhibit}', '{row}', '{column}', '{reading}')"
+        result = self._result(exhibit, where)
+        if not isinstance(result, TableResult):
+            msg = f"{where}: '{exhibit}' is not a table; allowed: {self._listed_exhibits(TableResult)}"
+            raise _MissingResultError(msg)
+        if reading in result.errors:
+            msg = f"{where}: the reading failed: {result.errors[reading]}"
+            raise _MissingResultError(msg)
+        if reading not in result.frames:
+            msg = f"{where}: no such reading; allowed: {_listed(result.frames)}"
+            raise _MissingResultError(msg)
+        frame = result.frames[reading]
+        try:
+            number = cell(frame, row, column)
+        except CellError as error:
+            msg = f"{where}: {error}; rows: {_listed(frame.index)}; columns: {_listed(frame.columns)}"
+            raise _MissingResultError(msg) from error
+        if number is None:
+            msg = f"{where}: nothing is computed there"
+            raise _MissingResultError(msg)
+        return number
+
+    def _value(self, exhibit: str, row: str, column: str, reading: str = AS_WRITTEN, digits: int = 6) -> str:
+        return _digits(self._number(exhibit, row, column, reading), digits)
+
+    def _printed(self, exhibit: str, row: str, column: str) -> str:
+        return self._verdict_row("printed", exhibit, row, column).printed
+
+    def _verdict(self, exhibit: str, row: str, column: str = CLAIM_COLUMN) -> str:
+        return self._verdict_row("verdict", exhibit, row, column).verdict
+
+    def _verdict_row(self, function: str, exhibit: str, row: str, column: str) -> VerdictRow:
+        where = f"{function}('{exhibit}', '{row}', '{column}')"
+        found = self._by_cell.get((exhibit, row, column))
+        if found is None:
+            self._result(exhibit, where)
+            msg = f"{where}: the paper prints no value there"
+            raise _MissingResultError(msg)
+        return found
+
+    def _count(self, exhibit: str | None = None, verdict: str | None = None) -> int:
+        allowed = (*VALUE_VERDICTS, *CLAIM_VERDICTS)
+        if verdict is not None and verdict not in allowed:
+            msg = f"count: '{verdict}' is not a verdict; allowed: {', '.join(allowed)}"
+            raise _MissingResultError(msg)
+        if exhibit is not None:
+            self._result(exhibit, f"count('{exhibit}')")
+        # A bare count() is about printed numbers; sentences are counted where they are asked for.
+        claims_too = exhibit is not None or verdict in CLAIM_VERDICTS
+        return sum(
+            (exhibit is None or row.exhibit == exhibit)
+            and (verdict is None or row.verdict == verdict)
+            and (claims_too or row.column != CLAIM_COLUMN)
+            for row in self._verdicts
+        )
+
+    def _claim(self, id: str, exhibit: str = "claims") -> Finding:
+        where = f"claim('{id}', '{exhibit}')"
+        result = self._result(exhibit, where)
+        if not isinstance(result, ClaimsResult):
+            msg = f"{where}: '{exhibit}' holds no claims; allowed: {self._listed_exhibits(ClaimsResult)}"
+            raise _MissingResultError(msg)
+        if id in result.errors:
+            msg = f"{where}: the check failed: {result.errors[id]}"
+            raise _MissingResultError(msg)
+        if id not in result.findings:
+            msg = f"{where}: no such claim; allowed: {_listed(result.findings)}"
+            raise _MissingResultError(msg)
+        return result.findings[id]
+
+    def _result(self, exhibit: str, where: str) -> Result:
+        result = self._results.get((self._paper.id, exhibit))
+        if result is None:
+            known = exhibit in self._paper.exhibits
+            what = "was not computed" if known else "is not an exhibit"
+            msg = f"{where}: '{exhibit}' {what}; computed: {self._listed_exhibits()}"
+            raise _MissingResultError(msg)
+        return result
+
+    def _listed_exhibits(self, kind: type[Result] | None = None) -> str:
+        return _listed(
+            id
+            for id in self._paper.exhibits
+            if (result := self._results.get((self._paper.id, id))) is not None
+            and (kind is None or isinstance(result, kind))
+        )
+
+
+def _environment() -> jinja2.Environment:
+    import jinja2
+
+    environment = jinja2.Environment(
+        undefined=jinja2.StrictUndefined,
+        comment_start_string="<!--#",
+        comment_end_string="#-->",
+        keep_trailing_newline=True,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        autoescape=False,  # noqa: S701  -- the output is Markdown
+    )
+    environment.filters["digits"] = _digits
+    return environment
+
+
+def _digits(number: float, digits: int = 6) -> str:
+    """Write a number with so many significant digits."""
+    return f"{float(number) + 0.0:.{digits}g}"  # + 0.0 turns -0 into 0
+
+
+def _template_line(error: BaseException) -> int:
+    """Return the line of the template in which an error arose; 1 if it left no trace there."""
+    lines = [
+        frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<template>"
+    ]
+    return next((line for line in reversed(lines) if line is not None), 1)
+
+
+def _listed(keys: object) -> str:
+    names = [f"'{key}'" for key in keys] if hasattr(keys, "__iter__") else []
+    shown = ", ".join(names[:_SHOWN_KEYS])
+    return (f"{shown}, ..." if len(names) > _SHOWN_KEYS else shown) or "none"

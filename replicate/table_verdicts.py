@@ -1,0 +1,221 @@
+"""The verdicts on the printed values of one table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from replicate.cells import cells
+from replicate.exhibits import AS_WRITTEN, Table
+from replicate.judgement import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
+from replicate.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.matching import Match, computed_text, format_like, match
+from replicate.printed import Key, PrintedValue
+from replicate.records import TableResult
+
+_CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
+    "misprint": "misprint",
+    "scan": "misprint",
+    "definition": "discrepant",
+    "method": "discrepant",
+    "optimiser": "discrepant",
+    "rounding": "discrepant",
+    "measured": "not-computable",
+    "unavailable": "not-computable",
+    "unknown": "unexplained",
+}
+
+
+@dataclass
+class TableJudge:
+    """The judging of one table: first `judge`, then `status`.
+
+    Attributes
+    ----------
+    paper
+        Its id.
+    printed
+        The printed values by (row, column); empty where the paper prints none.
+    judgement
+        What `judge` fills: results, verdicts and problems.
+    """
+
+    paper: str
+    table: Table
+    result: TableResult
+    printed: Mapping[Key, PrintedValue]
+    ledger: Ledger
+    judgement: Judgement = field(default_factory=Judgement)
+    numbers: dict[str, dict[Key, float]] = field(default_factory=dict)  # by reading
+    matches: dict[str, dict[Key, Match]] = field(default_factory=dict)  # by reading
+
+    def judge(self) -> list[tuple[int, LedgerEntry]]:
+        """Fill the judgement, and return which of its verdicts come from which ledger entry."""
+        explained = []
+        for reading in self.table.readings:
+            self._read(reading)
+        held = {key: self._held(key) for key in self.printed}
+        entries = dict(self._assign({key for key, verdict in held.items() if verdict is None}))
+        for key, value in self.printed.items():
+            self.judgement.results.extend(
+                self._result_row(key, value, reading, self.matches[reading][key])
+                for reading in self.table.readings
+            )
+            entry = entries.get(key)
+            verdict = held[key] or (
+                self._explained(key, value, entry) if entry else self._unexplained(key, value)
+            )
+            if entry:
+                explained.append((len(self.judgement.verdicts), entry))
+            self.judgement.verdicts.append(verdict)
+        return explained
+
+    def status(self) -> tuple[Status, str]:
+        """Return the exhibit's status and, unless it is done, the reason."""
+        failed = [f"reading '{reading}' failed: {error}" for reading, error in self.result.errors.items()]
+        if not self.printed:
+            done = len(self.result.frames) > 0
+            return ("partly" if done and failed else "done" if done else "not-computable"), "; ".join(failed)
+        missing = [
+            verdict
+            for verdict in self.judgement.verdicts
+            if verdict.verdict == "not-computable"
+            or not any((verdict.row, verdict.column) in numbers for numbers in self.numbers.values())
+        ]
+        if not missing:
+            return "done", ""
+        reason = f"{len(missing)} of {len(self.judgement.verdicts)} printed values cannot be computed"
+        causes = sorted({verdict.cause for verdict in missing if verdict.cause})
+        if causes:
+            reason += f" ({', '.join(causes)})"
+        status: Status = "partly" if len(missing) < len(self.judgement.verdicts) else "not-computable"
+        return status, "; ".join([reason, *failed])
+
+    def _read(self, reading: str) -> None:
+        """Take the numbers of one reading and compare them."""
+        numbers: dict[Key, float] = {}
+        frame = self.result.frames.get(reading)
+        if reading in self.result.errors:
+            self._problem(f"reading '{reading}' failed: {self.result.errors[reading]}")
+        elif frame is None:
+            self._problem(f"reading '{reading}' was not computed")
+        else:
+            numbers, wrong = cells(frame, self.printed)
+            for line in wrong:
+                self._problem(f"reading '{reading}': {line}")
+        self.numbers[reading] = numbers
+        self.matches[reading] = {
+            key: match(value, numbers.get(key), self.table.significant_digits)
+            for key, value in self.printed.items()
+        }
+
+    def _held(self, key: Key) -> VerdictRow | None:
+        """Return the verdict on a value that some reading gives, as written first; ``None`` if none does."""
+        for reading in self.table.readings.values():
+            if self.matches[reading.id][key].kind == "equal":
+                if reading.id == AS_WRITTEN:
+                    return self._verdict_row(key, "reproduced", reading.id)
+                return replace(self._verdict_row(key, "reconstructed", reading.id), explanation=reading.title)
+        return None
+
+    def _assign(self, open_keys: set[Key]) -> Iterator[tuple[Key, LedgerEntry]]:
+        """Give each value that does not hold its ledger entry, and report entries that do not apply."""
+        taken: set[Key] = set()
+        for entry in self.ledger.of(self.table.id):
+            place = self.ledger.place(entry)
+            if entry.explicit:
+                named = [(row, column) for row in entry.rows for column in entry.columns]
+                self.judgement.problems.extend(
+                    f"{place}: {self.table.id} {_cell(key)} "
+                    + ("no longer differs" if key in self.printed else "is blank in the paper")
+                    for key in named
+                    if key not in open_keys
+                )
+                found = [key for key in named if key in open_keys]
+            else:
+                found = [key for key in self.printed if key in open_keys - taken and entry.covers(*key)]
+                if not found:
+                    self.judgement.problems.append(
+                        f"{place}: {self.table.id}: no printed value that differs is left to explain"
+                    )
+            right = [key for key in found if self._correction_holds(key, entry)]
+            taken.update(right)
+            yield from ((key, entry) for key in right)
+
+    def _correction_holds(self, key: Key, entry: LedgerEntry) -> bool:
+        """Check that the reading of a misprint gives a right value, and the one that the entry states."""
+        if entry.cause not in MISPRINT_CAUSES:
+            return True
+        place = f"{self.ledger.place(entry)}: {self.table.id} {_cell(key)}"
+        number = self.numbers[entry.reading].get(key)
+        text = computed_text(number)
+        if number is None or text.endswith("inf"):
+            self.judgement.problems.append(
+                f"{place}: reading '{entry.reading}' gives no value that could be the right one"
+            )
+            return False
+        if not entry.corrected:
+            return True
+        stated = replace(self.printed[key], text=entry.corrected)
+        if match(stated, number).kind != "equal":
+            self.judgement.problems.append(
+                f"{place}: corrected = '{entry.corrected}', but reading '{entry.reading}' gives {text}"
+            )
+            return False
+        if stated.unit > self.printed[key].unit and _digits(entry.corrected) < _digits(
+            self.printed[key].text
+        ):
+            print_ = self.printed[key].text
+            self.judgement.problems.append(
+                f"{place}: corrected = '{entry.corrected}' has fewer digits than '{print_}'"
+            )
+            return False
+        return True
+
+    def _explained(self, key: Key, value: PrintedValue, entry: LedgerEntry) -> VerdictRow:
+        corrected = ""
+        if entry.cause in MISPRINT_CAUSES:
+            corrected = entry.corrected or format_like(value, self.numbers[entry.reading][key])
+        return replace(
+            self._verdict_row(key, _CAUSE_VERDICTS[entry.cause], entry.reading),
+            corrected=corrected,
+            cause=entry.cause,
+            explanation=" ".join(text for text in (entry.explanation, entry.evidence) if text),
+        )
+
+    def _unexplained(self, key: Key, value: PrintedValue) -> VerdictRow:
+        for reading in self.table.readings:
+            if self.matches[reading][key].kind == "near":
+                return self._verdict_row(key, "near", reading)
+        if self.result.errors and not any(key in numbers for numbers in self.numbers.values()):
+            return self._verdict_row(key, "unexplained", AS_WRITTEN)  # the failure is on record already
+        computed = [
+            f"{reading} {computed_text(self.numbers[reading].get(key)) or 'nothing'}"
+            for reading in self.numbers
+        ]
+        self._problem(
+            f"{_cell(key)}: printed {value.text}, computed {', '.join(computed)}: has no ledger entry"
+        )
+        return self._verdict_row(key, "unexplained", AS_WRITTEN)
+
+    def _result_row(self, key: Key, value: PrintedValue, reading: str, found: Match) -> ResultRow:
+        computed = computed_text(self.numbers[reading].get(key))
+        return ResultRow(
+            self.paper, self.table.id, *key, value.text, reading, computed, found.kind, found.how
+        )
+
+    def _verdict_row(self, key: Key, verdict: ValueVerdict, reading: str) -> VerdictRow:
+        computed = computed_text(self.numbers[reading].get(key))
+        return VerdictRow(self.paper, self.table.id, *key, self.printed[key].text, verdict, reading, computed)
+
+    def _problem(self, text: str) -> None:
+        self.judgement.problems.append(f"{self.paper} {self.table.id}: {text}")
+
+
+def _cell(key: Key) -> str:
+    return f"row '{key[0]}', column '{key[1]}'"
+
+
+def _digits(text: str) -> int:
+    """Count the significant digits of a printed number, trailing zeros included."""
+    return len(text.lower().partition("e")[0].strip("+-\N{MINUS SIGN}").replace(".", "").lstrip("0"))
