@@ -1,0 +1,30 @@
+"""Control loops with dead time, exactly.
+
+Plants with dead time, PI and PID controllers, and the loops made of them: time responses by a spectral method of steps,
+metrics read from the piecewise polynomial, poles, sensitivity peaks and margins with the exact dead time.
+"""
+
+from replicate.loops.controller import PI, PID
+from replicate.loops.errors import ImproperLoopError, LoopError, NotSettledError, UnstableLoopError
+from replicate.loops.loop import Loop, Response, step_responses
+from replicate.loops.margins import Margins
+from replicate.loops.plant import Plant
+from replicate.loops.sensitivity import FrequencyPeak
+from replicate.loops.signal import Peak, Signal
+
+__all__ = [
+    "PI",
+    "PID",
+    "FrequencyPeak",
+    "ImproperLoopError",
+    "Loop",
+    "LoopError",
+    "Margins",
+    "NotSettledError",
+    "Peak",
+    "Plant",
+    "Response",
+    "Signal",
+    "UnstableLoopError",
+    "step_responses",
+]

@@ -1,0 +1,142 @@
+"""The open chain from the delayed control signal to the controller's building blocks.
+
+On an interval no longer than the dead time the plant sees only what the controller did one dead time ago. Everything in
+that interval, output and next control signal alike, is therefore an explicit linear function of known signals: there is no
+feedback inside. The chain holds the states of the plant, of the filters and of the integrator,
+
+    X' = A X + B v + E r,    y = C X + D v,    w = W_x X + W_v v + W_r r,    u = g . w,
+
+with v the plant input after the dead time, r the set-point, and w the four signals r_f, y_f, integral(r_f - y_f) and
+derivative whose gains are (k b, -k, ki, kd). The gains appear only in the last product, so one chain serves a whole sweep.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.signal
+from numpy.typing import NDArray
+
+from replicate.loops.controller import PID
+from replicate.loops.errors import ImproperLoopError
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """State-space matrices of the open chain; shapes A (n, n), B, E, C (n,), W_x (4, n), W_v, W_r (4,)."""
+
+    a: Array
+    b: Array
+    e: Array
+    c: Array
+    d: float
+    wx: Array
+    wv: Array
+    wr: Array
+    setpoint_impulse: float  # weight of the impulse that an ideal derivative makes of a set-point step, per unit of kd
+
+
+def gains(controller: PID) -> Array:
+    """Return the gains of the four building blocks, shape (4,)."""
+    return np.array([controller.k * controller.b, -controller.k, controller.ki, controller.kd])
+
+
+def build_chain(plant: Plant, controller: PID, *, integral: bool = True, derivative: bool = True) -> Chain:
+    """Return the chain of a rational plant and a controller's filters and weights (its gains are not used).
+
+    Parameters
+    ----------
+    integral, derivative
+        Whether any controller that will use this chain has integral or derivative action.
+
+    Raises
+    ------
+    ImproperLoopError
+        If an ideal derivative meets a plant whose output jumps with its input.
+    """
+    pa, pb, pc, d = plant.state_space()
+    n_plant = pb.size
+    n_filter = controller.measurement_filter_order if controller.measurement_filter else 0
+    n_integral = 1 if integral else 0
+    n_lag = 1 if derivative and controller.derivative_filter else 0
+    fa, fb, fc, fd = _state_space(*controller.setpoint_filter_polynomials())
+    i_filter = n_plant
+    i_integral = i_filter + n_filter
+    i_lag = i_integral + n_integral
+    i_setpoint = i_lag + n_lag
+    n = i_setpoint + fb.size
+
+    a, b, e = np.zeros((n, n)), np.zeros(n), np.zeros(n)
+    a[:n_plant, :n_plant], b[:n_plant] = pa, pb
+    y = _Row(np.concatenate([pc, np.zeros(n - n_plant)]), d, 0.0)
+
+    # measurement filter: a chain of equal first-order lags
+    measured, slope = y, None
+    for index in range(i_filter, i_filter + n_filter):
+        lag = controller.measurement_filter
+        slope = (measured - _Row.state(index, n)) * (1.0 / lag)
+        a[index], b[index], e[index] = slope.x, slope.v, slope.r
+        measured = _Row.state(index, n)
+
+    a[i_setpoint:, i_setpoint:], e[i_setpoint:] = fa, fb
+    setpoint = _Row(np.concatenate([np.zeros(i_setpoint), fc]), 0.0, fd)
+    error = setpoint - measured
+
+    integrated = _Row(np.zeros(n), 0.0, 0.0)
+    if integral:
+        a[i_integral], b[i_integral], e[i_integral] = error.x, error.v, error.r
+        integrated = _Row.state(i_integral, n)
+
+    differentiated, impulse = _Row(np.zeros(n), 0.0, 0.0), 0.0
+    if n_lag:
+        weighted = setpoint * controller.c - measured
+        differentiated = (weighted - _Row.state(i_lag, n)) * (1.0 / controller.derivative_filter)
+        a[i_lag], b[i_lag], e[i_lag] = differentiated.x, differentiated.v, differentiated.r
+    elif derivative:
+        if slope is None:
+            if d:
+                msg = "an ideal derivative of an output that jumps with the plant's input is not a causal controller"
+                raise ImproperLoopError(msg)
+            slope = _Row(y.x @ a, float(y.x @ b), 0.0)
+        setpoint_slope = _Row(setpoint.x @ a, 0.0, float(setpoint.x @ e))
+        differentiated = setpoint_slope * controller.c - slope
+        impulse = controller.c * fd
+
+    rows = (setpoint, measured, integrated, differentiated)
+    return Chain(
+        a, b, e, y.x, d,
+        np.array([row.x for row in rows]), np.array([row.v for row in rows]), np.array([row.r for row in rows]),
+        impulse,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A signal of the chain as a linear function of its state, the plant input v and the set-point r."""
+
+    x: Array
+    v: float
+    r: float
+
+    @classmethod
+    def state(cls, index: int, size: int) -> _Row:
+        x = np.zeros(size)
+        x[index] = 1.0
+        return cls(x, 0.0, 0.0)
+
+    def __sub__(self, other: _Row) -> _Row:
+        return _Row(self.x - other.x, self.v - other.v, self.r - other.r)
+
+    def __mul__(self, factor: float) -> _Row:
+        return _Row(self.x * factor, self.v * factor, self.r * factor)
+
+
+def _state_space(num: Array, den: Array) -> tuple[Array, Array, Array, float]:
+    if den.size == 1:
+        return np.zeros((0, 0)), np.zeros(0), np.zeros(0), float(num[-1] / den[0])
+    a, b, c, d = scipy.signal.tf2ss(num, den)
+    return np.asarray(a), np.asarray(b)[:, 0], np.asarray(c)[0], float(np.asarray(d).item())

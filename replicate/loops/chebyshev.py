@@ -1,0 +1,106 @@
+"""Chebyshev-Lobatto collocation: nodes, transforms and integration on [-1, 1].
+
+Trefethen, "Spectral Methods in MATLAB" (2000), chapters 6 and 12; Clenshaw and Curtis (1960) for the integrals.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import chebyshev as cheb
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@cache
+def nodes(degree: int) -> Array:
+    """Return the ``degree + 1`` Chebyshev-Lobatto nodes, ascending from -1 to 1."""
+    # The sine form is exactly antisymmetric, which the cosine form is not in floating point.
+    return _frozen(np.sin(np.pi * np.arange(-degree, degree + 1, 2) / (2 * degree)))
+
+
+@cache
+def values_to_coefficients(degree: int) -> Array:
+    """Return the matrix that maps values at the nodes to Chebyshev coefficients (discrete cosine transform)."""
+    order = np.arange(degree + 1)
+    angles = np.arccos(nodes(degree))
+    weights = np.full(degree + 1, 2.0 / degree)
+    weights[[0, -1]] /= 2.0
+    transform = np.cos(np.outer(order, angles)) * weights
+    transform[[0, -1]] /= 2.0
+    return _frozen(transform)
+
+
+@cache
+def integration(degree: int) -> Array:
+    """Return the matrix that maps values at the nodes to the integral from -1 to each node.
+
+    The interpolant is integrated exactly, so the operator is of the second kind and well conditioned.
+    """
+    antiderivative = cheb.chebint(np.eye(degree + 1), lbnd=-1.0, axis=0)
+    vandermonde = cheb.chebvander(nodes(degree), degree + 1)
+    matrix = vandermonde @ antiderivative @ values_to_coefficients(degree)
+    matrix[0] = 0.0
+    return _frozen(matrix)
+
+
+@cache
+def evaluation(degree: int, points: int) -> Array:
+    """Return the matrix, shape (degree + 1, points), that maps coefficients to values at ``points`` Lobatto nodes."""
+    return _frozen(cheb.chebvander(nodes(points - 1), degree).T.copy())
+
+
+@cache
+def differentiation(degree: int) -> Array:
+    """Return the matrix, shape (degree + 1, degree), that maps coefficients (as rows) to those of the derivative."""
+    return _frozen(cheb.chebder(np.eye(degree + 1), axis=0).T.copy())
+
+
+@cache
+def gauss_legendre(count: int) -> tuple[Array, Array]:
+    """Return Gauss-Legendre nodes and weights on [-1, 1], exact for polynomials of degree ``2 count - 1``."""
+    points, weights = np.polynomial.legendre.leggauss(count)
+    return _frozen(points), _frozen(weights)
+
+
+def basis(x: Array, degree: int) -> Array:
+    """Return the Chebyshev polynomials of degree 0..``degree`` at ``x``; shape (degree + 1, len(x))."""
+    table = np.empty((degree + 1, x.size))
+    table[0] = 1.0
+    if degree:
+        table[1] = x
+        twice = 2.0 * x
+        for k in range(2, degree + 1):
+            np.multiply(twice, table[k - 1], out=table[k])
+            table[k] -= table[k - 2]
+    return table
+
+
+def real_roots(coefficients: Array) -> Array:
+    """Return the sorted roots of a Chebyshev series in [-1, 1], from the colleague matrix, polished by Newton.
+
+    Trailing coefficients at rounding level are dropped first: they would only add spurious far-away eigenvalues.
+    """
+    scale = np.max(np.abs(coefficients))
+    if scale == 0.0:
+        return np.empty(0)
+    significant = np.nonzero(np.abs(coefficients) > 1e-15 * scale)[0]
+    series = coefficients[: significant[-1] + 1]
+    if series.size < 2:
+        return np.empty(0)
+    roots = cheb.chebroots(series)
+    slack = 1e-8  # a double root splits into a pair off the real axis by the square root of the rounding error
+    real = np.clip(roots[(np.abs(roots.imag) < slack) & (np.abs(roots.real) <= 1.0 + slack)].real, -1.0, 1.0)
+    derivative = cheb.chebder(series)
+    for _ in range(2):
+        slope = cheb.chebval(real, derivative)
+        step = np.divide(cheb.chebval(real, series), slope, out=np.zeros_like(real), where=slope != 0.0)
+        real = np.where(np.abs(step) < 1e-4, np.clip(real - step, -1.0, 1.0), real)
+    return np.sort(real)
+
+
+def _frozen(array: Array) -> Array:
+    array.setflags(write=False)  # cached arrays are shared
+    return array

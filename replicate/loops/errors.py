@@ -1,0 +1,27 @@
+"""All exceptions of the numerical core.
+
+LoopError(ValueError)
+├── ImproperLoopError      the loop contains a pure differentiator without a causal solution
+├── UnstableLoopError      a quantity was asked for that only a stable loop has
+└── NotSettledError        the response has not settled inside its horizon
+
+A design that finds no controller is not an error: it returns a result whose status says so.
+"""
+
+from __future__ import annotations
+
+
+class LoopError(ValueError):
+    """Base of every error of the numerical core."""
+
+
+class ImproperLoopError(LoopError):
+    """The loop gain does not stay below one at high frequency, or is not defined there."""
+
+
+class UnstableLoopError(LoopError):
+    """A quantity was asked for that only a stable loop has."""
+
+
+class NotSettledError(LoopError):
+    """The response has not settled, or not reached the level asked for, inside its horizon."""

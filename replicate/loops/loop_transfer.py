@@ -1,0 +1,144 @@
+r"""The loop transfer function L = C G in the form that stability and frequency analysis need.
+
+.. math:: L(s) = \frac{N(s)}{D(s)}\, g(s)\, e^{-sL}, \qquad f(s) = D(s) (1 + L(s))
+
+N, D are polynomials and g = 1 for rational plants; for a plant given by a function, g is that function and N/D the
+controller. The zeros of the *characteristic function* f are the closed loop's poles, cancelled ones included.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.controller import PID
+from replicate.loops.errors import ImproperLoopError
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class LoopTransfer:
+    """Numerator, denominator (descending powers of s), dead time and function part of a loop transfer function."""
+
+    num: Array
+    den: Array
+    dead_time: float
+    plant: Plant
+
+    @classmethod
+    def of(cls, plant: Plant, controller: PID) -> LoopTransfer:
+        """Return the loop transfer function of a plant and a controller's feedback part.
+
+        Raises
+        ------
+        ImproperLoopError
+            If |L| grows without bound at high frequency, or does not stay below one in a loop with dead time.
+        """
+        num, den = controller.feedback_polynomials()
+        if plant.is_rational:
+            num, den = np.polymul(num, plant.num), np.polymul(den, plant.den)
+        transfer = cls(np.trim_zeros(num, "f"), den, plant.dead_time, plant)
+        if plant.is_rational and transfer.num.size > den.size:
+            msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
+            raise ImproperLoopError(msg)
+        return transfer
+
+    def __call__(self, s: Any) -> ComplexArray:
+        """Evaluate L(s) at complex ``s``."""
+        s = np.asarray(s, dtype=complex)
+        value = np.polyval(self.num, s) / np.polyval(self.den, s) * np.exp(-s * self.dead_time)
+        return np.asarray(value if self.plant.is_rational else value * self.plant.delay_free(s))
+
+    def characteristic(self, s: Any) -> ComplexArray:
+        """Evaluate f(s) = D(s) + N(s) g(s) exp(-s dead_time)."""
+        s = np.asarray(s, dtype=complex)
+        value = np.polyval(self.num, s) * np.exp(-s * self.dead_time)
+        if not self.plant.is_rational:
+            value = value * self.plant.delay_free(s)
+        return np.asarray(np.polyval(self.den, s) + value)
+
+    def log_derivative(self, s: Any) -> ComplexArray:
+        """Evaluate L'(s)/L(s): exact for rational plants, by a sixth-order difference for the function part."""
+        s = np.asarray(s, dtype=complex)
+        value = (
+            np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s)
+            - np.polyval(np.polyder(self.den), s) / np.polyval(self.den, s)
+            - self.dead_time
+        )
+        if not self.plant.is_rational:
+            h = 1e-3 * np.abs(s)
+            g = self.plant.delay_free
+            slope = (45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)) / (60 * h)
+            value = value + slope / g(s)
+        return np.asarray(value)
+
+    @cached_property
+    def feedthrough(self) -> float:
+        """|L| in the limit of infinite frequency (0 for retarded loops)."""
+        if not self.plant.is_rational or self.num.size < self.den.size:
+            return 0.0
+        return float(abs(self.num[0] / self.den[0])) if self.num.size else 0.0
+
+    @cached_property
+    def gain_stationary(self) -> Array:
+        """Positive frequencies at which |L(i w)| is stationary, ascending; |L| is monotone beyond the last one."""
+        n, d = _squared_magnitude(self.num), _squared_magnitude(self.den)
+        slope = np.polysub(np.polymul(np.polyder(n), d), np.polymul(n, np.polyder(d)))
+        roots = np.roots(np.trim_zeros(slope, "f")) if np.any(slope) else np.empty(0)
+        # a nearly double root may leave the axis: keep everything close to it, it only makes the bound safer
+        x = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 0.5 * np.abs(roots.real))]
+        return np.sort(np.sqrt(x))
+
+    @cached_property
+    def gain_crossovers(self) -> Array:
+        """All frequencies at which |L(i w)| = 1, ascending (rational plants)."""
+        difference = np.polysub(_squared_magnitude(self.num), _squared_magnitude(self.den))
+        roots = np.roots(np.trim_zeros(difference, "f")) if np.any(difference) else np.empty(0)
+        real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots.real))]
+        w = np.sort(np.sqrt(real))
+        for _ in range(3):  # Newton on log |L|
+            slope = (1j * self.log_derivative(1j * w)).real
+            w = w - np.divide(np.log(np.abs(self(1j * w))), slope, out=np.zeros_like(w), where=slope != 0.0)
+        return w
+
+    @cached_property
+    def corner_frequencies(self) -> ComplexArray:
+        """Nonzero poles and zeros of L's rational part: where its frequency response bends."""
+        roots = np.concatenate([np.roots(self.num), np.roots(self.den)])
+        return roots[np.abs(roots) > 0.0]
+
+    def beyond(self, level: float) -> float:
+        """Return a frequency beyond which |L(i w)| provably stays below ``level`` > `feedthrough`.
+
+        For rational plants |L| is monotone beyond its last stationary point, so one evaluation is a proof. For plants
+        given by a function the decay is checked over eight octaves.
+        """
+        corners = np.abs(self.corner_frequencies)
+        w = max(
+            [1e-6, *self.gain_stationary.tolist(), *corners.tolist()] if self.plant.is_rational else [1.0, *corners.tolist()]
+        )
+        w *= 1.0 + 1e-9
+        for _ in range(200):
+            if abs(self(1j * w)) < level and (
+                self.plant.is_rational or np.all(np.abs(self(1j * w * 2.0 ** np.arange(1, 9))) < level)
+            ):
+                return float(w)
+            w *= 1.5
+        msg = f"the loop gain does not fall below {level:g} at high frequency"
+        raise ImproperLoopError(msg)
+
+
+def _squared_magnitude(polynomial: Array) -> Array:
+    """Return the coefficients in x = w^2 of |p(i w)|^2."""
+    degree = polynomial.size - 1
+    signs = np.array([(-1.0) ** k for k in range(degree, -1, -1)])
+    product = np.polymul(polynomial, polynomial * signs)  # p(s) p(-s), even in s
+    even = product[::2]
+    return np.asarray(even * np.array([(-1.0) ** k for k in range(even.size - 1, -1, -1)]))

@@ -1,0 +1,116 @@
+"""Gain, phase and delay margins from all crossovers, not the first one met."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.stability import frequency_grid
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Margins:
+    """The stability margins of a stable loop.
+
+    Attributes
+    ----------
+    gain
+        Smallest factor > 1 on the loop gain that makes the loop unstable; ``inf`` if none does.
+    gain_reduction
+        Largest factor < 1 that makes it unstable (unstable plants, conditional stability); 0 if none does.
+    phase
+        Smallest additional phase lag, in degrees, that makes it unstable; ``inf`` if none does.
+    delay
+        Smallest additional dead time that makes it unstable; ``inf`` if none does.
+    phase_crossover, phase_crossover_low, gain_crossover, delay_crossover
+        Frequencies that belong to gain, gain_reduction, phase and delay (``nan`` where there is none), rad per unit time.
+    phase_crossovers, gain_crossovers
+        All frequencies with arg L = -180 degrees (modulo 360) and with |L| = 1, ascending.
+    """
+
+    gain: float
+    gain_reduction: float
+    phase: float
+    delay: float
+    phase_crossover: float
+    phase_crossover_low: float
+    gain_crossover: float
+    delay_crossover: float
+    phase_crossovers: tuple[float, ...]
+    gain_crossovers: tuple[float, ...]
+
+
+def margins(transfer: LoopTransfer) -> Margins:
+    """Return the margins of a stable loop; the caller has checked stability."""
+    phase_crossovers = _phase_crossovers(transfer)
+    factors = 1.0 / np.abs(transfer(1j * phase_crossovers)) if phase_crossovers.size else np.empty(0)
+    above, below = factors > 1.0, factors < 1.0
+    gain, gain_at = _extreme(factors[above], phase_crossovers[above], np.argmin, float("inf"))
+    reduction, reduction_at = _extreme(factors[below], phase_crossovers[below], np.argmax, 0.0)
+    if not transfer.dead_time and transfer.feedthrough:
+        gain = min(gain, _algebraic_limit(transfer))
+    elif transfer.feedthrough:  # the tail of a neutral loop loses stability when |L(i inf)| reaches one
+        if 1.0 / transfer.feedthrough < gain:
+            gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
+
+    w = transfer.gain_crossovers if transfer.plant.is_rational else _gain_crossovers(transfer)
+    lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
+    phase, phase_at = _extreme(np.degrees(lag), w, np.argmin, float("inf"))
+    delay, delay_at = _extreme(lag / w if w.size else lag, w, np.argmin, float("inf"))
+    return Margins(
+        gain, reduction, phase, delay, gain_at, reduction_at, phase_at, delay_at,
+        tuple(phase_crossovers.tolist()), tuple(w.tolist()),
+    )  # fmt: skip
+
+
+def _extreme(values: Array, frequencies: Array, select: object, empty: float) -> tuple[float, float]:
+    if values.size == 0:
+        return empty, float("nan")
+    index = int(select(values))  # type: ignore[operator]
+    return float(values[index]), float(frequencies[index])
+
+
+def _algebraic_limit(transfer: LoopTransfer) -> float:
+    direct = transfer.num[0] / transfer.den[0]
+    return float(-1.0 / direct) if direct < 0.0 else float("inf")
+
+
+def _phase_crossovers(transfer: LoopTransfer) -> Array:
+    """Return all frequencies with L real and negative, up to where |L| only falls."""
+    end = transfer.beyond(max(0.02, 0.5 * (1.0 + transfer.feedthrough)))
+    if transfer.dead_time:
+        end += 2.5 * np.pi / transfer.dead_time  # one full turn more, so that a crossover below one is always included
+    elif not transfer.feedthrough:
+        end = max(end, transfer.beyond(1e-9)) if transfer.plant.is_rational else end
+    w = frequency_grid(transfer, end, per_decade=80)
+    value = transfer(1j * w)
+    turned = value.imag[:-1] * value.imag[1:] < 0.0
+    negative = value.real[:-1] + value.real[1:] < 0.0
+    exact = w[(value.imag == 0.0) & (value.real < 0.0)]
+
+    def imaginary(x: float) -> float:
+        return float(complex(transfer(1j * x)).imag)
+
+    found = [
+        brentq(imaginary, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200) for i in np.nonzero(turned & negative)[0]
+    ]
+    roots = np.sort(np.concatenate([np.array(found), exact]))
+    return roots[transfer(1j * roots).real < 0.0] if roots.size else roots
+
+
+def _gain_crossovers(transfer: LoopTransfer) -> Array:
+    """Return all frequencies with |L| = 1, for plants given by a function."""
+    w = frequency_grid(transfer, transfer.beyond(0.5), per_decade=200)
+
+    def excess(x: float) -> float:
+        return float(np.log(np.abs(complex(transfer(1j * x)))))
+
+    level = np.log(np.abs(transfer(1j * w)))
+    changes = np.nonzero(level[:-1] * level[1:] < 0.0)[0]
+    return np.array([brentq(excess, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16) for i in changes])

@@ -1,0 +1,226 @@
+"""Exact time responses by a spectral method of steps.
+
+Time is cut into pieces of length ``dead_time / m``. On each piece the chain (`replicate.loops.chain`) is solved in integral
+form on Chebyshev-Lobatto nodes,
+
+    (I - h/2 S (x) A) X = 1 (x) X_0 + h/2 (S (x) B) v + h/2 (S 1 (x) E) r,
+
+S being the Chebyshev integration matrix: one fixed linear map from (delayed input, state at the start, reference) to
+(control signal, output, state at the end). Kinks and jumps fall on the ends of pieces, so every piece is smooth and the
+result converges spectrally. The number of pieces is raised until the last Chebyshev coefficients are at rounding level.
+
+Without dead time the loop is closed inside the piece, which makes it an ordinary linear differential equation.
+
+Reference: Bellman and Cooke, "Differential-Difference Equations" (1963), chapter 3, for the method of steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops import chebyshev
+from replicate.loops.chain import Chain, build_chain, gains
+from replicate.loops.controller import PID
+from replicate.loops.errors import ImproperLoopError, LoopError
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+
+DEGREE = 18
+RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at which a piece counts as resolved
+STIFFNESS = 5.0  # largest (spectral radius x piece length) to start from
+MAX_PIECES = 400_000
+
+
+@dataclass(frozen=True)
+class PieceMap:
+    """The fixed map of one piece, as matrices acting on the node values of v, the start state and the unit set-point.
+
+    Shapes, with p = DEGREE + 1 nodes and n states: ``basis`` (4, p, p + n + 1), ``output`` (p, p + n + 1) and ``state``
+    (n, p + n + 1); the columns are v at the nodes, the state, and r.
+    """
+
+    basis: Array
+    output: Array
+    state: Array
+
+
+def piece_map(chain: Chain, length: float) -> PieceMap:
+    """Solve the collocation system of one piece for all its inputs at once."""
+    points, n = DEGREE + 1, chain.b.size
+    half_s = 0.5 * length * chebyshev.integration(DEGREE)
+    right = np.zeros((points, n, points + n + 1))
+    right[:, :, :points] = half_s[:, None, :] * chain.b[None, :, None]
+    right[:, :, points:-1] = np.eye(n)
+    right[:, :, -1] = half_s.sum(axis=1)[:, None] * chain.e
+    system = np.eye(points * n) - np.kron(half_s, chain.a)
+    states = np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, -1) if n else right
+
+    through = np.zeros((points, points + n + 1))
+    through[:, :points] = np.eye(points)
+    output = np.einsum("i,pic->pc", chain.c, states) + chain.d * through
+    basis = np.einsum("wi,pic->wpc", chain.wx, states) + chain.wv[:, None, None] * through
+    basis[:, :, -1] += chain.wr[:, None]
+    return PieceMap(basis, output, states[-1])
+
+
+def respond(
+    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float
+) -> tuple[float, Array, Array]:
+    """Compute output and control signal of one plant under several controllers that differ only in k, ki, kd and b.
+
+    Parameters
+    ----------
+    until
+        Horizon; the last piece may reach beyond it.
+    setpoint, load
+        Heights of the steps at t = 0 in the set-point and at the plant input (before the dead time).
+
+    Returns
+    -------
+    tuple
+        Piece length, and the Chebyshev coefficients of output and control signal,
+        shape (len(controllers), pieces, DEGREE + 1).
+
+    Raises
+    ------
+    LoopError
+        If the controllers differ in more than their gains, or the response needs too many pieces.
+    """
+    chain, gain_matrix = _common_chain(plant, controllers)
+    radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
+    if plant.dead_time:
+        splits = max(1, int(np.ceil(plant.dead_time * radius / STIFFNESS)))
+    else:
+        closed = [_close(chain, g) for g in gain_matrix.T]
+        radius = max(float(np.max(np.abs(np.linalg.eigvals(c.a)), initial=0.0)) for c in closed)
+        splits = max(1, int(np.ceil(until * radius / STIFFNESS)))
+    to_coefficients = chebyshev.values_to_coefficients(DEGREE).T
+    while True:
+        if plant.dead_time:
+            length = plant.dead_time / splits
+            pieces = _piece_count(until, length)
+            y, u = _march(chain, gain_matrix, length, splits, pieces, setpoint, load)
+        else:
+            length = until / splits
+            pieces = _piece_count(until, length)
+            parts = [_march_closed(c, chain, g, length, pieces, setpoint, load) for c, g in zip(closed, gain_matrix.T, strict=True)]  # noqa: E501
+            y, u = np.stack([p[0] for p in parts]), np.stack([p[1] for p in parts])
+        y, u = y @ to_coefficients, u @ to_coefficients
+        if _resolved(y) and _resolved(u):
+            return length, y, u
+        splits *= 2
+
+
+def _common_chain(plant: Plant, controllers: Sequence[PID]) -> tuple[Chain, Array]:
+    first = controllers[0]
+    shape = ("c", "derivative_filter", "measurement_filter", "measurement_filter_order", "setpoint_filter")
+    for other in controllers[1:]:
+        for name in shape:
+            if getattr(other, name) != getattr(first, name):
+                msg = f"controllers in one sweep must share {name}: {getattr(first, name)} and {getattr(other, name)}"
+                raise LoopError(msg)
+    gain_matrix = np.stack([gains(controller) for controller in controllers], axis=1)
+    chain = build_chain(
+        plant, first, integral=bool(gain_matrix[2].any()), derivative=bool(gain_matrix[3].any())
+    )
+    return chain, gain_matrix
+
+
+def _piece_count(until: float, length: float) -> int:
+    count = int(np.ceil(until / length * (1.0 - 1e-14)))
+    if count > MAX_PIECES:
+        msg = f"the response needs {count} pieces of {length:g} up to t = {until:g}; at most {MAX_PIECES} are allowed"
+        raise LoopError(msg)
+    return max(count, 1)
+
+
+def _resolved(coefficients: Array) -> bool:
+    scale = np.max(np.abs(coefficients), axis=(1, 2))
+    tail = np.max(np.abs(coefficients[:, :, -2:]), axis=(1, 2))
+    return bool(np.all(tail <= RESOLVED * scale + 1e-300))
+
+
+def _march(
+    chain: Chain, gain_matrix: Array, length: float, splits: int, pieces: int, setpoint: float, load: float
+) -> tuple[Array, Array]:
+    """Step through the pieces; returns node values of y and u, shape (controllers, pieces, points)."""
+    fixed = piece_map(chain, length)
+    points, n, sweep = DEGREE + 1, chain.b.size, gain_matrix.shape[1]
+    history = np.zeros((pieces + splits, points, sweep))  # u, shifted by one dead time
+    output = np.empty((pieces, points, sweep))
+    single = sweep == 1
+    blocks = np.concatenate([np.tensordot(gain_matrix[:, 0], fixed.basis, 1) if single else fixed.basis.reshape(4 * points, -1), fixed.output, fixed.state])  # noqa: E501
+    inputs = np.zeros((points + n + 1, sweep))
+    inputs[-1] = setpoint
+    n_basis = blocks.shape[0] - points - n
+    impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
+    feedback = gain_matrix[3] * chain.wv[3]  # an impulse in v passes through the ideal derivative into u
+    result = np.empty((blocks.shape[0], sweep))
+    has_impulse = bool(impulse.any())
+    for j in range(pieces):
+        inputs[:points] = history[j]
+        if load and j >= splits:
+            inputs[:points] += load
+        if has_impulse and j >= splits and j % splits == 0:
+            inputs[points:-1] += chain.b[:, None] * impulse
+            impulse = feedback * impulse
+        np.matmul(blocks, inputs, out=result)
+        if single:
+            history[j + splits] = result[:n_basis]
+        else:
+            history[j + splits] = np.einsum("ws,wps->ps", gain_matrix, result[:n_basis].reshape(4, points, sweep))
+        output[j] = result[n_basis : n_basis + points]
+        inputs[points:-1] = result[n_basis + points :]
+    return np.moveaxis(output, 2, 0), np.moveaxis(history[splits:], 2, 0)
+
+
+@dataclass(frozen=True)
+class _Closed:
+    """The loop closed without dead time: X' = a X + b (load) + e (set-point), u = ux X + ud (load) + ur (set-point)."""
+
+    a: Array
+    b: Array
+    e: Array
+    ux: Array
+    ud: float
+    ur: float
+    impulse: float
+
+
+def _close(chain: Chain, g: Array) -> _Closed:
+    # u = g.(W_x X + W_v v + W_r r) with v = u + load
+    algebraic = 1.0 - float(g @ chain.wv)
+    if abs(algebraic) < 1e-12:
+        msg = "the loop without dead time is not well posed: its algebraic feedback equals one"
+        raise ImproperLoopError(msg)
+    ux, ud, ur = g @ chain.wx / algebraic, float(g @ chain.wv) / algebraic, float(g @ chain.wr) / algebraic
+    return _Closed(
+        chain.a + np.outer(chain.b, ux), chain.b * (1.0 + ud), chain.e + chain.b * ur, ux, ud, ur,
+        g[3] * chain.setpoint_impulse / algebraic,
+    )  # fmt: skip
+
+
+def _march_closed(
+    closed: _Closed, chain: Chain, g: Array, length: float, pieces: int, setpoint: float, load: float
+) -> tuple[Array, Array]:
+    points, n = DEGREE + 1, chain.b.size
+    half_s = 0.5 * length * chebyshev.integration(DEGREE)
+    drive = closed.b * load + closed.e * setpoint
+    right = np.zeros((points, n, n + 1))
+    right[:, :, :n] = np.eye(n)
+    right[:, :, n] = half_s.sum(axis=1)[:, None] * drive
+    system = np.eye(points * n) - np.kron(half_s, closed.a)
+    flow = np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, n + 1) if n else right
+    states = np.empty((pieces, points, n))
+    x = np.append(chain.b * closed.impulse * setpoint, 1.0)
+    for j in range(pieces):
+        states[j] = flow @ x
+        x[:n] = states[j, -1]
+    u = states @ closed.ux + closed.ud * load + closed.ur * setpoint
+    y = states @ chain.c + chain.d * (u + load)
+    return y, u

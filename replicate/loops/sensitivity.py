@@ -1,0 +1,139 @@
+r"""Peaks of the sensitivity S = 1/(1+L) and the complementary sensitivity T = L/(1+L).
+
+A peak is found on a grid that resolves every resonance and dead-time rotation and polished by bracketing the root of the
+derivative of log|1+L|. The band is cut where :math:`|S| \le 1/(1-|L|)` proves that nothing beyond can exceed the peak found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.stability import frequency_grid
+
+Array = NDArray[np.float64]
+
+
+class FrequencyPeak(float):
+    """The peak of a frequency response; a float that also knows its frequency.
+
+    Attributes
+    ----------
+    value : float
+        The peak itself.
+    frequency : float
+        Where it is reached, rad per unit of time; ``inf`` if only in the limit, 0 if at steady state.
+    """
+
+    frequency: float
+
+    def __new__(cls, value: float, frequency: float) -> FrequencyPeak:
+        peak = super().__new__(cls, value)
+        peak.frequency = frequency
+        return peak
+
+    @property
+    def value(self) -> float:
+        """The peak as a plain float."""
+        return float(self)
+
+    def __getnewargs__(self) -> tuple[float, float]:  # type: ignore[override]
+        return float(self), self.frequency
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """Magnitude of S or T, the slope of its logarithm in w, and a bound from |L|."""
+
+    magnitude: Callable[[Array], Array]
+    slope: Callable[[float], float]
+    bound: Callable[[float], float]
+
+
+def sensitivity_peak(transfer: LoopTransfer, poles: NDArray[np.complex128]) -> FrequencyPeak:
+    """Return Ms = max |1/(1+L)| of a stable loop; ``poles`` (closed loop) show where narrow peaks are."""
+
+    def slope(w: float) -> float:
+        value = complex(transfer(1j * w))
+        return float((-1j * value * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
+
+    kind = _Kind(lambda w: np.abs(1.0 / (1.0 + transfer(1j * w))), slope, lambda gain: 1.0 / (1.0 - gain))
+    return _peak(transfer, poles, kind)
+
+
+def complementary_peak(transfer: LoopTransfer, poles: NDArray[np.complex128]) -> FrequencyPeak:
+    """Return Mp = max |L/(1+L)| of a stable loop."""
+
+    def magnitude(w: Array) -> Array:
+        value = transfer(1j * w)
+        return np.asarray(np.abs(value / (1.0 + value)))
+
+    def slope(w: float) -> float:
+        value = complex(transfer(1j * w))
+        return float((1j * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
+
+    return _peak(transfer, poles, _Kind(magnitude, slope, lambda gain: gain / (1.0 - gain)))
+
+
+def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) -> FrequencyPeak:
+    end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
+    w = _grid(transfer, end, poles)
+    best = _best_on(kind, w)
+    # Extend the band until the bound on the rest is below the best peak, or the limit at infinity is the supremum.
+    limit = kind.bound(transfer.feedthrough)
+    if transfer.dead_time == 0.0 and transfer.feedthrough:
+        limit = float(kind.magnitude(np.array([1e12 * end]))[0])
+    for _ in range(40):
+        if kind.bound(float(abs(transfer(1j * end)))) <= max(best.value, limit):
+            break
+        wider = end * 1.5
+        best = max(best, _best_on(kind, _grid(transfer, wider, poles, start=0.98 * end)), key=float)
+        end = wider
+    at_rest = _at_rest(transfer, kind)
+    if at_rest >= best.value:
+        best = FrequencyPeak(at_rest, 0.0)
+    if limit > best.value and transfer.feedthrough:
+        best = FrequencyPeak(limit, float("inf"))
+    return best
+
+
+def _at_rest(transfer: LoopTransfer, kind: _Kind) -> float:
+    if transfer.den[-1] == 0.0:  # integral action: S = 0, T = 1
+        return 1.0 if kind.bound(0.0) == 0.0 else 0.0
+    return float(kind.magnitude(np.array([0.0]))[0])
+
+
+def _grid(transfer: LoopTransfer, end: float, poles: NDArray[np.complex128], start: float = 0.0) -> Array:
+    w = frequency_grid(transfer, end, per_decade=80)
+    spread = np.concatenate([-np.geomspace(10.0, 0.03, 12), [0.0], np.geomspace(0.03, 10.0, 12)])
+    near = [p.imag + abs(p.real) * spread for p in poles if p.imag > 0.0]
+    w = np.unique(np.concatenate([w, *near]))
+    return w[(w > start) & (w <= end)]
+
+
+def _best_on(kind: _Kind, w: Array) -> FrequencyPeak:
+    m = kind.magnitude(w)
+    inner = np.nonzero((m[1:-1] >= m[:-2]) & (m[1:-1] >= m[2:]))[0] + 1
+    best = FrequencyPeak(float(m[0]), float(w[0]))
+    if m[-1] > best.value:
+        best = FrequencyPeak(float(m[-1]), float(w[-1]))
+    if inner.size == 0:
+        return best
+    # polishing gains little on a grid this fine: only the highest few can win
+    for index in inner[np.argsort(-m[inner])][:6]:
+        frequency = _polish(kind, float(w[index - 1]), float(w[index]), float(w[index + 1]))
+        value = float(kind.magnitude(np.array([frequency]))[0])
+        if value > best.value:
+            best = FrequencyPeak(value, frequency)
+    return best
+
+
+def _polish(kind: _Kind, left: float, middle: float, right: float) -> float:
+    if kind.slope(left) > 0.0 > kind.slope(right):
+        return float(brentq(kind.slope, left, right, xtol=1e-300, rtol=8.9e-16, maxiter=200))
+    return middle
