@@ -1,0 +1,42 @@
+"""What a reader of the paper should correct or beware of, collected from all its exhibits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from replicate.report.tables import Note
+from replicate.report.views import ClaimView, ExhibitView
+
+_TITLES = {
+    "misprint": ("Misprints", "The print is wrong; the corrected value follows from the evidence given."),
+    "scan": ("Damaged in the copy at hand", "The text this replication was made from is damaged here; the paper may well be right."),
+    "discrepant": ("Discrepancies", "The printed values differ from what the paper defines, for a documented cause."),
+    "claims": ("Sentences that do not hold", "Statements of the text that the computation contradicts, wholly or in part."),
+    "unexplained": ("Open questions", "The printed values differ and no cause was found. Suggestions are welcome."),
+}  # fmt: skip
+
+
+@dataclass
+class Group:
+    """Errata of one kind: explanations of table cells, or claims, each with its exhibit."""
+
+    id: str
+    title: str
+    meaning: str
+    notes: list[tuple[ExhibitView, Note]] = field(default_factory=list)
+    claims: list[tuple[ExhibitView, ClaimView]] = field(default_factory=list)
+
+
+def errata(exhibits: Iterable[ExhibitView]) -> list[Group]:
+    """Return the groups that are not empty: misprints first, open questions last."""
+    groups = {id: Group(id, *texts) for id, texts in _TITLES.items()}
+    for exhibit in exhibits:
+        for note in exhibit.table.notes if exhibit.table else []:
+            kind = "scan" if note.verdict.cause == "scan" else note.verdict.verdict
+            if kind in groups:
+                groups[kind].notes.append((exhibit, note))
+        for claim in exhibit.claims:
+            if claim.finding and claim.finding.verdict != "holds":
+                groups["claims"].claims.append((exhibit, claim))
+    return [group for group in groups.values() if group.notes or group.claims]

@@ -1,0 +1,117 @@
+"""Markdown with LaTeX math to HTML with MathML, in one pandoc call per page.
+
+Starting pandoc costs more than converting a text, and a page holds hundreds of small texts (labels, captions,
+explanations). So a text is only registered while the page is being rendered, which leaves a token in its place;
+`MarkdownBatch.substitute` then converts all texts as one document and puts the results where the tokens are.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from typing import Literal
+
+from markupsafe import Markup
+
+from replicate.errors import TemplateError
+
+Form = Literal["block", "inline", "plain"]
+
+# No heading ids: the page gives its own, and generated ones could clash with those of exhibits.
+_FORMAT = "markdown-auto_identifiers-implicit_figures"
+_MARKER = "replicate-fragment"
+_TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
+
+
+class MarkdownBatch:
+    """Texts of one page that wait to be converted together.
+
+    Examples
+    --------
+    >>> batch = MarkdownBatch("example")
+    >>> page = f"<h1>{batch.inline('Is *this* true?')}</h1><a title='{batch.plain('*Yes*')}'>"
+    >>> batch.substitute(page)
+    "<h1>Is <em>this</em> true?</h1><a title='Yes'>"
+    """
+
+    def __init__(self, name: str) -> None:
+        """Start an empty batch; `name` says in error messages which page the texts belong to."""
+        self.name = name
+        self._texts: dict[str, int] = {}
+
+    def block(self, text: str) -> Markup:
+        """Register a text of paragraphs, headings and lists."""
+        return self._token("block", text)
+
+    def inline(self, text: str) -> Markup:
+        """Register a text of one paragraph, to be placed inside another element."""
+        return self._token("inline", text)
+
+    def plain(self, text: str) -> Markup:
+        """Register a text for an attribute: converted, then stripped of all elements."""
+        return self._token("plain", text)
+
+    def _token(self, form: Form, text: str) -> Markup:
+        text = text.strip()
+        if not text:
+            return Markup("")
+        number = self._texts.setdefault(text, len(self._texts))
+        return Markup(f"\ue000{form}{number}\ue001")  # noqa: S704 -- a token of two private-use characters
+
+    def substitute(self, page: str) -> str:
+        """Return the page with every token replaced by its converted text.
+
+        Raises
+        ------
+        TemplateError
+            If pandoc cannot convert a text, for example for a LaTeX command that it does not know.
+        """
+        converted = self._convert()
+
+        def replacement(match: re.Match[str]) -> str:
+            text = converted[int(match[2])]
+            if match[1] == "block":
+                return text
+            inline = text.removeprefix("<p>").removesuffix("</p>") if text.count("<p>") == 1 else text
+            return inline if match[1] == "inline" else html.escape(strip_elements(inline))
+
+        return _TOKEN.sub(replacement, page)
+
+    def _convert(self) -> list[str]:
+        import pypandoc
+
+        if not self._texts:
+            return []
+        marked = [f"```{{=html}}\n<!--{_MARKER} {i}-->\n```\n\n{text}\n" for text, i in self._texts.items()]
+        options = ["--mathml", "--wrap=none", "--fail-if-warnings", "--reference-location=block"]
+        try:
+            document = pypandoc.convert_text("\n".join(marked), "html", format=_FORMAT, extra_args=options)
+        except RuntimeError as error:
+            msg = f"{self.name}: pandoc cannot convert a text: {self._culprit(str(error))}"
+            raise TemplateError(msg) from error
+        parts = re.split(f"<!--{_MARKER} (\\d+)-->", document.replace("\r\n", "\n"))
+        texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
+        for text, number in self._texts.items():
+            if number not in texts:  # an unclosed fence or element swallowed the marker of the next text
+                msg = f"{self.name}: an element is not closed in or before the text '{text[:60]}'"
+                raise TemplateError(msg)
+        return [texts[number].strip() for number in range(len(texts))]
+
+    @staticmethod
+    def _culprit(message: str) -> str:
+        """The first two lines of pandoc's warning: what it is, and the LaTeX that caused it."""
+        lines = [line.strip() for line in message.splitlines() if line.strip()]
+        start = next((i for i, line in enumerate(lines) if "WARNING" in line or "rror" in line), 0)
+        return " ".join(lines[start : start + 2])
+
+
+def strip_elements(text: str) -> str:
+    """Return the text of an HTML fragment without its elements.
+
+    Examples
+    --------
+    >>> strip_elements('<em>a</em> &lt; <math><mi>b</mi><annotation encoding="x">\\\\beta</annotation></math>')
+    'a < b'
+    """
+    text = re.sub(r"<annotation\b.*?</annotation>", "", text, flags=re.DOTALL)
+    return html.unescape(re.sub(r"<[^>]*>", "", text)).strip()

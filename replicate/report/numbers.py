@@ -1,0 +1,96 @@
+"""Numbers as the report shows them: a little more precise than the print, decimal points under each other."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from decimal import ROUND_HALF_EVEN, Decimal
+
+from replicate.matching import computed_text
+from replicate.printed import MINUS, PrintedValue
+
+FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
+PUNCTUATION_SPACE = "\N{PUNCTUATION SPACE}"  # as wide as a decimal point
+
+_PLAIN_DIGITS = 6  # significant digits where nothing printed tells how many are of interest
+_LONG_PRINT = 5  # a print with at least so many digits is followed by one more, a shorter one by two
+_MOST_PADDING = 8  # a column that mixes 0.0000001 and 1000 is not aligned
+
+
+def shown(computed: float | None, printed: PrintedValue | None) -> str:
+    """Return a computed number with one or two digits more than the print has.
+
+    Parameters
+    ----------
+    computed
+        The number; `None` and NaN give an empty text.
+    printed
+        What it is compared with; without it the number is shown with six significant digits.
+
+    Examples
+    --------
+    >>> shown(6.96812345, PrintedValue("6.968")), shown(6.96812345, PrintedValue("6.968", significant_digits=6))
+    ('6.96812', '6.968123')
+    >>> shown(-0.5, None), shown(1e-9, PrintedValue("0.1")), shown(float("inf"), None)
+    ('−0.5', '1.00000e−9', '∞')
+    """
+    text = computed_text(computed)
+    if computed is None or not text:
+        return ""
+    if math.isinf(computed):
+        return "∞" if computed > 0 else f"{MINUS}∞"
+    number = Decimal(text)
+    if printed is None or not printed.value:
+        place = number.adjusted() - _PLAIN_DIGITS + 1
+        if printed is not None:  # a printed zero: its decimals say what is of interest
+            place = printed.unit.adjusted() - 2
+    else:
+        digits = printed.value.adjusted() - printed.unit.adjusted() + 1
+        place = printed.unit.adjusted() - (1 if digits >= _LONG_PRINT else 2)
+    significant = number.adjusted() - place + 1
+    if number and (significant < 1 or significant > 12 or number.adjusted() >= 9 or number.adjusted() < -5):
+        return _scientific(number)
+    if printed is None:
+        return _minus(f"{number:.{_PLAIN_DIGITS}g}" if place < 0 else f"{number:.0f}")
+    rounded = number.quantize(Decimal(1).scaleb(min(place, 0)), rounding=ROUND_HALF_EVEN)
+    return _minus(f"{rounded:f}")
+
+
+def _scientific(number: Decimal) -> str:
+    mantissa, exponent = f"{number:.{_PLAIN_DIGITS - 1}e}".split("e")
+    return _minus(f"{mantissa}e{int(exponent)}")
+
+
+def _minus(text: str) -> str:
+    return text.replace("-", MINUS)
+
+
+def full(computed: float | None) -> str:
+    """Return a number with all twelve digits that comparisons use.
+
+    Examples
+    --------
+    >>> full(-2 / 3)
+    '−0.666666666667'
+    """
+    return _minus(computed_text(computed))
+
+
+def aligned(texts: Iterable[str]) -> dict[str, str]:
+    """Return, by text, the number with spaces after it so that a right-aligned column has its points in line.
+
+    Examples
+    --------
+    >>> [text.replace("\\u2007", "_").replace("\\u2008", ",") for text in aligned(["1.25", "10"]).values()]
+    ['1.25', '10,__']
+    """
+    texts = list(texts)
+    decimals = {text: len(text.partition(".")[2]) for text in texts if "e" not in text and text}
+    most = max(decimals.values(), default=0)
+    result = dict.fromkeys(texts, "")
+    for text in result:
+        result[text] = text
+        missing = most - decimals.get(text, most)
+        if 0 < missing <= _MOST_PADDING:
+            result[text] += FIGURE_SPACE * missing + (PUNCTUATION_SPACE if "." not in text else "")
+    return result

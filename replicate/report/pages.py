@@ -1,0 +1,207 @@
+"""The report: an overview of all papers and one page per paper (or per part of a long one).
+
+Every page stands alone: its style is inside it, nothing is fetched, no script is needed.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from replicate.errors import OutputError, TemplateError
+from replicate.exhibits import Paper
+from replicate.judgement import Judgement, VerdictRow
+from replicate.locations import display_name
+from replicate.prose import Prose
+from replicate.records import Results
+from replicate.report import environment, numbers, scores, words
+from replicate.report.errata import errata
+from replicate.report.labels import part_of
+from replicate.report.markdown import MarkdownBatch
+from replicate.report.notes import Piece, pieces, place
+from replicate.report.views import ExhibitView, exhibit_views
+from replicate.resources import templates_dir
+
+INDEX = "index.html"
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of a paper: its file name, its prose, and the exhibits that stand on it."""
+
+    paper: Paper
+    part: str  # empty on the paper's main page
+    title: str
+    prose: list[Piece]
+    exhibits: list[ExhibitView]
+
+    @property
+    def file(self) -> str:
+        """The page's file name."""
+        return page_name(self.paper.id, self.part)
+
+    @property
+    def by_id(self) -> dict[str, ExhibitView]:
+        """The exhibits of the page by id."""
+        return {exhibit.id: exhibit for exhibit in self.exhibits}
+
+    @property
+    def verdicts(self) -> list[VerdictRow]:
+        """All verdicts on the page."""
+        return [verdict for exhibit in self.exhibits for verdict in exhibit.verdicts]
+
+    @property
+    def unplaced(self) -> list[ExhibitView]:
+        """The exhibits that the prose does not place, in the order of the inventory."""
+        placed = {piece.text for piece in self.prose if piece.kind == "exhibit"}
+        return [exhibit for exhibit in self.exhibits if exhibit.id not in placed]
+
+
+def page_name(paper: str, part: str) -> str:
+    """Return the file name of a page."""
+    return f"{paper}-{part}.html" if part else f"{paper}.html"
+
+
+def build_report(
+    papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path
+) -> list[Path]:
+    """Write the report.
+
+    Parameters
+    ----------
+    papers
+        Loaded papers, in the order in which the report lists them.
+    results
+        What was computed, by (paper, exhibit).
+    judgement
+        Of all papers together.
+    out_dir
+        Folder of the pages; figures and tables are expected in ``../figures`` and ``../tables``.
+
+    Returns
+    -------
+    list of Path
+        The files written, the overview first. Nothing is written before every page is complete.
+
+    Raises
+    ------
+    TemplateError
+        If prose asks for something that does not exist or cannot be converted.
+    OutputError
+        If a file cannot be written.
+    """
+    site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
+    texts = {INDEX: _render("index.html", INDEX, site=site, papers=papers)}
+    for pages in site.values():
+        for page in pages:
+            texts[page.file] = _render("paper.html", page.file, site=site, papers=papers, page=page, pages=pages)
+    written = []
+    for name, text in texts.items():
+        path = out_dir / name
+        try:
+            out_dir.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8", newline="\n")
+        except OSError as error:
+            msg = f"{path}: cannot be written: {error.strerror or error}"
+            raise OutputError(msg) from error
+        written.append(path)
+    return written
+
+
+def paper_pages(paper: Paper, results: Results, judgement: Judgement) -> list[Page]:
+    """Return the pages of a paper, the main page first.
+
+    A file ``notes-<part>.md`` makes a page for that part, on which all exhibits with the part's prefix stand.
+    """
+    folder = paper.folder()
+    parts = {
+        match[1]: entry.name
+        for entry in sorted(folder.iterdir(), key=lambda entry: entry.name)
+        if (match := re.fullmatch(r"notes-(\w+)\.md", entry.name))
+    }
+    order = list(dict.fromkeys(part for id in paper.exhibits if (part := part_of(id)) in parts))
+    order += [part for part in parts if part not in order]
+
+    def page_of(exhibit: str) -> str:
+        part = part_of(exhibit)
+        return page_name(paper.id, part if part in parts else "")
+
+    views = exhibit_views(paper, results, judgement, page_of)
+    pages = []
+    for part, file in [("", "notes.md"), *((part, parts[part]) for part in order)]:
+        here = [view for view in views if view.page == page_name(paper.id, part)]
+        placing = _Placing(page_name(paper.id, part), views)
+        prose = Prose(paper, results, judgement.verdicts, {"exhibit": placing})
+        notes = folder / file
+        text = prose.render(notes.read_text(encoding="utf-8"), display_name(notes)) if notes.is_file() else ""
+        title = paper.title
+        if part:
+            title, text = _title(text, f"Part {part}")
+        pages.append(Page(paper, part, title, pieces(text), here))
+    return pages
+
+
+class _Placing:
+    """The function `exhibit` of the notes: puts an exhibit where it is called, once."""
+
+    def __init__(self, page: str, views: Sequence[ExhibitView]) -> None:
+        self._page = page
+        self._views = {view.id: view for view in views}
+        self._placed: set[str] = set()
+
+    def __call__(self, id: str) -> str:
+        view = self._views.get(id)
+        if view is None:
+            msg = f"exhibit('{id}'): no such exhibit; allowed: {', '.join(self._views) or 'none'}"
+            raise TemplateError(msg)
+        if view.page != self._page:
+            return f"[{view.label or view.title}]({view.page}#{id})"
+        if id in self._placed:
+            msg = f"exhibit('{id}'): is placed twice on this page; link to it with [text](#{id})"
+            raise TemplateError(msg)
+        self._placed.add(id)
+        return place(id)
+
+
+def _title(text: str, default: str) -> tuple[str, str]:
+    """Split off a first-level heading at the start."""
+    match = re.match(r"\s*# (.+)\n", text)
+    return (match[1].strip(), text[match.end() :]) if match else (default, text)
+
+
+def _render(template: str, name: str, **context: Any) -> str:
+    batch = MarkdownBatch(name)
+    loader = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir()),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    loader.filters |= {
+        "md": batch.block, "inline": batch.inline, "plain": batch.plain, "key": partial(_key, batch),
+    }  # fmt: skip
+    style = (templates_dir() / "style.css").read_text(encoding="utf-8")
+    text = loader.get_template(template).render(
+        context,
+        style=Markup(style),  # noqa: S704 -- the project's own style sheet
+        words=words,
+        scores=scores,
+        numbers=numbers,
+        errata=errata,
+        versions=environment.versions(),
+    )
+    return batch.substitute(text)
+
+
+def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:
+    """Return the display text of a row or column key: its label, or the key in words."""
+    return batch.inline(labels[key]) if key in labels else Markup.escape(key.replace("_", " "))

@@ -1,0 +1,169 @@
+"""A table of a paper as the report shows it: every printed value above what each reading computes for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from replicate.cells import CellError, cell
+from replicate.exhibits import Reading, Table
+from replicate.judgement import HOLDING, VerdictRow
+from replicate.matching import Match, match
+from replicate.printed import Key, PrintedValue
+from replicate.records import TableResult
+from replicate.report import numbers
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_MANY_CELLS = 6
+
+
+@dataclass(frozen=True)
+class Value:
+    """What one reading computes for a cell: as shown, with all digits, and how it compares with the print."""
+
+    reading: Reading
+    text: str
+    full: str
+    match: Match
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One cell: the print, its verdict (if something is printed) and the values computed for it."""
+
+    row: str
+    column: str
+    printed: str
+    verdict: VerdictRow | None
+    values: list[Value]
+    note: int = 0  # number of the explanation under the table; 0 if it needs none
+    texts: Mapping[str, str] = field(default_factory=dict)  # the column's numbers with padding
+
+    def padded(self, text: str) -> str:
+        """Return a number of this cell padded so that the decimal points of its column are in line."""
+        return self.texts.get(text, text)
+
+
+@dataclass(frozen=True)
+class Note:
+    """An explanation and the cells it explains."""
+
+    number: int
+    verdict: VerdictRow
+    where: list[tuple[str, str]]  # (row, column); an empty row means `count` rows of the column
+    corrections: list[VerdictRow]
+    count: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class TableView:
+    """Everything the table's template needs."""
+
+    table: Table
+    columns: list[str]
+    rows: list[tuple[str, list[Cell]]]
+    readings: list[Reading]
+    notes: list[Note]
+    errors: dict[str, str]
+    verdicts: list[VerdictRow]
+
+
+def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]) -> TableView:
+    """Arrange a table for display.
+
+    Parameters
+    ----------
+    table
+        The exhibit.
+    result
+        What its readings computed; a reading that failed is listed with its reason.
+    verdicts
+        The verdicts on this exhibit's printed values.
+
+    Returns
+    -------
+    TableView
+        Rows and columns in the paper's order. A table without printed values takes them from its first reading.
+    """
+    by_cell = {(verdict.row, verdict.column): verdict for verdict in verdicts}
+    frames = result.frames
+    first = next(iter(frames.values()), None)
+    rows = list(table.rows) or ([] if first is None else [str(key) for key in first.index])
+    columns = list(table.columns) or ([] if first is None else [str(key) for key in first.columns])
+    readings = [reading for id, reading in table.readings.items() if id in frames]
+    notes = _notes(by_cell.values())
+    note_of = {where: note.number for note, cells in notes for where in cells}
+    cells = {
+        (row, column): _cell(table, frames, readings, row, column, by_cell.get((row, column)))
+        for row in rows
+        for column in columns
+    }
+    for column in columns:
+        texts = numbers.aligned(text for row in rows for text in _texts(cells[row, column]))
+        for row in rows:
+            plain = cells[row, column]
+            cells[row, column] = Cell(
+                row, column, plain.printed, plain.verdict, plain.values, note_of.get((row, column), 0), texts
+            )
+    return TableView(
+        table,
+        columns,
+        [(row, [cells[row, column] for column in columns]) for row in rows],
+        readings,
+        [note for note, _ in notes],
+        dict(result.errors),
+        list(by_cell.values()),
+    )
+
+
+def _cell(
+    table: Table,
+    frames: Mapping[str, pd.DataFrame],
+    readings: Iterable[Reading],
+    row: str,
+    column: str,
+    verdict: VerdictRow | None,
+) -> Cell:
+    printed = PrintedValue(verdict.printed, significant_digits=table.significant_digits) if verdict else None
+    values = []
+    for reading in readings:
+        try:
+            number = cell(frames[reading.id], row, column)
+        except CellError:  # not a number: a word such as "unstable" is shown as it is, a missing cell as blank
+            values.append(Value(reading, _held(frames[reading.id], row, column), "", Match("none")))
+            continue
+        compared = match(printed, number) if printed is not None else Match("none")
+        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), compared))
+    return Cell(row, column, verdict.printed if verdict else "", verdict, values)
+
+
+def _held(frame: pd.DataFrame, row: str, column: str) -> str:
+    if row not in frame.index or column not in frame.columns:
+        return ""
+    return str(frame.loc[row, column])
+
+
+def _texts(cell: Cell) -> list[str]:
+    return [cell.printed, *(value.text for value in cell.values if value.full)]
+
+
+def _notes(verdicts: Iterable[VerdictRow]) -> list[tuple[Note, list[Key]]]:
+    """Return the explanations of cells that do not hold, each once, numbered in the order of the table."""
+    groups: dict[tuple[str, str, str], list[VerdictRow]] = {}
+    for verdict in verdicts:
+        if verdict.verdict not in HOLDING and (verdict.explanation or verdict.verdict != "near"):
+            groups.setdefault((verdict.verdict, verdict.cause, verdict.explanation), []).append(verdict)
+    notes = []
+    for number, group in enumerate(groups.values(), 1):
+        keys = [(verdict.row, verdict.column) for verdict in group]
+        where, count = keys, dict[str, int]()
+        if len(keys) > _MANY_CELLS:
+            columns = list(dict.fromkeys(column for _, column in keys))
+            where = [("", column) for column in columns]
+            count = {column: sum(key[1] == column for key in keys) for column in columns}
+        corrections = [verdict for verdict in group if verdict.corrected]
+        notes.append((Note(number, group[0], where, corrections, count), keys))
+    return notes

@@ -1,0 +1,142 @@
+"""Exhibits as the templates see them: everything looked up, counted and sorted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+from markupsafe import Markup
+
+from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
+from replicate.judgement import ExhibitRow, Judgement, VerdictRow
+from replicate.printed import PrintedValue, parse_number
+from replicate.records import ClaimsResult, FigureResult, Results, TableResult
+from replicate.report import numbers, scores
+from replicate.report.figures import description, inline_svg
+from replicate.report.labels import heading
+from replicate.report.scores import Score
+from replicate.report.sources import Source, sources
+from replicate.report.tables import TableView, table_view
+
+
+@dataclass(frozen=True)
+class FigureView:
+    """A figure: the drawing as an element of the page, or the reason why there is none."""
+
+    figure: Figure
+    svg: Markup
+    error: str
+    files: list[tuple[str, str]]  # (format, address)
+
+
+@dataclass(frozen=True)
+class ClaimView:
+    """A claim and what its check found, or the reason why the check failed."""
+
+    claim: Claim
+    finding: Finding | None
+    value: str
+    error: str
+
+
+@dataclass(frozen=True)
+class ExhibitView:
+    """One exhibit; exactly one of `table`, `figure`, `claims` is set if it could be computed."""
+
+    id: str
+    label: str
+    title: str
+    kind: str
+    status: str
+    reason: str
+    page: str
+    score: Score
+    verdicts: list[VerdictRow]
+    sources: list[Source] = field(default_factory=list)
+    table: TableView | None = None
+    figure: FigureView | None = None
+    claims: list[ClaimView] = field(default_factory=list)
+    caption: str = ""
+    files: list[tuple[str, str]] = field(default_factory=list)
+
+
+def exhibit_views(paper: Paper, results: Results, judgement: Judgement, page_of: Callable[[str], str]) -> list[ExhibitView]:
+    """Return the views of a paper's exhibits in the order of its inventory.
+
+    Parameters
+    ----------
+    judgement
+        Of this paper, or of several.
+    page_of
+        Gives the file name of the page on which an exhibit stands.
+    """
+    rows = {row.exhibit: row for row in judgement.exhibits if row.paper == paper.id}
+    verdicts: dict[str, list[VerdictRow]] = {}
+    for verdict in (verdict for verdict in judgement.verdicts if verdict.paper == paper.id):
+        verdicts.setdefault(verdict.exhibit, []).append(verdict)
+    return [
+        _view(paper, exhibit, rows.get(exhibit.id), results, verdicts.get(exhibit.id, []), page_of(exhibit.id))
+        for exhibit in paper.exhibits.values()
+    ]
+
+
+def _view(
+    paper: Paper,
+    exhibit: Exhibit,
+    row: ExhibitRow | None,
+    results: Results,
+    verdicts: list[VerdictRow],
+    page: str,
+) -> ExhibitView:
+    label, title = heading(exhibit.id, exhibit.title)
+    reason = exhibit.reason if isinstance(exhibit, NotComputable) else ""
+    common: dict[str, Any] = {
+        "id": exhibit.id,
+        "label": label,
+        "title": title,
+        "kind": exhibit.kind,
+        "status": row.status if row else ("not-computable" if reason else "done"),
+        "reason": reason or (row.reason if row else ""),
+        "page": page,
+        "score": scores.claims(verdicts) if isinstance(exhibit, Claims) else scores.values(verdicts),
+        "verdicts": verdicts,
+    }
+    result = results.get((paper.id, exhibit.id))
+    match exhibit, result:
+        case Table(), TableResult():
+            return ExhibitView(
+                **common,
+                table=table_view(exhibit, result, verdicts),
+                caption=exhibit.caption,
+                sources=sources([reading.compute for reading in exhibit.readings.values()]),
+                files=[
+                    (f"CSV, {id}", f"../tables/{paper.id}/{exhibit.id}.{id}.csv") for id in result.frames
+                ],
+            )
+        case Figure(), FigureResult():
+            return ExhibitView(
+                **common, figure=_figure(paper, exhibit, result), caption=exhibit.caption, sources=sources([exhibit.draw])
+            )
+        case Claims(), ClaimsResult():
+            checks = [claim.check for claim in exhibit.claims.values()]
+            return ExhibitView(**common, claims=list(_claims(exhibit, result)), sources=sources(checks))
+        case _:
+            return ExhibitView(**common)
+
+
+def _figure(paper: Paper, figure: Figure, result: FigureResult) -> FigureView:
+    if result.error:
+        return FigureView(figure, Markup(""), result.error, [])
+    base = f"../figures/{paper.id}/{figure.id}"
+    svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, description(figure.alt, result.axes))
+    files = [(format.upper(), f"{base}.{format}") for format in ("svg", "png", "csv")]
+    return FigureView(figure, Markup(svg), "", files)  # noqa: S704 -- drawn here; its texts are escaped
+
+
+def _claims(claims: Claims, result: ClaimsResult) -> Iterable[ClaimView]:
+    for claim in claims.claims.values():
+        finding = result.findings.get(claim.id)
+        printed = PrintedValue(claim.printed) if parse_number(claim.printed) is not None else None
+        value = numbers.shown(finding.value, printed) if finding else ""
+        yield ClaimView(claim, finding, value, result.errors.get(claim.id, ""))
