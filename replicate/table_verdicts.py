@@ -104,10 +104,7 @@ class TableJudge:
             for line in wrong:
                 self._problem(f"reading '{reading}': {line}")
         self.numbers[reading] = numbers
-        self.matches[reading] = {
-            key: match(value, numbers.get(key), self.table.significant_digits)
-            for key, value in self.printed.items()
-        }
+        self.matches[reading] = {key: match(value, numbers.get(key)) for key, value in self.printed.items()}
 
     def _held(self, key: Key) -> VerdictRow | None:
         """Return the verdict on a value that some reading gives, as written first; ``None`` if none does."""

@@ -1,0 +1,130 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import synthetic
+
+from replicate.errors import LedgerError
+from replicate.ledger import CAUSES, Ledger, LedgerEntry
+
+ENTRY = """
+[[entry]]
+exhibit = "table-1"
+rows = ["A"]
+columns = ["x"]
+cause = "misprint"
+explanation = "A digit is wrong."
+"""
+
+
+def load(folder: Path, text: str) -> Ledger:
+    path = folder / "toy" / "ledger.toml"
+    path.parent.mkdir()
+    path.write_text(text, encoding="utf-8")
+    return Ledger.load(path, synthetic.paper())
+
+
+def test_reads_every_field(tmp_path: Path) -> None:
+    text = f"""# what does not hold
+{ENTRY}
+[[entry]]
+exhibit = "table-1"
+rows = "*"
+columns = ["y"]
+cause = "unknown"
+explanation = \"\"\"
+Tried two definitions,
+neither fits.\"\"\"
+reading = "authors"
+evidence = "None."
+"""
+    ledger = load(tmp_path, text)
+    assert ledger.entries == (
+        LedgerEntry("table-1", ("A",), ("x",), "misprint", "A digit is wrong.", line=3),
+        LedgerEntry(
+            "table-1",
+            ("*",),
+            ("y",),
+            "unknown",
+            "Tried two definitions, neither fits.",
+            reading="authors",
+            evidence="None.",
+            line=10,
+        ),
+    )
+    assert ledger.place(ledger.entries[1]) == "toy/ledger.toml:10"
+    assert ledger.entries[1].covers("B", "y")
+    assert not ledger.entries[1].covers("B", "x")
+
+
+def test_entries_that_name_their_cells_come_first(tmp_path: Path) -> None:
+    wildcard = ENTRY.replace('["A"]', '"*"')
+    ledger = load(tmp_path, wildcard + ENTRY)
+    assert [entry.explicit for entry in ledger.of("table-1")] == [True, False]
+    assert ledger.of("table-2") == []
+
+
+def test_no_file_is_an_empty_ledger(tmp_path: Path) -> None:
+    assert Ledger.load(tmp_path / "ledger.toml", synthetic.paper()).entries == ()
+
+
+@pytest.mark.parametrize("cause", CAUSES)
+def test_every_cause_is_accepted(tmp_path: Path, cause: str) -> None:
+    assert load(tmp_path, ENTRY.replace("misprint", cause)).entries[0].cause == cause
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('rows = ["A"]\n', "", r":2: 'rows' is missing; needed: exhibit, rows, .*; allowed: reading, .*"),
+        ('["A"]\n', '["A"]\nrow = "A"\n', r":2: 'row' is not a field; needed: .*"),
+        ('["A"]', '["C"]', r":2: rows: 'C' is not in the exhibit; allowed: 'A', 'B'"),
+        ('["A"]', '["A", "A"]', r":2: rows: 'A' is there twice"),
+        ('["A"]', "[]", r':2: rows = \[\]; needed: a list of keys or "\*"'),
+        ('["A"]', '"A"', r""":2: rows = 'A'; needed: a list of keys or "\*\""""),
+        ('["x"]', '["z"]', r":2: columns: 'z' is not in the exhibit; allowed: 'x', 'y'"),
+        (
+            '"table-1"',
+            '"table-9"',
+            r":2: exhibit 'table-9' is not an exhibit of the paper; allowed: 'table-1'",
+        ),
+        ('"table-1"', '"fig-1"', r":2: exhibit 'fig-1' has no printed values to explain; allowed: 'table-1'"),
+        ('"table-1"', '"claims"', r":2: exhibit 'claims' has no printed values to explain; .*"),
+        ('"misprint"', '"typo"', r":2: cause 'typo' is unknown; allowed: misprint, scan, .*, unknown"),
+        ('"misprint"', '["misprint"]', r":2: cause \['misprint'\] is unknown; allowed: .*"),
+        ('"A digit is wrong."', '" "', r":2: explanation = ' '; needed: a text in quotes that is not empty"),
+        (
+            '"misprint"',
+            '"scan"\nreading = "ours"',
+            r":2: 'ours' is not a reading .*: 'as-written', 'authors'",
+        ),
+        ('"misprint"', '"scan"\ncorrected = 1.50', r":2: corrected = 1\.5; needed: a text in quotes"),
+        (
+            '"misprint"',
+            '"scan"\ncorrected = "1,5"',
+            r":2: corrected = '1,5' is not a number; allowed: digits .*",
+        ),
+        (
+            '"misprint"',
+            '"method"\ncorrected = "1"',
+            r":2: 'corrected' is allowed with the causes 'misprint', .*",
+        ),
+        ('["A"]', '["A", "B"]\ncorrected = "1"', r":2: 'corrected' is one value, so .* exactly one row .*"),
+        ('["A"]', '"*"\ncorrected = "1"', r":2: 'corrected' is one value, so .*"),
+        ("[[entry]]", "[[entries]]", r": allowed is a list of \[\[entry\]\] .*; found 'entries'"),
+        ("[[entry]]", "[entry]", r": allowed is a list of \[\[entry\]\] tables and nothing else"),
+        ('["A"]', '["A"', r": is not readable TOML: .*line.*"),
+    ],
+)
+def test_refuses_naming_file_and_line(tmp_path: Path, old: str, new: str, message: str) -> None:
+    assert old in ENTRY
+    with pytest.raises(LedgerError, match=f"^toy/ledger\\.toml{message}$"):
+        load(tmp_path, ENTRY.replace(old, new))
+
+
+def test_two_entries_for_one_cell_are_refused(tmp_path: Path) -> None:
+    second = ENTRY.replace('["A"]', '["B", "A"]')
+    message = r"^toy/ledger\.toml:9: table-1 row 'A', column 'x' is named already by the entry in line 2$"
+    with pytest.raises(LedgerError, match=message):
+        load(tmp_path, ENTRY + second)
