@@ -78,6 +78,33 @@ def find_exhibit(paper: Paper, id: str) -> Exhibit:
     return paper.exhibits[id]
 
 
+def select(names: Iterable[str]) -> tuple[list[Paper], list[tuple[str, str]] | None]:
+    """Turn names as on the command line, ``PAPER`` or ``PAPER/EXHIBIT``, into papers and exhibits.
+
+    Returns
+    -------
+    papers
+        Loaded, each once; all papers if nothing is named.
+    exhibits
+        ``(paper, exhibit)`` pairs, or ``None`` if only whole papers are named.
+
+    Raises
+    ------
+    UnknownPaperError
+        If a paper or exhibit does not exist.
+    """
+    pairs = [(paper, exhibit) for paper, _, exhibit in (name.partition("/") for name in names)]
+    papers = find_papers(paper for paper, _ in pairs)
+    if not any(exhibit for _, exhibit in pairs):
+        return papers, None
+    wanted = []
+    for paper in papers:
+        named = [exhibit for owner, exhibit in pairs if owner == paper.id]
+        whole = "" in named
+        wanted += [(paper.id, find_exhibit(paper, id).id) for id in (paper.exhibits if whole else named)]
+    return papers, wanted
+
+
 def _own_papers() -> list[tuple[str, object]]:
     import replicate.papers as home
 

@@ -35,7 +35,8 @@ def staged(target: Path) -> Iterator[Path]:
         target.mkdir(parents=True, exist_ok=True)
         aside = Path(tempfile.mkdtemp(prefix=".partial-", dir=target))
     except OSError as error:
-        raise _unwritable(target, error) from error
+        msg = f"{target}: cannot be written: {error.strerror or error}"
+        raise OutputError(msg) from error
     try:
         fresh, old = aside / "new", aside / "old"
         fresh.mkdir()
@@ -67,5 +68,8 @@ def _swap(fresh: Path, target: Path, old: Path) -> None:
         raise
 
 
-def _unwritable(target: Path, error: OSError) -> OutputError:
-    return OutputError(f"{error.filename or target} cannot be written: {error.strerror or error}")
+def _unwritable(target: Path, error: OSError) -> OSError | OutputError:
+    """Return the error to raise: one about another place, say a file that is read, is none of ours."""
+    if error.filename and not Path(error.filename).is_relative_to(target):
+        return error
+    return OutputError(f"{target}: cannot be written: {error.strerror or error}")

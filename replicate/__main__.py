@@ -1,0 +1,5 @@
+"""``python -m replicate`` is the same as ``replicate``."""
+
+from replicate.cli import main
+
+main()

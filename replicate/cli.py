@@ -1,0 +1,221 @@
+"""The command line.
+
+Exit status: 0 = as accepted, 1 = something differs or is not explained, 2 = the run itself is broken. Errors
+are one line on standard error; ``--debug`` shows where they come from. Everything heavy is imported inside
+the commands, so that ``replicate --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from replicate.errors import ReplicateError, UnknownPaperError
+
+if TYPE_CHECKING:
+    from replicate.exhibits import Paper
+    from replicate.outcome import Outcome, Selection
+
+DIFFERS, BROKEN = 1, 2
+
+app = typer.Typer(
+    name="replicate",
+    help="Recompute what papers on PI and PID control print, compare, and say why where it differs.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes; default: one per core.")]
+Out = Annotated[Path, typer.Option("--out", help="Folder for what a run leaves behind.", file_okay=False)]
+NoCache = Annotated[bool, typer.Option("--no-cache", help="Compute everything anew, keep nothing.")]
+Accepted = Annotated[
+    Path | None,
+    typer.Option("--accepted", help="Folder of the accepted state; default: the project's own."),
+]
+Papers = Annotated[list[str] | None, typer.Argument(metavar="[PAPER]...", help="Default: all papers.")]
+Names = Annotated[
+    list[str] | None, typer.Argument(metavar="[PAPER[/EXHIBIT]]...", help="Default: all papers.")
+]
+
+BUILD = Path("build")
+
+
+def main() -> None:
+    """Run the command line; this is the console script ``replicate``."""
+    arguments = sys.argv[1:]
+    debug = "--debug" in arguments
+    try:
+        app(args=[argument for argument in arguments if argument != "--debug"], prog_name="replicate")
+    except Exception as error:
+        if debug:
+            raise
+        print(f"replicate: {_one_line(error)}", file=sys.stderr)  # noqa: T201  -- the error is the output
+        sys.exit(BROKEN)
+
+
+def _one_line(error: Exception) -> str:
+    text = " ".join(str(error).split())
+    if isinstance(error, ReplicateError):
+        return text
+    return f"unexpected {type(error).__name__}: {text} (--debug shows where)"
+
+
+@app.callback(invoke_without_command=True)
+def _options(
+    debug: Annotated[bool, typer.Option("--debug", help="Show where an error comes from.")] = False,  # noqa: ARG001
+    version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
+) -> None:
+    # `--debug` is taken out by `main`, wherever it stands; it is here for the help.
+    if version:
+        import replicate
+
+        typer.echo(f"replicate {replicate.__version__}")
+        raise typer.Exit
+
+
+@app.command(name="list")
+def list_(
+    paper: Annotated[str | None, typer.Argument(metavar="[PAPER]", help="Default: the papers.")] = None,
+) -> None:
+    """List the papers, or the exhibits of one of them."""
+    from replicate.discovery import find_paper, find_papers
+    from replicate.terminal.console import console
+    from replicate.terminal.inventory import print_exhibits, print_papers
+
+    if paper is None:
+        print_papers(find_papers(), console())
+    else:
+        print_exhibits(find_paper(paper), console())
+
+
+@app.command()
+def show(  # noqa: PLR0917  -- typer calls it by name
+    paper: Annotated[str, typer.Argument(metavar="PAPER")],
+    exhibit: Annotated[str, typer.Argument(metavar="EXHIBIT")],
+    reading: Annotated[str | None, typer.Option("--reading", help="Show this reading only.")] = None,
+    jobs: Jobs = None,
+    out: Out = BUILD,
+    no_cache: NoCache = False,
+) -> None:
+    """Show one exhibit: printed values, each reading's values, verdicts and explanations."""
+    from replicate.discovery import find_exhibit, find_paper
+    from replicate.exhibits import Table
+    from replicate.terminal.console import console
+    from replicate.terminal.show import print_exhibit
+
+    owner = find_paper(paper)
+    found = find_exhibit(owner, exhibit)
+    readings = list(found.readings) if isinstance(found, Table) else []
+    if reading is not None:
+        if reading not in readings:
+            msg = f"{paper}/{exhibit} has no reading '{reading}'; known: {', '.join(readings) or 'none'}"
+            raise UnknownPaperError(msg)
+        readings = [reading]
+    outcome = _recompute([owner], [(owner.id, found.id)], jobs, out, no_cache)
+    if outcome.judgement.problems and not outcome.failures:
+        # An explanation may quote another exhibit; then the whole paper is needed.
+        outcome = _recompute([owner], None, jobs, out, no_cache)
+    print_exhibit(outcome, paper, found, readings, console())
+    _exit_if_broken(outcome)
+
+
+@app.command()
+def report(papers: Papers = None, jobs: Jobs = None, out: Out = BUILD, no_cache: NoCache = False) -> None:
+    """Recompute every exhibit and write the report."""
+    from replicate.discovery import find_papers
+    from replicate.outputs import write_outputs
+    from replicate.report.pages import build_report
+    from replicate.staging import staged
+    from replicate.terminal.console import console
+    from replicate.terminal.summary import print_summary
+
+    with staged(out) as fresh:  # first of all, so that a folder that cannot be written is noticed at once
+        outcome = _recompute(find_papers(papers or ()), None, jobs, out, no_cache)
+        write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
+        pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report")
+        index = out / "report" / pages[0].name
+    print_summary(outcome, console())
+    typer.echo(f"\nreport: {index}")
+    _exit_if_broken(outcome)
+
+
+@app.command()
+def check(
+    papers: Papers = None,
+    jobs: Jobs = None,
+    out: Out = BUILD,
+    no_cache: NoCache = False,
+    accepted: Accepted = None,
+) -> None:
+    """Check that every printed value holds or is explained, and that nothing has moved."""
+    from replicate.check import check as find_problems
+    from replicate.discovery import find_papers
+
+    outcome = _recompute(find_papers(papers or ()), None, jobs, out, no_cache)
+    problems = find_problems(outcome, _accepted(accepted))
+    for problem in problems:
+        typer.echo(problem)
+    compared = sum(row.match != "none" for row in outcome.judgement.results)
+    count = f"{len(problems)} problem{'' if len(problems) == 1 else 's'}" if problems else "no problems"
+    typer.echo(
+        f"{count}; {compared} comparisons in {len(outcome.results)} exhibits of {len(outcome.papers)} papers"
+    )
+    _exit_if_broken(outcome)
+    raise typer.Exit(DIFFERS if problems else 0)
+
+
+@app.command()
+def accept(  # noqa: PLR0917  -- typer calls it by name
+    names: Names = None,
+    reason: Annotated[str, typer.Option("--reason", help="Why the present state is right.")] = "",
+    jobs: Jobs = None,
+    out: Out = BUILD,
+    no_cache: NoCache = False,
+    accepted: Accepted = None,
+) -> None:
+    """Make the present state the accepted one."""
+    from replicate.accepted import write
+    from replicate.discovery import select
+
+    if not reason.strip():
+        msg = "accepting needs a reason: --reason 'why the present state is right'"
+        raise ReplicateError(msg)
+    papers, selection = select(names or ())
+    outcome = _recompute(papers, selection, jobs, out, no_cache)
+    changes = write(outcome, _accepted(accepted), reason)
+    for change in changes:
+        typer.echo(str(change))
+    typer.echo(f"changes accepted: {len(changes)}" if changes else "nothing differs from the accepted state")
+
+
+def _recompute(
+    papers: list[Paper], selection: Selection | None, jobs: int | None, out: Path, no_cache: bool
+) -> Outcome:
+    """Compute and judge with progress on standard error, and say what failed."""
+    from replicate.outcome import recompute
+    from replicate.terminal.console import console
+    from replicate.terminal.progress import progress_on
+
+    errors = console(stderr=True)
+    with progress_on(errors) as progress:
+        cache = None if no_cache else out / "cache"
+        outcome = recompute(papers, selection, jobs=jobs, cache_dir=cache, progress=progress)
+    for failure in outcome.failures:
+        errors.print(f"failed: {failure}", markup=False)
+    return outcome
+
+
+def _exit_if_broken(outcome: Outcome) -> None:
+    if outcome.failures:
+        raise typer.Exit(BROKEN)
+
+
+def _accepted(folder: Path | None) -> Path:
+    from replicate.resources import accepted_dir
+
+    return folder or accepted_dir()

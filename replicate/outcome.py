@@ -1,0 +1,77 @@
+"""A whole run with its judgement: what the report, the outputs and the accepted state are made from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from replicate.exhibits import Paper
+from replicate.judgement import Judgement
+from replicate.records import Results
+from replicate.run import Progress, failures, run
+from replicate.verdicts import judge
+
+Selection = Collection[tuple[str, str]]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Papers, their results by (paper, exhibit), and what is said about each paper.
+
+    Attributes
+    ----------
+    complete
+        Whether every exhibit of the papers was computed, not just a selection.
+    """
+
+    papers: Sequence[Paper]
+    results: Results
+    judgements: dict[str, Judgement]
+    complete: bool = True
+
+    @property
+    def judgement(self) -> Judgement:
+        """The judgements of all papers as one, in the order of the papers."""
+        parts = self.judgements.values()
+        return Judgement(
+            results=[row for part in parts for row in part.results],
+            verdicts=[row for part in parts for row in part.verdicts],
+            exhibits=[row for part in parts for row in part.exhibits],
+            problems=[problem for part in parts for problem in part.problems],
+        )
+
+    @property
+    def failures(self) -> list[str]:
+        """One line for everything that raised."""
+        return failures(self.results)
+
+
+def recompute(
+    papers: Sequence[Paper],
+    selection: Selection | None = None,
+    *,
+    jobs: int | None = None,
+    cache_dir: Path | None,
+    progress: Callable[[Progress], None] | None = None,
+) -> Outcome:
+    """Compute the exhibits of papers and judge them.
+
+    Parameters
+    ----------
+    selection
+        ``(paper, exhibit)`` pairs; all exhibits if not given.
+    jobs, cache_dir, progress
+        As for `replicate.run.run`.
+
+    Raises
+    ------
+    ReplicateError
+        If a data file of a paper is malformed, or a worker process died. An exhibit that raises is a result.
+    """
+    results = run(papers, selection, jobs=jobs, cache_dir=cache_dir, progress=progress)
+    judgements = {}
+    for paper in papers:
+        exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]
+        judgements[paper.id] = judge(paper, results, exhibits=exhibits)
+    return Outcome(papers, results, judgements, complete=selection is None)

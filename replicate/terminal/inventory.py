@@ -1,0 +1,46 @@
+"""Lists of papers and of the exhibits of a paper."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable
+
+from rich.console import Console
+from rich.table import Table as Grid
+from rich.text import Text
+
+from replicate.exhibits import Claims, Exhibit, NotComputable, Paper, Table
+
+
+def print_papers(papers: Iterable[Paper], console: Console) -> None:
+    """Print one line per paper: id, title, year, and how many exhibits of each kind it has."""
+    grid = _grid("paper", "year", "title", "exhibits")
+    for paper in papers:
+        kinds = Counter(exhibit.kind for exhibit in paper.exhibits.values())
+        exhibits = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+        grid.add_row(Text(paper.id), str(paper.year), Text(paper.title), exhibits)
+    console.print(grid)
+
+
+def print_exhibits(paper: Paper, console: Console) -> None:
+    """Print one line per exhibit: id, kind, title, and what there is to see."""
+    console.print(Text(paper.citation))
+    grid = _grid("exhibit", "kind", "title", "")
+    for exhibit in paper.exhibits.values():
+        grid.add_row(Text(exhibit.id), exhibit.kind, Text(exhibit.title), Text(_content(exhibit)))
+    console.print(grid)
+
+
+def _content(exhibit: Exhibit) -> str:
+    if isinstance(exhibit, Table):
+        return f"readings: {', '.join(exhibit.readings)}"
+    if isinstance(exhibit, Claims):
+        return f"{len(exhibit.claims)} claims"
+    return "not computable" if isinstance(exhibit, NotComputable) else ""
+
+
+def _grid(*headings: str) -> Grid:
+    grid = Grid(box=None, pad_edge=False, padding=(0, 2), header_style="bold")
+    for heading in headings:
+        grid.add_column(heading, no_wrap=heading in {"paper", "exhibit"})
+    return grid

@@ -1,0 +1,52 @@
+"""Progress of a run: a bar on a terminal, plain lines elsewhere."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
+from rich.progress import Progress as Bar
+
+from replicate.run import Progress
+
+
+@contextmanager
+def progress_on(console: Console) -> Iterator[Callable[[Progress], None]]:
+    """Yield the function to give to a run as its ``progress``.
+
+    Results that come out of the cache are counted, not named.
+    """
+    with _bar(console) if console.is_terminal else _lines(console) as report:
+        yield report
+
+
+@contextmanager
+def _bar(console: Console) -> Iterator[Callable[[Progress], None]]:
+    columns = (TextColumn("computing"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
+    with Bar(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("", total=None)
+
+        def report(step: Progress) -> None:
+            bar.update(task, total=step.total, completed=step.done, description=str(step.unit))
+
+        yield report
+
+
+@contextmanager
+def _lines(console: Console) -> Iterator[Callable[[Progress], None]]:
+    kept = total = 0
+
+    def report(step: Progress) -> None:
+        nonlocal kept, total
+        total = step.total
+        if step.from_cache:
+            kept += 1
+            return
+        outcome = "  FAILED" if step.errors else ""
+        console.print(f"computed {step.done}/{step.total}  {step.unit}{outcome}", markup=False)
+
+    yield report
+    if kept:
+        console.print(f"{kept} of {total} results kept from an earlier run", markup=False)

@@ -1,0 +1,155 @@
+"""One exhibit on the terminal: what the paper prints, what each reading gives, the verdicts, and why."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from rich.console import Console
+from rich.markdown import Markdown
+from rich.padding import Padding
+from rich.table import Table as Grid
+from rich.text import Text
+
+from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
+from replicate.judgement import ResultRow, VerdictRow
+from replicate.outcome import Outcome
+from replicate.outputs import number_text
+from replicate.records import ClaimsResult, FigureResult, TableResult
+from replicate.report.words import MATCHES, WORDS
+from replicate.terminal.colours import colour
+from replicate.units import errors_of
+
+_DIGITS = 9
+
+
+def print_exhibit(
+    outcome: Outcome, paper: str, exhibit: Exhibit, readings: Sequence[str], console: Console
+) -> None:
+    """Print an exhibit.
+
+    Parameters
+    ----------
+    readings
+        Ids of the readings to show, for a table.
+    """
+    console.print(Text.assemble((f"{paper}/{exhibit.id}", "bold"), f"  {exhibit.title}"))
+    result = outcome.results.get((paper, exhibit.id))
+    verdicts = [row for row in outcome.judgements[paper].verdicts if row.exhibit == exhibit.id]
+    if isinstance(exhibit, NotComputable):
+        console.print(Text(f"not computable: {exhibit.reason}"))
+    elif isinstance(exhibit, Table) and isinstance(result, TableResult):
+        if verdicts:
+            results = [row for row in outcome.judgements[paper].results if row.exhibit == exhibit.id]
+            console.print(_comparison(readings, results, verdicts))
+        else:
+            _print_frames(result, readings, console)
+        _print_readings(exhibit, readings, console)
+        _print_explanations([verdict for verdict in verdicts if verdict.cause], console)
+    elif isinstance(exhibit, Figure) and isinstance(result, FigureResult):
+        _print_figure(exhibit, result, console)
+    elif isinstance(exhibit, Claims) and isinstance(result, ClaimsResult):
+        _print_claims(exhibit, verdicts, console)
+    if result is not None:
+        for part, why in errors_of(result).items():
+            console.print(Text(f"failed{f' ({part})' if part else ''}: {why}", style="red"))
+
+
+def _comparison(readings: Sequence[str], results: list[ResultRow], verdicts: list[VerdictRow]) -> Grid:
+    """Return one line per printed value."""
+    grid = _grid("row", "", ">printed", *(f">{reading}" for reading in readings), "verdict")
+    found = {(row.row, row.column, row.reading): row for row in results}
+    previous = ""
+    for verdict in verdicts:
+        computed = [found.get((verdict.row, verdict.column, reading)) for reading in readings]
+        grid.add_row(
+            "" if verdict.row == previous else verdict.row,
+            verdict.column,
+            verdict.printed,
+            *(f"{_short(row.computed)} {MATCHES[row.match][0]:1}" if row else "" for row in computed),
+            _verdict(verdict),
+        )
+        previous = verdict.row
+    return grid
+
+
+def _print_frames(result: TableResult, readings: Sequence[str], console: Console) -> None:
+    """Print what each reading gives, for an exhibit without printed values."""
+    for reading in readings:
+        frame = result.frames.get(reading)
+        if frame is None:
+            continue
+        console.print(Text(f"\n{reading}", style="bold"))
+        grid = _grid("row", *(f">{column}" for column in frame.columns))
+        for row, values in zip(frame.index, frame.itertuples(index=False, name=None), strict=True):
+            grid.add_row(str(row), *(number_text(value, _DIGITS) for value in values))
+        console.print(grid)
+
+
+def _print_readings(table: Table, readings: Sequence[str], console: Console) -> None:
+    for id in readings:
+        reading = table.readings[id]
+        console.print()
+        console.print(Text.assemble((id, "bold"), f": {reading.title}"))
+        if reading.note:
+            console.print(Padding(Markdown(reading.note), (0, 0, 0, 2)))
+
+
+def _print_explanations(verdicts: list[VerdictRow], console: Console) -> None:
+    """Print every explanation once, with the cells it is about."""
+    together: dict[tuple[str, str, str], list[VerdictRow]] = {}
+    for verdict in verdicts:
+        together.setdefault((verdict.verdict, verdict.cause, verdict.explanation), []).append(verdict)
+    for (word, cause, explanation), cells in together.items():
+        console.print()
+        for cell in cells:
+            corrected = f", should be {cell.corrected}" if cell.corrected else ""
+            said = f" {cell.row} {cell.column}: {word} ({cause}){corrected}"
+            console.print(Text.assemble((WORDS[word].symbol, colour(word)), said))
+        if explanation:
+            console.print(Padding(Markdown(explanation), (0, 0, 0, 2)))
+
+
+def _print_figure(figure: Figure, result: FigureResult, console: Console) -> None:
+    if figure.caption:
+        console.print(Text(figure.caption))
+    if figure.stands_for:
+        console.print(Text(f"stands for: {figure.stands_for}"))
+    grid = _grid("panel", "curve", ">points", ">x from", ">to", ">y from", ">to")
+    for (panel, curve), points in result.curves.groupby(["panel", "curve"], sort=False):
+        x, y = points["x"].to_numpy(), points["y"].to_numpy()
+        ends = (np.nanmin(x), np.nanmax(x), np.nanmin(y), np.nanmax(y))
+        grid.add_row(str(panel), str(curve), str(int(np.isfinite(x).sum())), *(f"{end:.5g}" for end in ends))
+    console.print(grid)
+
+
+def _print_claims(claims: Claims, verdicts: list[VerdictRow], console: Console) -> None:
+    for verdict in verdicts:
+        claim = claims.claims[verdict.row]
+        console.print()
+        console.print(
+            Text.assemble((claim.id, "bold"), "  ", _verdict(verdict), f"  {_short(verdict.computed)}")
+        )
+        where = f" ({claim.where})" if claim.where else ""
+        console.print(Padding(Markdown(f"{claim.text}{where}"), (0, 0, 0, 2)))
+        console.print(Padding(Markdown(verdict.explanation), (0, 0, 0, 2)))
+
+
+def _verdict(verdict: VerdictRow) -> Text:
+    return Text(
+        f"{WORDS[verdict.verdict].symbol} {WORDS[verdict.verdict].name}", style=colour(verdict.verdict)
+    )
+
+
+def _short(computed: str) -> str:
+    """Return a computed number with nine significant digits."""
+    return f"{float(computed):.{_DIGITS}g}" if computed else ""
+
+
+def _grid(*headings: str) -> Grid:
+    """Return an empty table; a heading that begins with ``>`` is that of a column of numbers."""
+    grid = Grid(box=None, pad_edge=False, padding=(0, 2), header_style="bold")
+    for heading in headings:
+        numeric = heading.startswith(">")
+        grid.add_column(Text(heading.removeprefix(">")), justify="right" if numeric else "left")
+    return grid

@@ -1,0 +1,57 @@
+"""The one-screen summary at the end of a report: how many printed values hold, and how many claims."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from replicate.outcome import Outcome
+from replicate.report.words import CLAIM_VERDICTS, VERDICTS, Word
+from replicate.terminal.colours import colour
+
+
+def print_summary(outcome: Outcome, console: Console) -> None:
+    """Print the verdicts on printed values and claims, and the state of the exhibits, per paper."""
+    table = Table(box=None, pad_edge=False, padding=(0, 2), header_style="bold")
+    table.add_column("")
+    papers = list(outcome.judgements)
+    for heading in (*papers, "all"):
+        table.add_column(heading, justify="right")
+    verdicts = [(row.paper, row.verdict) for row in outcome.judgement.verdicts]
+    statuses = [(row.paper, row.status) for row in outcome.judgement.exhibits]
+    _section(table, papers, "printed values", VERDICTS, Counter(verdicts))
+    _section(table, papers, "claims", CLAIM_VERDICTS, Counter(verdicts))
+    _section(table, papers, "exhibits", _STATUSES, Counter(statuses))
+    console.print(table)
+
+
+_STATUSES = {
+    word.id: word
+    for word in (
+        Word("done", "✓", "everything in it is computed"),
+        Word("partly", "◐", "a part of it is computed"),
+        Word("not-computable", "–", "nothing can be computed"),
+    )
+}
+
+
+def _section(
+    table: Table, papers: list[str], title: str, words: Mapping[str, Word], counts: Counter[tuple[str, str]]
+) -> None:
+    """Add a line with the total and one line for each word that occurs."""
+    if table.row_count:
+        table.add_row()
+    per_paper = [sum(counts[paper, id] for id in words) for paper in papers]
+    table.add_row(Text(title, style="bold"), *_numbers(per_paper, "bold"))
+    for id, word in words.items():
+        numbers = [counts[paper, id] for paper in papers]
+        if any(numbers):
+            table.add_row(Text(f"  {word.symbol} {word.name}", style=colour(id)), *_numbers(numbers, ""))
+
+
+def _numbers(numbers: list[int], style: str) -> list[Text]:
+    return [Text(str(number) if number else "·", style=style) for number in (*numbers, sum(numbers))]
