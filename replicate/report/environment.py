@@ -13,7 +13,7 @@ _LIBRARIES = (
 
 
 def versions() -> dict[str, str]:
-    """Return versions by name: neither the clock nor the machine, so that the report stays the same byte for byte."""
+    """Return versions by name: nothing of the clock or the machine, which would change the report's bytes."""
     found = {"replicate": replicate.__version__, "Python": platform.python_version()}
     for library in _LIBRARIES:
         try:

@@ -10,11 +10,14 @@ from replicate.report.views import ClaimView, ExhibitView
 
 _TITLES = {
     "misprint": ("Misprints", "The print is wrong; the corrected value follows from the evidence given."),
-    "scan": ("Damaged in the copy at hand", "The text this replication was made from is damaged here; the paper may well be right."),
-    "discrepant": ("Discrepancies", "The printed values differ from what the paper defines, for a documented cause."),
-    "claims": ("Sentences that do not hold", "Statements of the text that the computation contradicts, wholly or in part."),
-    "unexplained": ("Open questions", "The printed values differ and no cause was found. Suggestions are welcome."),
-}  # fmt: skip
+    "scan": (
+        "Damaged in the copy at hand",
+        "The copy this was made from is damaged here; the paper may be right.",
+    ),
+    "discrepant": ("Discrepancies", "The values differ from what the paper defines, for a documented cause."),
+    "claims": ("Sentences that do not hold", "What the computation contradicts, wholly or in part."),
+    "unexplained": ("Open questions", "The values differ and no cause was found."),
+}
 
 
 @dataclass

@@ -59,15 +59,15 @@ def description(alt: str, axes: list[dict[str, Any]]) -> str:
 
     Examples
     --------
-    >>> axes = {"panel": "panel 1", "xlabel": "t", "ylabel": "y", "xlim": [0, 9], "ylim": [0, 1], "legend": ["PA", "ZN"]}
-    >>> description("", [axes])
+    >>> axes = {"panel": "panel 1", "xlabel": "t", "ylabel": "y", "xlim": [0, 9], "ylim": [0, 1]}
+    >>> description("", [axes | {"legend": ["PA", "ZN"]}])
     'y from 0 to 1 over t from 0 to 9: PA, ZN.'
     """
     if alt:
         return alt
     sentences = []
     for panel in axes:
-        named = [f"{panel[key] or key[0]} from {_range(panel[f'{key[0]}lim'])}" for key in ("ylabel", "xlabel")]
+        named = [f"{panel[f'{axis}label'] or axis} from {_range(panel[f'{axis}lim'])}" for axis in "yx"]
         name = "" if panel["panel"].startswith("panel ") else f"{panel['panel']}: "
         curves = f": {', '.join(panel['legend'])}" if panel["legend"] else ""
         sentences.append(f"{name}{' over '.join(named)}{curves}.")

@@ -40,13 +40,16 @@ class Piece:
 
 
 def pieces(text: str) -> list[Piece]:
-    """Cut Markdown into headings, texts and exhibits, in order; the highest heading becomes one of level 2.
+    r"""Cut Markdown into headings, texts and exhibits, in order; the highest heading becomes one of level 2.
 
     Examples
     --------
-    >>> cut = pieces("Intro." + place("table-1") + "# The *rule*\\nIt is.\\n")
-    >>> [(piece.kind, piece.text, piece.level, piece.id) for piece in cut]
-    [('text', 'Intro.', 0, ''), ('exhibit', 'table-1', 0, ''), ('heading', 'The *rule*', 2, 's-the-rule'), ('text', 'It is.', 0, '')]
+    >>> for piece in pieces("Intro." + place("table-1") + "# The *rule*\nIt is.\n"):
+    ...     print(piece.kind, "|", piece.text, "|", piece.level, piece.id)
+    text | Intro. | 0
+    exhibit | table-1 | 0
+    heading | The *rule* | 2 s-the-rule
+    text | It is. | 0
     """
     found: list[Piece] = []
     lines: list[str] = []

@@ -29,8 +29,10 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
 
     Examples
     --------
-    >>> shown(6.96812345, PrintedValue("6.968")), shown(6.96812345, PrintedValue("6.968", significant_digits=6))
-    ('6.96812', '6.968123')
+    >>> shown(6.96812345, PrintedValue("6.968"))
+    '6.96812'
+    >>> shown(6.96812345, PrintedValue("6.968", significant_digits=6))
+    '6.968123'
     >>> shown(-0.5, None), shown(1e-9, PrintedValue("0.1")), shown(float("inf"), None)
     ('−0.5', '1.00000e−9', '∞')
     """
@@ -40,6 +42,8 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     if math.isinf(computed):
         return "∞" if computed > 0 else f"{MINUS}∞"
     number = Decimal(text)
+    if not number:
+        return "0"
     if printed is None or not printed.value:
         place = number.adjusted() - _PLAIN_DIGITS + 1
         if printed is not None:  # a printed zero: its decimals say what is of interest
@@ -48,7 +52,7 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
         digits = printed.value.adjusted() - printed.unit.adjusted() + 1
         place = printed.unit.adjusted() - (1 if digits >= _LONG_PRINT else 2)
     significant = number.adjusted() - place + 1
-    if number and (significant < 1 or significant > 12 or number.adjusted() >= 9 or number.adjusted() < -5):
+    if not (1 <= significant <= 12 and -5 <= number.adjusted() < 9):
         return _scientific(number)
     if printed is None:
         return _minus(f"{number:.{_PLAIN_DIGITS}g}" if place < 0 else f"{number:.0f}")
@@ -77,12 +81,12 @@ def full(computed: float | None) -> str:
 
 
 def aligned(texts: Iterable[str]) -> dict[str, str]:
-    """Return, by text, the number with spaces after it so that a right-aligned column has its points in line.
+    r"""Return, by text, the number with spaces after it that bring the points of a column in line.
 
     Examples
     --------
-    >>> [text.replace("\\u2007", "_").replace("\\u2008", ",") for text in aligned(["1.25", "10"]).values()]
-    ['1.25', '10,__']
+    >>> [text.replace("\u2007", "_").replace("\u2008", ",") for text in aligned(["1.25", "10"]).values()]
+    ['1.25', '10__,']
     """
     texts = list(texts)
     decimals = {text: len(text.partition(".")[2]) for text in texts if "e" not in text and text}

@@ -101,7 +101,7 @@ def build_report(
     texts = {INDEX: _render("index.html", INDEX, site=site, papers=papers)}
     for pages in site.values():
         for page in pages:
-            texts[page.file] = _render("paper.html", page.file, site=site, papers=papers, page=page, pages=pages)
+            texts[page.file] = _render("paper.html", page.file, page=page, pages=pages)
     written = []
     for name, text in texts.items():
         path = out_dir / name

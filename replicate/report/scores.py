@@ -23,8 +23,8 @@ class Score:
 
     @property
     def holding(self) -> int:
-        """How many printed values come out equal under a reading."""
-        return sum(count for word, count in self.counts if word.id in HOLDING)
+        """How many printed values come out equal under a reading, or how many claims hold."""
+        return sum(count for word, count in self.counts if word.id in {*HOLDING, "holds"})
 
     def of(self, verdict: str) -> int:
         """Return how many verdicts of this kind there are."""
@@ -47,5 +47,5 @@ def claims(verdicts: Iterable[VerdictRow]) -> Score:
 
 
 def _score(verdicts: Iterable[VerdictRow], words: Mapping[str, Word]) -> Score:
-    counter = Counter(verdict.verdict for verdict in verdicts)
+    counter = Counter[str](verdict.verdict for verdict in verdicts)
     return Score(tuple((word, counter[id]) for id, word in words.items() if counter[id]))

@@ -32,9 +32,9 @@ def sources(functions: list[Callable[..., Any]]) -> list[Source]:
             function = function.func  # noqa: PLW2901 -- what is shown is the function inside
         function = inspect.unwrap(function)  # noqa: PLW2901
         # A function made inside another says little alone: the module shows what it is made of.
-        local = "<locals>" in getattr(function, "__qualname__", "")
+        module = inspect.getmodule(function) if "<locals>" in getattr(function, "__qualname__", "") else None
         try:
-            lines, first = inspect.getsourcelines(inspect.getmodule(function) or function if local else function)
+            lines, first = inspect.getsourcelines(module or function)
         except (OSError, TypeError):
             continue
         where = f"{function.__module__}" + (f", line {first}" if first else "")
@@ -82,5 +82,3 @@ def _element(token: tokenize.TokenInfo) -> str:
     if token.type == tokenize.STRING and not token.string.lstrip("rRbBuU").startswith(("f", "F")):
         return "s"
     return {tokenize.COMMENT: "i", tokenize.NUMBER: "var"}.get(token.type, "")
-
-

@@ -70,6 +70,15 @@ class TableView:
     errors: dict[str, str]
     verdicts: list[VerdictRow]
 
+    @staticmethod
+    def lines(row: list[Cell]) -> list[tuple[list[str], list[Value]]]:
+        """Return the lines of a row without printed values: readings that agree in all of it share one."""
+        lines: dict[tuple[str, ...], tuple[list[str], list[Value]]] = {}
+        for values in zip(*(entry.values for entry in row), strict=True):
+            ids, _ = lines.setdefault(tuple(value.full or value.text for value in values), ([], list(values)))
+            ids.append(values[0].reading.id)
+        return list(lines.values())
+
 
 def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]) -> TableView:
     """Arrange a table for display.
@@ -86,18 +95,17 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
     Returns
     -------
     TableView
-        Rows and columns in the paper's order. A table without printed values takes them from its first reading.
+        Rows and columns in the paper's order; without printed values, those of the first reading.
     """
     by_cell = {(verdict.row, verdict.column): verdict for verdict in verdicts}
-    frames = result.frames
+    frames = {id: result.frames[id] for id in table.readings if id in result.frames}
     first = next(iter(frames.values()), None)
     rows = list(table.rows) or ([] if first is None else [str(key) for key in first.index])
     columns = list(table.columns) or ([] if first is None else [str(key) for key in first.columns])
-    readings = [reading for id, reading in table.readings.items() if id in frames]
     notes = _notes(by_cell.values())
     note_of = {where: note.number for note, cells in notes for where in cells}
     cells = {
-        (row, column): _cell(table, frames, readings, row, column, by_cell.get((row, column)))
+        (row, column): _cell(table, frames, row, column, by_cell.get((row, column)))
         for row in rows
         for column in columns
     }
@@ -112,7 +120,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         table,
         columns,
         [(row, [cells[row, column] for column in columns]) for row in rows],
-        readings,
+        [table.readings[id] for id in frames],
         [note for note, _ in notes],
         dict(result.errors),
         list(by_cell.values()),
@@ -120,20 +128,16 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
 
 
 def _cell(
-    table: Table,
-    frames: Mapping[str, pd.DataFrame],
-    readings: Iterable[Reading],
-    row: str,
-    column: str,
-    verdict: VerdictRow | None,
+    table: Table, frames: Mapping[str, pd.DataFrame], row: str, column: str, verdict: VerdictRow | None
 ) -> Cell:
     printed = PrintedValue(verdict.printed, significant_digits=table.significant_digits) if verdict else None
     values = []
-    for reading in readings:
+    for id, frame in frames.items():
+        reading = table.readings[id]
         try:
-            number = cell(frames[reading.id], row, column)
-        except CellError:  # not a number: a word such as "unstable" is shown as it is, a missing cell as blank
-            values.append(Value(reading, _held(frames[reading.id], row, column), "", Match("none")))
+            number = cell(frame, row, column)
+        except CellError:  # a word such as "unstable" is shown as it is, a missing cell as blank
+            values.append(Value(reading, _held(frame, row, column), "", Match("none")))
             continue
         compared = match(printed, number) if printed is not None else Match("none")
         values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), compared))

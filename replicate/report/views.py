@@ -11,7 +11,7 @@ from markupsafe import Markup
 from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
 from replicate.judgement import ExhibitRow, Judgement, VerdictRow
 from replicate.printed import PrintedValue, parse_number
-from replicate.records import ClaimsResult, FigureResult, Results, TableResult
+from replicate.records import ClaimsResult, FigureResult, Result, Results, TableResult
 from replicate.report import numbers, scores
 from replicate.report.figures import description, inline_svg
 from replicate.report.labels import heading
@@ -61,7 +61,9 @@ class ExhibitView:
     files: list[tuple[str, str]] = field(default_factory=list)
 
 
-def exhibit_views(paper: Paper, results: Results, judgement: Judgement, page_of: Callable[[str], str]) -> list[ExhibitView]:
+def exhibit_views(
+    paper: Paper, results: Results, judgement: Judgement, page_of: Callable[[str], str]
+) -> list[ExhibitView]:
     """Return the views of a paper's exhibits in the order of its inventory.
 
     Parameters
@@ -76,47 +78,51 @@ def exhibit_views(paper: Paper, results: Results, judgement: Judgement, page_of:
     for verdict in (verdict for verdict in judgement.verdicts if verdict.paper == paper.id):
         verdicts.setdefault(verdict.exhibit, []).append(verdict)
     return [
-        _view(paper, exhibit, rows.get(exhibit.id), results, verdicts.get(exhibit.id, []), page_of(exhibit.id))
+        _view(
+            exhibit,
+            results.get((paper.id, exhibit.id)),
+            _common(exhibit, rows.get(exhibit.id), verdicts.get(exhibit.id, []), page_of(exhibit.id)),
+        )
         for exhibit in paper.exhibits.values()
     ]
 
 
-def _view(
-    paper: Paper,
-    exhibit: Exhibit,
-    row: ExhibitRow | None,
-    results: Results,
-    verdicts: list[VerdictRow],
-    page: str,
-) -> ExhibitView:
+def _common(
+    exhibit: Exhibit, row: ExhibitRow | None, verdicts: list[VerdictRow], page: str
+) -> dict[str, Any]:
+    """Return the fields that every kind of exhibit has; without an inventory row it was not asked for."""
     label, title = heading(exhibit.id, exhibit.title)
     reason = exhibit.reason if isinstance(exhibit, NotComputable) else ""
-    common: dict[str, Any] = {
+    return {
         "id": exhibit.id,
         "label": label,
         "title": title,
         "kind": exhibit.kind,
-        "status": row.status if row else ("not-computable" if reason else "done"),
-        "reason": reason or (row.reason if row else ""),
+        "status": row.status if row else "not-computable",
+        "reason": reason or (row.reason if row else "not part of this run"),
         "page": page,
         "score": scores.claims(verdicts) if isinstance(exhibit, Claims) else scores.values(verdicts),
         "verdicts": verdicts,
     }
-    result = results.get((paper.id, exhibit.id))
+
+
+def _view(exhibit: Exhibit, result: Result | None, common: dict[str, Any]) -> ExhibitView:
     match exhibit, result:
         case Table(), TableResult():
+            base = f"../tables/{result.paper}/{exhibit.id}"
             return ExhibitView(
                 **common,
-                table=table_view(exhibit, result, verdicts),
+                table=table_view(exhibit, result, common["verdicts"]),
                 caption=exhibit.caption,
                 sources=sources([reading.compute for reading in exhibit.readings.values()]),
-                files=[
-                    (f"CSV, {id}", f"../tables/{paper.id}/{exhibit.id}.{id}.csv") for id in result.frames
-                ],
+                files=[(f"CSV, {id}", f"{base}.{id}.csv") for id in result.frames],
             )
         case Figure(), FigureResult():
             return ExhibitView(
-                **common, figure=_figure(paper, exhibit, result), caption=exhibit.caption, sources=sources([exhibit.draw])
+                **common,
+                figure=_figure(exhibit, result),
+                caption=exhibit.caption,
+                sources=sources([exhibit.draw]),
             )
         case Claims(), ClaimsResult():
             checks = [claim.check for claim in exhibit.claims.values()]
@@ -125,12 +131,12 @@ def _view(
             return ExhibitView(**common)
 
 
-def _figure(paper: Paper, figure: Figure, result: FigureResult) -> FigureView:
+def _figure(figure: Figure, result: FigureResult) -> FigureView:
     if result.error:
         return FigureView(figure, Markup(""), result.error, [])
-    base = f"../figures/{paper.id}/{figure.id}"
+    base = f"../figures/{result.paper}/{figure.id}"
     svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, description(figure.alt, result.axes))
-    files = [(format.upper(), f"{base}.{format}") for format in ("svg", "png", "csv")]
+    files = [(suffix.upper(), f"{base}.{suffix}") for suffix in ("svg", "png", "csv")]
     return FigureView(figure, Markup(svg), "", files)  # noqa: S704 -- drawn here; its texts are escaped
 
 

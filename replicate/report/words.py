@@ -1,7 +1,7 @@
 """The words of the report: every verdict and match with its symbol, name and meaning.
 
-A symbol always accompanies the colour, so that the report can be read without colour vision and on a black-and-white
-print. None of the symbols has an emoji form that a phone would draw in its place.
+A symbol always accompanies the colour, so that the report can be read without colour vision and on a
+black-and-white print. None of the symbols has an emoji form that a phone would draw in its place.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ class Word:
 VERDICTS = {
     word.id: word
     for word in (
-        Word("reproduced", "✓", "computed as the paper says, the value rounds or truncates to the printed digits"),
-        Word("reconstructed", "↻", "the printed digits come out under another, documented reading of the paper"),
+        Word("reproduced", "✓", "as the paper says, the value rounds or truncates to the printed digits"),
+        Word("reconstructed", "↻", "the printed digits come out under another, documented reading"),
         Word("near", "≈", "within two units of the last printed digit, or within one per cent"),
         Word("misprint", "✎", "the print is wrong, and the evidence shows what it should be"),
-        Word("discrepant", "≠", "the value differs for a known, documented cause; there is no single right value"),
-        Word("unexplained", "?", "the value differs and no cause was found; what was tried is listed"),
+        Word("discrepant", "≠", "differs for a known, documented cause; there is no single right value"),
+        Word("unexplained", "?", "differs, and no cause was found; what was tried is listed"),
         Word("not-computable", "–", "measured data, or inputs that the paper does not give"),
     )
 }
@@ -40,9 +40,9 @@ VERDICTS = {
 CLAIM_VERDICTS = {
     word.id: word
     for word in (
-        Word("holds", "✓", "the sentence is true, shown by the number beside it"),
-        Word("holds-partly", "◐", "the sentence is true in part, or only under conditions the paper does not name"),
-        Word("fails", "✗", "the sentence is false, shown by the number beside it"),
+        Word("holds", "✓", "true, shown by the number beside it"),
+        Word("holds-partly", "◐", "true in part, or only under conditions the paper does not name"),
+        Word("fails", "✗", "false, shown by the number beside it"),
     )
 }
 """Verdicts of claims, best first."""
