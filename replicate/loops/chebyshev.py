@@ -71,7 +71,7 @@ def basis(x: Array, degree: int) -> Array:
     table[0] = 1.0
     if degree:
         table[1] = x
-        twice = 2.0 * x
+        twice = x + x
         for k in range(2, degree + 1):
             np.multiply(twice, table[k - 1], out=table[k])
             table[k] -= table[k - 2]

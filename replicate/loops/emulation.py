@@ -1,8 +1,8 @@
 """What the usual toolchain does with a dead time: Padé model, uniform sample grid, metrics read off samples.
 
-Nothing here is exact, on purpose. A replication sometimes has to repeat what an author's tools did in order to explain
-the digits that were printed, and then show how far those are from the truth; this module does the repeating, with
-python-control, and shares no code with the exact core.
+Nothing here is exact, on purpose. A replication sometimes has to repeat what an author's tools did in order
+to explain the digits that were printed, and then show how far those are from the truth; this module does the
+repeating, with python-control, and shares no code with the exact core.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from replicate.loops import PI, Plant
 
 Array = NDArray[np.float64]
-StateSpace = Any  # control.StateSpace: python-control publishes no types, and is imported only where it is used
+StateSpace = (
+    Any  # control.StateSpace: python-control publishes no types, and is imported only where it is used
+)
 
 
 def pade_loop(
@@ -54,8 +56,9 @@ def pade_loop(
 def dominant_pole(system: StateSpace) -> complex:
     """Return the rightmost pole, of a complex pair the one in the upper half plane.
 
-    A double real pole comes out of any eigenvalue routine as two poles about the square root of the rounding error
-    apart; their mean is accurate to the rounding error itself and is what is returned for such a cluster.
+    A double real pole comes out of any eigenvalue routine as two poles about the square root of the rounding
+    error apart; their mean is accurate to the rounding error itself and is what is returned for such a
+    cluster.
     """
     poles = np.asarray(system.poles(), dtype=complex)
     rightmost = poles[np.argmax(poles.real)]
@@ -67,7 +70,7 @@ def dominant_pole(system: StateSpace) -> complex:
 
 @dataclass(frozen=True)
 class SampledResponse:
-    """A unit step response known at equally spaced instants only; metrics are read off the samples as they are.
+    """A unit step response known at equally spaced instants; metrics are samples, not interpolations.
 
     Attributes
     ----------
@@ -122,8 +125,8 @@ class SampledResponse:
 def sampled_step(system: StateSpace, until: float, steps: int) -> SampledResponse:
     """Return the unit step response on the grid 0, until/steps, ..., until.
 
-    Between samples python-control propagates the state with the matrix exponential, so the samples themselves are
-    accurate to rounding even for a system with multiple poles.
+    Between samples python-control propagates the state with the matrix exponential, so the samples themselves
+    are accurate to rounding even for a system with multiple poles.
 
     Parameters
     ----------

@@ -29,11 +29,14 @@ ComplexArray = NDArray[np.complex128]
 OPENINGS = (0.62, 0.45, 0.3, 0.2, 0.12, 0.07, 0.04)  # rad by which the contour's arms lean to the left of vertical
 DEGREE = 18
 TOLERANCE = 1e-13
-SHORTEST = 1e-4  # first piece, as a fraction of the horizon: responses such as exp(-sqrt s) start infinitely flat
+RESOLVED = 5e-13
+FIRST = 1e-3  # length of the first piece, in time scales
+GROWTH = 1.35
+KINKS = 12
 
 
 def respond(
-    transfer: LoopTransfer, transform: Callable[[Any], ComplexArray], until: float, start: float
+    transfer: LoopTransfer, transform: Callable[[Any], ComplexArray], until: float, start: float, time_scale: float
 ) -> tuple[Array, Array]:
     """Return (breaks, Chebyshev coefficients) of the inverse transform on [0, until]; zero before ``start``.
 
@@ -41,25 +44,40 @@ def respond(
     ----------
     transform
         Y(s) of a response that is continuous for t > start, for complex arrays.
+    time_scale
+        Time constant of the slowest mode. Pieces grow geometrically from a small fraction of it, because such responses
+        start infinitely flat and end in an algebraic tail; pieces that are not resolved are halved.
 
     Raises
     ------
     LoopError
         If no contour leaves all closed-loop poles on its left, or the quadrature does not converge.
     """
-    first = SHORTEST * (until - start)
-    growth = 1.35
-    edges = [0.0]
-    while edges[-1] < until - start:
-        edges.append(min(until - start, edges[-1] + (first if len(edges) == 1 else (growth - 1.0) * max(edges[-1], first))))
-    breaks = np.array(edges)
-    nodes = chebyshev.nodes(DEGREE)
-    values = np.empty((breaks.size - 1, DEGREE + 1))
-    for j in range(breaks.size - 1):
-        t = 0.5 * (breaks[j] + breaks[j + 1]) + 0.5 * (breaks[j + 1] - breaks[j]) * nodes
-        values[j] = _invert(transfer, transform, t, start)
-    values[0, 0] = 0.0
-    coefficients = values @ chebyshev.values_to_coefficients(DEGREE).T
+    end = until - start
+    edges = [0.0, min(end, FIRST * time_scale)]
+    while edges[-1] < end:
+        edges.append(min(end, GROWTH * edges[-1]))
+    if transfer.dead_time:  # the response is smooth only between multiples of the dead time, ever smoother later
+        kinks = transfer.dead_time * np.arange(1, KINKS)
+        edges = sorted({*edges, *kinks[kinks < end].tolist()})
+    pending = [(left, right) for left, right in zip(edges[:-1], edges[1:], strict=True)][::-1]
+    to_coefficients = chebyshev.values_to_coefficients(DEGREE)
+    lefts: list[float] = []
+    pieces: list[Array] = []
+    largest = float(np.abs(transform(1.0 / time_scale)) / time_scale)  # the response's size, before any piece is known
+    while pending:
+        left, right = pending.pop()
+        t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)
+        series = to_coefficients @ _invert(transfer, transform, t, start)
+        largest = max(largest, float(np.max(np.abs(series))))
+        if np.max(np.abs(series[-2:])) > RESOLVED * largest and right - left > 1e-6 * time_scale:
+            middle = 0.5 * (left + right)
+            pending += [(middle, right), (left, middle)]
+            continue
+        lefts.append(left)
+        pieces.append(series)
+    breaks = np.append(lefts, end)
+    coefficients = np.array(pieces)
     if start:
         breaks = np.concatenate([[0.0], breaks + start])
         coefficients = np.concatenate([np.zeros((1, DEGREE + 1)), coefficients])
@@ -74,22 +92,21 @@ def _invert(transfer: LoopTransfer, transform: Callable[[Any], ComplexArray], t:
     longest = float(later.max())
     shortest = max(float(later.min()), 0.02 * longest)
     for opening in OPENINGS:
-        scale = 3.0 / longest
-        contour = _Contour(scale, opening)
-        if not contour.passes(transfer):
-            contour = _Contour(scale * 3.0, opening)
-            if not contour.passes(transfer):
-                continue
-        values = _refined(contour, transform, later, shortest, start)
-        result[t > 0.0] = values
-        return result
+        for scale in (3.0 / longest, 9.0 / longest):
+            contour = _Contour(scale, opening)
+            if contour.passes(transfer, shortest):
+                values = _refined(contour, transform, later, shortest, start)
+                if values is not None:
+                    result[t > 0.0] = values
+                    return result
     msg = "no contour passes to the right of all closed-loop poles: the loop is unstable or too lightly damped to invert"
     raise LoopError(msg)
 
 
 def _refined(
     contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float, start: float
-) -> Array:
+) -> Array | None:
+    """Return the response at times ``t``, or None if the quadrature does not converge on this contour."""
     reach = contour.reach(shortest)
     previous: Array | None = None
     for count in (60, 120, 240, 480, 960, 1920, 3840):
@@ -104,8 +121,7 @@ def _refined(
         if previous is not None and np.max(np.abs(values - previous)) <= TOLERANCE * max(1.0, float(np.max(np.abs(values)))):
             return np.asarray(values)
         previous = values
-    msg = "the contour quadrature did not converge"
-    raise LoopError(msg)
+    return None
 
 
 class _Contour:
@@ -124,12 +140,22 @@ class _Contour:
         depth = 40.0 / (self.scale * shortest * np.sin(self.opening)) + 2.0 / np.sin(self.opening)
         return float(np.arccosh(max(depth, 2.0)))
 
-    def passes(self, transfer: LoopTransfer) -> bool:
-        """Whether no closed-loop pole lies to the right of the contour."""
-        s, _ = self(np.linspace(0.0, self.reach(1e-3 / self.scale), 4000))
+    def passes(self, transfer: LoopTransfer, shortest: float) -> bool:
+        """Whether no closed-loop pole whose mode has not yet decayed lies to the right of the contour.
+
+        The argument of 1 + L is followed around the region between the upper arm, cut where exp(s t) has decayed, the
+        vertical line above its tip, and the vertical line through the contour's vertex.
+        """
+        arm, _ = self(np.linspace(0.0, self.reach(shortest), 3000))
+        vertex, tip = arm[0].real, arm[-1]
+        top = max(2.0 * tip.imag, 2.0 * transfer.beyond(0.1))
+        along = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 1500)])
+        up = tip + 1j * (top - tip.imag) * along
+        bridge = np.linspace(tip.real, vertex, 200) + 1j * top
+        back = vertex + 1j * top * along[::-1]
+        path = np.concatenate([arm, up, bridge, back])
         with np.errstate(all="ignore"):
-            value = 1.0 + transfer(s)
-        value = value[np.isfinite(value)]
-        turn = float(np.sum(np.angle(value[1:] / value[:-1])))
-        # On the real axis the argument is 0; far out 1 + L -> 1. Each pole to the right would add a full turn on both arms.
-        return abs(turn + float(np.angle(value[0])) - float(np.angle(value[-1]))) < 1.0 and abs(np.angle(value[-1])) < 1.0
+            value = 1.0 + transfer(path)
+        if not np.isfinite(value).all():
+            return False
+        return abs(float(np.sum(np.angle(value[1:] / value[:-1])))) < 1.0

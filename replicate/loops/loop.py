@@ -20,6 +20,7 @@ from replicate.loops.signal import Signal
 
 ComplexArray = NDArray[np.complex128]
 
+TAIL = 1e13  # time constants of the slowest mode after which an algebraic tail no longer counts
 SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rounding, exp(-34) = 2e-15
 
 
@@ -135,8 +136,8 @@ class Loop:
         """
         self._require_stable("settling horizon")
         if not self.plant.is_rational:
-            # the branch point at s = 0 leaves an algebraic tail behind the slowest pole
-            return max(20.0 * SETTLED / abs(self.rightmost_pole().real), 100.0 * self.plant.dead_time)
+            # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
+            return TAIL / abs(self.rightmost_pole().real)
         return SETTLED / abs(self.rightmost_pole().real) + 4.0 * self.plant.dead_time
 
     def step(self, until: float | None = None) -> Signal:
@@ -219,7 +220,9 @@ class Loop:
             drive = setpoint * controller.feedforward(s_) + load
             return np.asarray(drive * plant(s_) / (1.0 + self.transfer(s_)) / s_)
 
-        breaks, coefficients = inversion.respond(self.transfer, transform, end, plant.dead_time)
+        breaks, coefficients = inversion.respond(
+            self.transfer, transform, end, plant.dead_time, 1.0 / abs(self.rightmost_pole().real)
+        )
         final_y, final_u = self._final(setpoint, load)
         output = Signal(breaks, coefficients, final=final_y, stable=self.is_stable)
         return Response(output, _control_from_output(controller, output, setpoint, final_u))

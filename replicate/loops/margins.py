@@ -83,11 +83,11 @@ def _algebraic_limit(transfer: LoopTransfer) -> float:
 
 def _phase_crossovers(transfer: LoopTransfer) -> Array:
     """Return all frequencies with L real and negative, up to where |L| only falls."""
-    end = transfer.beyond(max(0.02, 0.5 * (1.0 + transfer.feedthrough)))
+    end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     if transfer.dead_time:
         end += 2.5 * np.pi / transfer.dead_time  # one full turn more, so that a crossover below one is always included
     elif not transfer.feedthrough:
-        end = max(end, transfer.beyond(1e-9)) if transfer.plant.is_rational else end
+        end = transfer.beyond(1e-9 if transfer.plant.is_rational else 1e-6)
     w = frequency_grid(transfer, end, per_decade=80)
     value = transfer(1j * w)
     turned = value.imag[:-1] * value.imag[1:] < 0.0

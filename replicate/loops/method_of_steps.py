@@ -32,7 +32,7 @@ Array = NDArray[np.float64]
 
 DEGREE = 18
 RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at which a piece counts as resolved
-STIFFNESS = 5.0  # largest (spectral radius x piece length) to start from
+STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MAX_PIECES = 400_000
 
 

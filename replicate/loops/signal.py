@@ -123,8 +123,12 @@ class Signal:
         index = self._piece_index(flat)
         start = self.breaks[index]
         x = 2.0 * (flat - start) / self._lengths[index] - 1.0
-        table = chebyshev.basis(np.clip(x, -1.0, 1.0), self.degree)
-        values = np.einsum("kn,nk->n", table, self.coefficients[index])
+        significant = self._significant
+        table = chebyshev.basis(np.clip(x, -1.0, 1.0), significant.shape[0] - 1)
+        values = np.zeros_like(flat)
+        for row, column in zip(table, significant, strict=True):
+            row *= column[index]
+            values += row
         if flat.size and flat.min() < 0.0:
             values[flat < 0.0] = 0.0
         return np.asarray(values.reshape(times.shape))
@@ -132,6 +136,13 @@ class Signal:
     @cached_property
     def _lengths(self) -> Array:
         return np.diff(self.breaks)
+
+    @cached_property
+    def _significant(self) -> Array:
+        """Coefficients as rows, without the highest orders that no piece needs: evaluation is faster without them."""
+        size = np.max(np.abs(self.coefficients), axis=0)
+        last = np.nonzero(size > 1e-17 * size.max(initial=0.0))[0]
+        return np.ascontiguousarray(self.coefficients[:, : (last[-1] + 1 if last.size else 1)].T)
 
     @cached_property
     def _uniform(self) -> float:
@@ -383,9 +394,14 @@ class Signal:
         return coefficients
 
     def ie(self) -> float:
-        """Return the integral of the error ``final - y`` over [0, horizon]."""
+        """Return the integrated error over [0, horizon].
+
+        For a set-point response the integral of ``final - y``; for a load response, whose final value is zero, that of
+        the deviation y itself, so that a unit load step under integral action gives IE = 1/ki.
+        """
         self._require_stable("integrated error")
-        return float(np.sum(self._piece_integrals(self._error)))
+        error = float(np.sum(self._piece_integrals(self._error)))
+        return error if self.final else -error
 
     def ise(self) -> float:
         """Return the integral of the squared error ``(final - y)^2`` over [0, horizon]."""
