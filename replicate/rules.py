@@ -1,9 +1,9 @@
 """Tuning rules as data: small records that several papers can share.
 
-A rule says how the controller gains follow from the parameters of a process model. Its formulas are arithmetic
-expressions, kept as text in a TOML file next to the paper that prints them, so that they can be proofread against the
-page; a formula too long for one line may be a Python function instead. A rule may exist in several *variants*: as the
-paper prints it, with a printing error mended, as the authors evidently used it.
+A rule says how the controller gains follow from the parameters of a process model. Its formulas are
+arithmetic expressions, kept as text in a TOML file next to the paper that prints them, so that they can be
+proofread against the page; a formula too long for one line may be a Python function instead. A rule may exist
+in several *variants*: as the paper prints it, with a printing error mended, as the authors evidently used it.
 
 ```toml
 [[rule]]
@@ -51,8 +51,8 @@ _OPERATIONS: dict[type[ast.operator], Callable[[Any, Any], Number]] = {
 def formula(text: str) -> Formula:
     """Parse an arithmetic expression into a function of its symbols.
 
-    Allowed are numbers, names, parentheses, a leading minus and ``+ - * / **``. Integers stay integers, so that an
-    expression without decimals is exact for exact (`fractions.Fraction`) arguments.
+    Allowed are numbers, names, parentheses, a leading minus and ``+ - * / **``. Integers stay integers, so
+    that an expression without decimals is exact for exact (`fractions.Fraction`) arguments.
 
     Parameters
     ----------
@@ -163,7 +163,8 @@ class TuningRule:
 def load_rules(source: Traversable, variant: str = PRINTED) -> dict[str, TuningRule]:
     """Read the rules of a TOML file, in its order, each in the given variant.
 
-    A rule that does not define the variant, or defines only a part of it, keeps its printed form for the rest.
+    A rule that does not define the variant, or defines only a part of it, keeps its printed form for the
+    rest.
 
     Parameters
     ----------
@@ -185,7 +186,9 @@ def load_rules(source: Traversable, variant: str = PRINTED) -> dict[str, TuningR
             msg = f"{where} is given twice"
             raise PaperDefinitionError(msg)
         form = record.get(PRINTED, {}) | (record.get(variant, {}) if variant != PRINTED else {})
-        missing = [name for name in ("Kp", "Ti") if name not in form] + [n for n in ("id", "name") if n not in record]
+        missing = [name for name in ("Kp", "Ti") if name not in form] + [
+            n for n in ("id", "name") if n not in record
+        ]
         if missing:
             msg = f"{where} lacks {', '.join(missing)}"
             raise PaperDefinitionError(msg)

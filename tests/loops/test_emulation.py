@@ -1,4 +1,4 @@
-"""The emulated toolchain against scipy, mpmath and hand-made samples (python-control is what it is made of)."""
+"""The emulated toolchain (made of python-control) against scipy, mpmath and hand-made samples."""
 
 from types import SimpleNamespace
 
@@ -66,7 +66,8 @@ def test_without_dead_time_the_loop_is_the_rational_one():
 
 
 def test_dominant_pole_of_a_double_pole_is_accurate_to_rounding():
-    # k and ki that put a double pole at -1/2 for the plant of NUM and DEN, from P(-1/2) = P'(-1/2) = 0 in exact fractions.
+    # k and ki that put a double pole at -1/2 for the plant of NUM and DEN, from P(-1/2) = P'(-1/2) = 0 in
+    # exact fractions.
     n, dn = mp.polyval(NUM, -0.5), mp.polyval([NUM[0] * 2, NUM[1]], -0.5)
     s = mp.mpf(-0.5)
     d = s * mp.polyval(DEN, s)
@@ -85,7 +86,9 @@ def test_dominant_pole_of_a_pair_is_the_upper_one():
 
 
 def test_metrics_are_samples_not_interpolations():
-    response = SampledResponse(np.linspace(0.0, 2.0, 9), np.array([0.0, 0.1, 0.49, 0.5, 0.89, 0.95, 1.3, 0.9, 1.01]))
+    response = SampledResponse(
+        np.linspace(0.0, 2.0, 9), np.array([0.0, 0.1, 0.49, 0.5, 0.89, 0.95, 1.3, 0.9, 1.01])
+    )
     assert response.spacing == 0.25
     assert response.overshoot() == pytest.approx(0.3)
     assert response.settling_time(0.02) == 1.75

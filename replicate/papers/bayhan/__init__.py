@@ -1,0 +1,32 @@
+"""Bayhan, Soylemez, Bostan: overshoot-free PI controller tuning based on pole assignment."""
+
+from replicate.exhibits import Paper
+
+paper = Paper(
+    id="bayhan",
+    package=__name__,
+    title="Overshoot Free PI Controller Tuning Based on Pole Assignment",
+    authors=("Nevra Bayhan", "Mehmet Turan Söylemez", "Tuğba Bostan"),
+    # Venue and year are not on the page we have; they are how the paper is cited.
+    citation="N. Bayhan, M. T. Söylemez and T. Bostan, “Overshoot free PI controller tuning based on pole "
+    "assignment”, 5th International Conference on Electrical and Electronics Engineering (ELECO), Bursa, "
+    "2007.",
+    year=2007,
+    modules=(
+        "fig_1",
+        "equations",
+        "table_1",
+        "table_2",
+        "fig_2",
+        "table_3",
+        "fig_3",
+        "fig_4",
+        "fig_5",
+        "evidence",
+        "claims",
+    ),
+    numbered=("fig-1", "table-1", "table-2", "fig-2", "table-3", "fig-3", "fig-4", "fig-5"),
+    summary="A PI tuning rule for processes with dead time that puts a double pole where the designer "
+    "wants it, compared with ten well-known rules. The rule holds; the tables that compare it do not "
+    "follow the paper's own equation (3).",
+)

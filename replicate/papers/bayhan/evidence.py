@@ -1,0 +1,131 @@
+"""Two exhibits the paper does not have, which show how its tables were computed."""
+
+from __future__ import annotations
+
+import csv
+from typing import TYPE_CHECKING
+
+from replicate.papers.bayhan import paper
+from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, controllers
+from replicate.papers.bayhan.readings import AUTHORS, GAINS, GAINS_ON_GRID, TEXT, TEXT_ON_GRID
+from replicate.papers.bayhan.table_2 import table_2
+from replicate.papers.bayhan.table_3 import table_3
+from replicate.papers.bayhan.toolchain import sampled_response
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TABLES = ((table_2, EXAMPLE_41), (table_3, EXAMPLE_42))
+TIMES = ("settling_time", "delay_time", "rise_time")
+
+Printed = dict[tuple[str, str], str]
+
+
+def printed_values(table: str) -> Printed:
+    """Return the printed strings of a table by row and column."""
+    text = (paper.folder() / "printed" / f"{table}.csv").read_text(encoding="utf-8")
+    rows = csv.DictReader(text.splitlines())
+    return {(row["row"], column): cell for row in rows for column, cell in row.items() if column != "row"}
+
+
+def six_digits(number: float | str) -> str:
+    """Round to the six significant digits of the paper's tables.
+
+    Examples
+    --------
+    >>> six_digits("6.968"), six_digits(6.968004)
+    ('6.96800', '6.96800')
+    """
+    return f"{float(number):#.6g}"
+
+
+sample_grid = paper.table(
+    "sample-grid",
+    "The printed times count samples",
+    printed=False,
+    rows=tuple(f"{table.id}-{row}" for table, _ in TABLES for row in table.rows),
+    columns=("step", *TIMES),
+    caption="Each printed time divided by the sample step that the reconstruction finds for its row. A "
+    "time read off samples is a whole number of steps; a quotient that is not whole, to the six printed "
+    "digits, betrays a misprint.",
+    labels={
+        **{f"{table.id}-{row}": f"Table {table.id[-1]}, {row}" for table, _ in TABLES for row in table.rows},
+        "step": "Sample step",
+        "settling_time": "Settling time / step",
+        "delay_time": "Delay time / step",
+        "rise_time": "Rise time / step",
+    },
+)
+
+
+@sample_grid.reading("as-written", "Printed time in sample steps")
+def in_steps() -> pd.DataFrame:
+    """Divide every printed time by its row's sample step."""
+    import pandas as pd
+
+    rows: dict[str, list[float]] = {}
+    for table, process in TABLES:
+        printed = printed_values(table.id)
+        found = controllers(process, AUTHORS.convention, AUTHORS.variant)
+        for row in table.rows:
+            response = sampled_response(process, found[row].k, found[row].ki)
+            if response is None:
+                msg = f"{table.id}, {row}: the loop is unstable on the authors' grid, so its row has no "
+                "sample step"
+                raise ValueError(msg)
+            rows[f"{table.id}-{row}"] = [
+                response.spacing,
+                *(float(printed[row, time]) / response.spacing for time in TIMES),
+            ]
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(sample_grid.columns))
+
+
+match_count = paper.table(
+    "match-count",
+    "Printed values met, by assumption",
+    printed=False,
+    rows=tuple(assumption.id for assumption in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS)),
+    columns=("table_2", "table_3", "both", "within_1_percent", "printed"),
+    caption="How many printed values of Tables 2 and 3 come out equal at all six significant digits, under "
+    "each combination of integral gain (equation (3), or $1/T_i$) and method (exact, or Padé model and "
+    "sample grid).",
+    labels={
+        **{a.id: a.title for a in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS)},
+        "table_2": "Equal, Table 2",
+        "table_3": "Equal, Table 3",
+        "both": "Equal, both",
+        "within_1_percent": "Within 1 %, both",
+        "printed": "Printed values",
+    },
+)
+
+
+@match_count.reading("as-written", "Number of printed values met")
+def matches() -> pd.DataFrame:
+    """Count the printed values that each combination of assumptions meets."""
+    import pandas as pd
+
+    rows: dict[str, list[int]] = {}
+    for assumption in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS):
+        equal, near, cells = [], 0, 0
+        for table, process in TABLES:
+            computed = assumption.table(process, table.rows)
+            printed = printed_values(table.id)
+            pairs = [(text, number(computed, row, column)) for (row, column), text in printed.items()]
+            equal.append(sum(_equal(text, value) for text, value in pairs))
+            near += sum(
+                _equal(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs
+            )
+            cells += len(pairs)
+        rows[assumption.id] = [*equal, sum(equal), near, cells]
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(match_count.columns))
+
+
+def number(frame: pd.DataFrame, row: str, column: str) -> float:
+    """Return one number of a computed table."""
+    return float(frame[column].to_dict()[row])
+
+
+def _equal(printed: str, computed: float) -> bool:
+    # A printed 0 is an overshoot, a fraction: it is taken as zero to six decimals.
+    return six_digits(printed) == six_digits(computed) if float(printed) else abs(computed) < 0.5e-6

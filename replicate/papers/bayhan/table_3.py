@@ -1,0 +1,19 @@
+"""Table 3: time-domain specifications for Example 4.2, the rules that the paper found stable."""
+
+from replicate.papers.bayhan import paper
+from replicate.papers.bayhan.processes import EXAMPLE_42, SPECIFICATIONS
+from replicate.papers.bayhan.readings import LABELS, add_readings
+
+ROWS = ("PA", "ZN", "ISE", "IAE", "ITAE", "ITAESPC")
+
+table_3 = paper.table(
+    "table-3",
+    "Time-domain specifications for Example 4.2",
+    rows=ROWS,
+    columns=SPECIFICATIONS,
+    caption="Unit step of the set point, $G(s) = e^{-0.5s}/(0.1s+1)$, $a = 0.3$; the dead time is five "
+    "time constants. Conventions as in Table 2.",
+    labels=LABELS,
+    significant_digits=6,
+)
+add_readings(table_3, EXAMPLE_42)
