@@ -79,11 +79,12 @@ def _panels(canvas: Canvas) -> Iterator[tuple[str, Axes]]:
 
 def _outside_the_axes(canvas: Canvas) -> dict[str, Any]:
     """Describe texts and legends that belong to the figure as a whole; they are kept with the first panel."""
-    texts = [text.get_text() for text in canvas.texts if text.get_text()]
+    title = canvas.get_suptitle()
+    texts = [text.get_text() for text in canvas.texts if text.get_text() not in {"", title}]
     legends = [entry.get_text() for legend in canvas.legends for entry in legend.get_texts()]
     found: dict[str, Any] = {}
-    if canvas.get_suptitle():
-        found["figure_title"] = canvas.get_suptitle()
+    if title:
+        found["figure_title"] = title
     if texts:
         found["figure_texts"] = texts
     if legends:

@@ -18,7 +18,7 @@ from replicate.simplify import Points
 RELATIVE = 1e-7
 #: ... and up to this, absolute, where a value is zero but for rounding.
 ABSOLUTE = 1e-10
-#: Curves are the same up to this fraction of the size of their axes: ten times the error of thinning.
+#: Curves are the same up to this fraction of the size of their axes: a multiple of the error of thinning.
 CURVE = 2e-4
 
 Kind = Literal["value", "verdict", "printed", "curve", "axes", "new", "removed", "failed"]

@@ -42,6 +42,7 @@ def read_curves(panel: str, axes: Axes) -> list[CurvePoint]:
     break: the curve continues elsewhere. Artists placed in axes or figure coordinates only (not in data
     coordinates) are left out, as is what lies far outside the limits of the axes.
     """
+    axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
     rows: list[CurvePoint] = []
     used: dict[str, int] = {}
     for name, points in _curves(axes):

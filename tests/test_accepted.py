@@ -1,0 +1,246 @@
+"""The accepted state: the alarm rings for every kind of change, and only then."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+import synthetic
+
+from replicate.accepted import LOG, compare, write
+from replicate.changes import Change
+from replicate.check import check
+from replicate.errors import OutputError, ReplicateError
+from replicate.exhibits import Finding
+from replicate.outcome import Outcome
+from replicate.records import FigureResult, Results
+from replicate.verdicts import judge
+
+AXES: list[dict[str, Any]] = [
+    {
+        "panel": "panel 1",
+        "title": "",
+        "xlabel": "time",
+        "xscale": "linear",
+        "yscale": "linear",
+        "xlim": [0.0, 10.0],
+        "ylim": [0.0, 2.0],
+        "legend": ["output", "input"],
+    }
+]
+T = np.linspace(0.0, 10.0, 201)
+
+
+Curves = dict[str, tuple[Any, Any]]
+
+OUTPUT, INPUT = (T, 1.0 - np.exp(-T)), (T, np.where(T < 3.0, 0.0, 1.0))
+BOTH: Curves = {"output": OUTPUT, "input": INPUT}
+
+
+def figure(curves: Curves = BOTH, axes: list[dict[str, Any]] = AXES, png: bytes = b"png") -> FigureResult:
+    frames = [
+        pd.DataFrame({"panel": "panel 1", "curve": name, "x": x, "y": y}) for name, (x, y) in curves.items()
+    ]
+    return FigureResult("toy", "fig-1", "<svg/>", png, pd.concat(frames), axes)
+
+
+def outcome(folder: Path, drawn: FigureResult | None = None, **changes: Any) -> Outcome:
+    folder.mkdir(exist_ok=True)
+    toy = synthetic.paper(folder)
+    results: Results = synthetic.results(**changes)
+    results["toy", "fig-1"] = drawn or figure()
+    return Outcome([toy], results, {"toy": judge(toy, results, printed=synthetic.printed())})
+
+
+@pytest.fixture
+def data(tmp_path: Path) -> Path:
+    return tmp_path / "data"
+
+
+@pytest.fixture
+def accepted(tmp_path: Path, data: Path) -> Path:
+    folder = tmp_path / "figures"
+    write(outcome(data), folder, "first")
+    return folder
+
+
+def words(changes: list[Change]) -> list[str]:
+    return [str(change) for change in changes]
+
+
+def test_what_is_stored(accepted: Path) -> None:
+    assert sorted(path.name for path in (accepted / "toy").iterdir()) == [
+        "claims.csv",
+        "fig-1.csv",
+        "fig-1.json",
+        "fig-1.png",
+        "table-1.csv",
+    ]
+    assert (accepted / "toy/table-1.csv").read_text().splitlines()[:2] == [
+        "row,column,reading,computed,printed,verdict",
+        "A,x,as-written,1,1.0,reproduced",
+    ]
+    assert (
+        accepted / "toy/claims.csv"
+    ).read_text() == "row,verdict,computed\nbig,holds,3.1\nsmooth,fails,0.2\n"
+
+
+def test_nothing_differs_from_itself(accepted: Path, data: Path) -> None:
+    assert compare(outcome(data), accepted) == []
+    assert check(outcome(data), accepted) == []
+    before = (accepted / LOG).read_bytes()
+    assert write(outcome(data), accepted, "again") == []
+    assert (accepted / LOG).read_bytes() == before
+
+
+def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -> None:
+    noise = 1e-10 * np.sin(np.arange(len(T)))
+    finer = np.sort(np.r_[np.linspace(0.0, 10.0, 6001), 3.0])
+    resampled = {
+        "output": (finer, 1.0 - np.exp(-finer)),
+        "input": (np.array([0.0, 2.95, 3.0, 10.0]), np.array([0.0, 0.0, 1.0, 1.0])),
+    }
+    same = [
+        outcome(data, figure(png=b"other fonts")),
+        outcome(
+            data, figure({"output": (T, 1.0 - np.exp(-T) + noise), "input": (T, np.where(T < 3.0, 0.0, 1.0))})
+        ),
+        outcome(data, figure(resampled)),
+        outcome(data, as_written=synthetic.frame(ax=1.0 + 1e-10)),
+    ]
+    for present in same:
+        assert compare(present, accepted) == []
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"as_written": synthetic.frame(ax=1.001)}, "toy/table-1: A x (as-written) 1 -> 1.001"),
+        (
+            {"as_written": synthetic.frame(ax=1.3)},
+            "toy/table-1: A x (as-written) 1 -> 1.3; verdict reproduced -> reconstructed",
+        ),
+        (
+            {"findings": {"big": Finding("holds", 3.1, "e"), "smooth": Finding("holds-partly", 0.2, "e")}},
+            "toy/claims: smooth verdict fails -> holds-partly",
+        ),
+        ({"findings": {"big": Finding("holds", 3.1, "e")}}, "toy/claims: smooth is gone"),
+        (
+            {"errors": {"authors": "ValueError: no"}},
+            "toy/table-1: authors: could not be computed: ValueError: no",
+        ),
+    ],
+)
+def test_changed_values_and_verdicts(accepted: Path, data: Path, changed: dict[str, Any], said: str) -> None:
+    assert said in words(compare(outcome(data, **changed), accepted))
+
+
+@pytest.mark.parametrize(
+    ("curves", "said"),
+    [
+        (
+            {"output": (T, OUTPUT[1] + 0.002), "input": INPUT},
+            "curve 'output' moved: at most 0.1 % of the axes at (",
+        ),
+        (
+            {"output": OUTPUT, "input": (T, np.where(T < 3.05, 0.0, 1.0))},
+            "curve 'input' moved: at most 0.5 %",
+        ),
+        ({"output": OUTPUT, "input": (T[:-1], INPUT[1][:-1])}, "curve 'input' moved: at most 0.5 %"),
+        ({"output": INPUT, "input": OUTPUT}, "curve 'output' moved"),
+        ({"output": OUTPUT}, "curve 'input' is gone"),
+        ({"output": OUTPUT, "input": INPUT, "noise": INPUT}, "curve 'noise' is new"),
+    ],
+)
+def test_changed_curves(accepted: Path, data: Path, curves: dict[str, tuple[Any, Any]], said: str) -> None:
+    (first, *_) = words(compare(outcome(data, figure(curves)), accepted))
+    assert first.startswith(f"toy/fig-1: {said}")
+
+
+@pytest.mark.parametrize(
+    ("changed", "said"),
+    [
+        ({"xlim": [0.0, 9.0]}, "xlim of 'panel 1' is now [0, 9] (was [0, 10])"),
+        (
+            {"legend": ["input", "output"]},
+            "legend of 'panel 1' is now ['input', 'output'] (was ['output', 'input'])",
+        ),
+        ({"xlabel": "t"}, "xlabel of 'panel 1' is now 't' (was 'time')"),
+        ({"panel": "other"}, "panel 'panel 1' is gone"),
+        ({"texts": [{"text": "peak"}]}, "texts of 'panel 1' is now [{'text': 'peak'}] (was nothing)"),
+    ],
+)
+def test_changed_axes(accepted: Path, data: Path, changed: dict[str, Any], said: str) -> None:
+    axes = [{**AXES[0], **changed}]
+    assert f"toy/fig-1: {said}" in words(compare(outcome(data, figure(axes=axes)), accepted))
+
+
+def test_missing_and_superfluous_files(accepted: Path, data: Path) -> None:
+    (accepted / "toy/fig-1.json").unlink()
+    (accepted / "toy/table-1.csv").unlink()
+    (accepted / "toy/table-9.csv").write_text("row\n")
+    present = outcome(data)
+    assert words(compare(present, accepted)) == [
+        "toy/table-1: has no accepted state yet",
+        "toy/fig-1: the accepted fig-1.json is missing",
+        "toy/table-9: was accepted, but is not computed any more",
+    ]
+    assert len(compare(replace(present, complete=False), accepted)) == 2
+    assert write(present, accepted, "clean up")
+    assert compare(present, accepted) == []
+    assert not (accepted / "toy/table-9.csv").exists()
+
+
+def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
+    (accepted / "toy/fig-1.json").write_text("[{\n")
+    with pytest.raises(OutputError, match=r"^toy/fig-1.json:\d: is no JSON"):
+        compare(outcome(data), accepted)
+
+
+def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None:
+    present = outcome(data, figure(png=b"other fonts"), as_written=synthetic.frame(ax=1.001))
+    (change,) = write(present, accepted, "a better\n solver")
+    assert change.exhibit == "table-1"
+    assert (accepted / "toy/fig-1.png").read_bytes() == b"png"
+    assert (
+        (accepted / LOG)
+        .read_text()
+        .endswith("\n## a better solver\n\n- toy/table-1: A x (as-written) 1 -> 1.001\n")
+    )
+    assert "## first" in (accepted / LOG).read_text()
+    assert compare(present, accepted) == []
+
+
+def test_accepting_needs_a_reason_and_whole_results(accepted: Path, data: Path) -> None:
+    with pytest.raises(ReplicateError, match="needs a reason"):
+        write(outcome(data), accepted, "  ")
+    with pytest.raises(ReplicateError, match=r"nothing is accepted.*toy/table-1 \(authors\)"):
+        write(outcome(data, errors={"authors": "ValueError: no"}), accepted, "why not")
+
+
+def test_accepting_is_all_or_nothing(accepted: Path, data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()}
+    write_bytes = Path.write_bytes
+
+    def full_disk(self: Path, content: bytes) -> int:
+        if self.suffix == ".png":
+            raise OSError(28, "No space left on device", str(self))
+        return write_bytes(self, content)
+
+    monkeypatch.setattr(Path, "write_bytes", full_disk)
+    changed = outcome(data, figure({"output": INPUT}), as_written=synthetic.frame(ax=1.5))
+    with pytest.raises(OutputError, match="No space left"):
+        write(changed, accepted, "half")
+    assert {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()} == before
+
+
+def test_check_wants_explanations_and_comparisons(accepted: Path, data: Path) -> None:
+    both = {"as_written": synthetic.frame(ax=7.0), "authors": synthetic.frame(ax=7.0)}
+    problems = check(outcome(data, **both), accepted)
+    assert any("has no ledger entry" in problem for problem in problems)
+    assert any("verdict reproduced -> unexplained" in problem for problem in problems)
+    assert check(Outcome([], {}, {}), accepted) == ["no printed value was compared with a computed one"]

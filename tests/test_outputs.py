@@ -1,0 +1,166 @@
+"""Files that a run leaves behind: layout, determinism, and nothing half written."""
+
+from __future__ import annotations
+
+import csv
+import io
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import synthetic
+
+from replicate.errors import OutputError
+from replicate.judgement import Judgement
+from replicate.outputs import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, table_text, write_outputs
+from replicate.staging import staged
+from replicate.verdicts import judge
+
+
+def written(folder: Path, **changes: object) -> Path:
+    data = folder / "data"
+    data.mkdir(parents=True)
+    toy = synthetic.paper(data)
+    results = synthetic.results(**changes)  # type: ignore[arg-type]
+    judgement = judge(toy, results, printed=synthetic.printed(by="4.6"))
+    out = folder / "out"
+    with staged(out) as fresh:
+        write_outputs([toy], results, judgement, fresh)
+    return out
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_the_three_lists(tmp_path: Path) -> None:
+    out = written(tmp_path)
+    results, verdicts, exhibits = (rows(out / f"{name}.csv") for name in ("results", "verdicts", "exhibits"))
+    assert tuple(results[0]) == RESULT_COLUMNS
+    assert tuple(verdicts[0]) == VERDICT_COLUMNS
+    assert tuple(exhibits[0]) == EXHIBIT_COLUMNS
+    assert results[0] == {
+        "paper": "toy",
+        "exhibit": "table-1",
+        "row": "A",
+        "column": "x",
+        "printed": "1.0",
+        "reading": "as-written",
+        "computed": "1",
+        "match": "equal",
+    }
+    assert [row["status"] for row in exhibits] == ["done", "done", "done", "not-computable"] or len(
+        exhibits
+    ) == 4
+    assert {row["row"]: row["verdict"] for row in verdicts if row["column"] == "claim"} == {
+        "big": "holds",
+        "smooth": "fails",
+    }
+
+
+def test_tables_and_figures(tmp_path: Path) -> None:
+    out = written(tmp_path, as_written=synthetic.frame(ax=2.0 / 3.0, ay=float("nan")))
+    assert (out / "tables/toy/table-1.as-written.csv").read_text() == "row,x,y\nA,0.666666666667,\nB,3,4\n"
+    assert (out / "tables/toy/table-1.authors.csv").is_file()
+    assert (out / "figures/toy/fig-1.svg").read_text() == "<svg/>"
+    assert (out / "figures/toy/fig-1.png").read_bytes() == b"png"
+    assert (out / "figures/toy/fig-1.csv").read_text() == "panel,curve,x,y\n"
+
+
+def test_a_reading_that_raised_has_no_table(tmp_path: Path) -> None:
+    out = written(tmp_path, errors={"authors": "ValueError: no"})
+    assert [path.name for path in (out / "tables/toy").iterdir()] == ["table-1.as-written.csv"]
+    suite = ET.parse(out / "junit.xml").getroot()  # noqa: S314  -- written by us
+    (error,) = suite.iter("error")
+    assert error.get("message") == "ValueError: no"
+
+
+def test_junit_counts(tmp_path: Path) -> None:
+    root = ET.parse(written(tmp_path) / "junit.xml").getroot()  # noqa: S314  -- written by us
+    toy, check = root.findall("testsuite")
+    assert (toy.get("name"), toy.get("tests"), toy.get("errors")) == ("toy", "6", "0")
+    # 4.6 is printed, 4.0 computed: more than two units off, and no ledger says why
+    (failure,) = toy.iter("failure")
+    assert "printed 4.6, computed 4" in str(failure.get("message"))
+    assert check.get("failures") == "1"
+
+
+def test_tables_keep_text_and_blanks() -> None:
+    frame = pd.DataFrame({"rule": ["ki = 1/Ti", None], "n": [3, 4], "x": [-0.0, 1e-20]}, index=["a", "b"])
+    assert table_text(frame) == "row,rule,n,x\na,ki = 1/Ti,3,0\nb,,4,1e-20\n"
+
+
+def test_same_results_same_bytes(tmp_path: Path) -> None:
+    one, other = written(tmp_path / "1"), written(tmp_path / "2")
+    files = {path.relative_to(one): path.read_bytes() for path in one.rglob("*") if path.is_file()}
+    assert files == {
+        path.relative_to(other): path.read_bytes() for path in other.rglob("*") if path.is_file()
+    }
+    assert len(files) == 9
+    assert not any(str(tmp_path).encode() in content for content in files.values())
+
+
+def test_an_interrupted_run_leaves_the_earlier_state(tmp_path: Path) -> None:
+    (tmp_path / "results.csv").write_text("old")
+    (tmp_path / "cache").mkdir()
+
+    def interrupted() -> None:
+        with staged(tmp_path) as fresh:
+            (fresh / "results.csv").write_text("half")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["cache", "results.csv"]
+    assert (tmp_path / "results.csv").read_text() == "old"
+
+
+def test_a_finished_run_replaces_what_it_wrote_and_nothing_else(tmp_path: Path) -> None:
+    for name in ("tables/gone.csv", "handouts/kept.pdf"):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text("old")
+    with staged(tmp_path) as fresh:
+        (fresh / "tables").mkdir()
+        (fresh / "tables/new.csv").write_text("new")
+    assert sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*") if path.is_file()) == [
+        "handouts/kept.pdf",
+        "tables/new.csv",
+    ]
+
+
+def test_a_failing_swap_puts_everything_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("a", "b"):
+        (tmp_path / name).write_text("old")
+    rename = Path.rename
+
+    def fails_on_b(self: Path, target: Path) -> Path:
+        if self.name == "b" and self.parent.name == "new":
+            raise OSError(28, "No space left on device", str(target))
+        return rename(self, target)
+
+    def write() -> None:
+        with staged(tmp_path) as fresh:
+            (fresh / "a").write_text("new")
+            (fresh / "b").write_text("new")
+
+    monkeypatch.setattr(Path, "rename", fails_on_b)
+    with pytest.raises(OutputError, match="No space left on device"):
+        write()
+    assert {path.name: path.read_text() for path in tmp_path.iterdir()} == {"a": "old", "b": "old"}
+
+
+def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OutputError, match=r"file.*cannot be written: "), staged(tmp_path / "file" / "build"):
+        pass
+
+
+def test_an_empty_judgement_is_still_well_formed(tmp_path: Path) -> None:
+    with staged(tmp_path) as fresh:
+        write_outputs([], {}, Judgement(), fresh)
+    assert rows(tmp_path / "results.csv") == []
