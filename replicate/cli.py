@@ -161,10 +161,7 @@ def check(
     for problem in problems:
         typer.echo(problem)
     compared = sum(row.match != "none" for row in outcome.judgement.results)
-    count = f"{len(problems)} problem{'' if len(problems) == 1 else 's'}" if problems else "no problems"
-    typer.echo(
-        f"{count}; {compared} comparisons in {len(outcome.results)} exhibits of {len(outcome.papers)} papers"
-    )
+    typer.echo(f"problems: {len(problems)}; comparisons: {compared}; exhibits: {len(outcome.results)}")
     _exit_if_broken(outcome)
     raise typer.Exit(DIFFERS if problems else 0)
 

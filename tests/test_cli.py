@@ -1,0 +1,238 @@
+"""The command line: what it says, what it leaves behind, and its exit status."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import installed_paper
+import pytest
+
+from replicate import cli
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Iterator[Path]:
+    with installed_paper.installed(tmp_path / "site") as folder:
+        yield folder
+
+
+@pytest.fixture
+def replicate(
+    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> Run:
+    """Run the command in an empty folder and return exit status, output and error output."""
+    assert folder.is_dir()
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    monkeypatch.setenv("NO_COLOR", "1")
+    monkeypatch.delenv("COLUMNS", raising=False)
+
+    def run(*arguments: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["replicate", *arguments])
+        capsys.readouterr()
+        with pytest.raises(SystemExit) as exit_:
+            cli.main()
+        code = exit_.value.code
+        assert isinstance(code, int)
+        return code, *capsys.readouterr()
+
+    return run
+
+
+def accepted(replicate: Run) -> str:
+    """Accept the present state of the small paper in a folder of its own."""
+    Path("accepted").mkdir()
+    assert replicate("accept", "lab", "--reason", "first", "--accepted", "accepted", "-j1")[0] == 0
+    return "accepted"
+
+
+def test_help_and_import_load_nothing_heavy() -> None:
+    heavy = ["numpy", "scipy", "control", "matplotlib", "pandas", "jinja2", "joblib", "schemdraw"]
+    code = (
+        "import sys; sys.argv = ['replicate', '--help']\n"
+        "from replicate.cli import main\n"
+        "try: main()\n"
+        f"except SystemExit: print(sorted(set({heavy}) & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "show" in done.stdout
+    assert done.stdout.endswith("[]\n")
+
+
+def test_list(replicate: Run) -> None:
+    status, out, _ = replicate("list", "lab")
+    assert status == 0
+    for part in ("table-1", "as-written, decimal", "1 claims", "not computable"):
+        assert part in out
+
+
+def test_show_a_table(replicate: Run) -> None:
+    status, out, err = replicate("show", "lab", "table-1", "-j1")
+    assert status == 0
+    assert "computed 1/2  lab/table-1 (as-written)" in err
+    lines = [line.split() for line in out.splitlines()]
+    assert ["row", "printed", "as-written", "decimal", "verdict"] in lines
+    assert ["2", "root", "1.414", "1.41421356", "=", "1.41421356", "=", "✓", "reproduced"] in lines
+    assert ["log", "0.301", "0.693147181", "≠", "0.301029996", "=", "↻", "reconstructed"] in lines
+    assert "✎ 3 log: misprint (misprint), should be 0.477" in out
+    assert "The last digit is wrong: 0.477121" in out
+    assert "Logarithms to base ten" in out
+    assert max(map(len, out.splitlines())) <= 100
+    assert "\x1b" not in out + err
+
+
+def test_show_one_reading(replicate: Run) -> None:
+    _, out, _ = replicate("show", "lab", "table-1", "--reading", "decimal", "-j1")
+    assert "decimal" in out
+    assert "as-written" not in out
+    status, _, err = replicate("show", "lab", "table-1", "--reading", "octal")
+    assert status == 2
+    assert "known: as-written, decimal" in err
+
+
+@pytest.mark.parametrize(
+    ("exhibit", "said"),
+    [
+        ("fig-1", "output"),
+        ("fig-2", "not computable: It shows the laboratory."),
+        ("claims", "✓ holds  1.41421356"),
+    ],
+)
+def test_show_everything_else(replicate: Run, exhibit: str, said: str) -> None:
+    status, out, _ = replicate("show", "lab", exhibit, "-j1")
+    assert status == 0
+    assert said in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("show", "lap", "table-1"), "replicate: there is no paper 'lap'; known: "),
+        (
+            ("show", "lab", "table-9"),
+            "replicate: lab has no exhibit 'table-9'; known: table-1, fig-1, fig-2, claims",
+        ),
+        (("accept", "lab"), "replicate: accepting needs a reason"),
+        (("accept", "lab/x", "--reason", "y"), "replicate: lab has no exhibit 'x'"),
+    ],
+)
+def test_errors_are_one_line(replicate: Run, arguments: tuple[str, ...], said: str) -> None:
+    status, out, err = replicate(*arguments)
+    assert (status, out) == (2, "")
+    assert err.startswith(said)
+    assert err.count("\n") == 1
+
+
+@pytest.mark.parametrize("arguments", [("report", "--colour"), ("nonsense",), ("check", "--jobs", "0")])
+def test_bad_options(replicate: Run, arguments: tuple[str, ...]) -> None:
+    status, _, err = replicate(*arguments)
+    assert status == 2
+    assert "Traceback" not in err
+
+
+def test_a_malformed_file_is_named(replicate: Run, folder: Path) -> None:
+    (folder / "printed/table-1.csv").write_text("number,root,log\n2,1.414,0.3o1\n3,1.732,0.478\n")
+    status, _, err = replicate("check", "lab", "-j1")
+    assert status == 2
+    assert "printed/table-1.csv:2" in err
+    assert "0.3o1" in err.splitlines()[-1]
+
+
+def test_debug_shows_where(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "argv", ["replicate", "show", "lap", "table-1", "--debug"])
+    with pytest.raises(Exception, match="no paper 'lap'"):
+        cli.main()
+    monkeypatch.setattr("replicate.discovery.find_paper", lambda _: 1 / 0)
+    status, _, err = replicate("show", "lab", "table-1")
+    assert status == 2
+    assert err == "replicate: unexpected ZeroDivisionError: division by zero (--debug shows where)\n"
+
+
+def test_check(replicate: Run, folder: Path) -> None:
+    check = ("check", "lab", "-j1", "--accepted", accepted(replicate))
+    status, out, err = replicate(*check)
+    assert (status, out) == (0, "problems: 0; comparisons: 9; exhibits: 3\n")
+    assert "4 of 4 results kept from an earlier run" in err
+    printed = folder / "printed/table-1.csv"
+    printed.write_text(printed.read_text().replace("1.732", "1.742"))
+    status, out, _ = replicate(*check)
+    assert status == 1
+    assert "3 root" in out
+    assert "verdict reproduced -> near" in out
+
+
+def test_check_fails_without_accepted_state(replicate: Run, tmp_path: Path) -> None:
+    status, out, _ = replicate("check", "lab", "-j1", "--accepted", str(tmp_path / "nothing"))
+    assert status == 1
+    assert "lab/table-1: has no accepted state yet" in out
+
+
+def test_an_exhibit_that_raises_breaks_check(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    check = ("check", "lab", "-j1", "--no-cache", "--accepted", accepted(replicate))
+    monkeypatch.setenv("LAB_BREAKS", "1")
+    status, out, err = replicate(*check)
+    assert status == 2
+    assert "failed: lab/table-1 (as-written): ValueError: the kettle is empty" in err
+    assert "the kettle is empty" in out
+
+
+def test_report(replicate: Run) -> None:
+    status, out, _ = replicate("report", "lab", "-j1")
+    assert status == 0
+    assert Path("build/report/index.html").is_file()
+    assert Path("build/report/lab.html").is_file()
+    assert out.endswith("report: build/report/index.html\n")
+    lines = [line.split() for line in out.splitlines()]
+    assert ["printed", "values", "4", "4"] in lines
+    assert ["✓", "reproduced", "2", "2"] in lines
+    assert ["✎", "misprint", "1", "1"] in lines
+    assert len(lines) < 24
+    before = contents(Path("build"))
+    assert replicate("report", "lab", "-j1", "--no-cache")[0] == 0
+    assert contents(Path("build")) == before
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {
+        path: path.read_bytes() for path in folder.rglob("*") if path.is_file() and "cache" not in path.parts
+    }
+
+
+def test_an_interrupted_report_leaves_the_earlier_one(
+    replicate: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replicate("report", "lab", "-j1")
+    before = contents(Path("build"))
+
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("replicate.report.pages.build_report", interrupted)
+    status, _, _ = replicate("report", "lab", "-j1")
+    assert status == 130
+    assert contents(Path("build")) == before
+
+
+def test_a_report_with_a_broken_exhibit_is_written_and_says_so(
+    replicate: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("LAB_BREAKS", "1")
+    status, out, err = replicate("report", "lab", "-j1")
+    assert status == 2
+    assert "the kettle is empty" in err
+    assert "report: build/report/index.html" in out
+    assert (
+        "the kettle is empty" in Path("build/exhibits.csv").read_text() + Path("build/junit.xml").read_text()
+    )
+
+
+def test_an_output_folder_that_cannot_be_written(replicate: Run) -> None:
+    Path("file").write_text("")
+    status, _, err = replicate("report", "lab", "--out", "file/build")
+    assert status == 2
+    assert err.startswith("replicate: file/build: cannot be written: ")
