@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from typing import TYPE_CHECKING
 
 from replicate.papers.bayhan import paper
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 TABLES = ((table_2, EXAMPLE_41), (table_3, EXAMPLE_42))
+STEP_ROWS = tuple(f"{table.id}-{row}" for table, _ in TABLES for row in table.rows)
 TIMES = ("settling_time", "delay_time", "rise_time")
 
 Printed = dict[tuple[str, str], str]
@@ -43,22 +45,25 @@ sample_grid = paper.table(
     "sample-grid",
     "The printed times count samples",
     printed=False,
-    rows=tuple(f"{table.id}-{row}" for table, _ in TABLES for row in table.rows),
-    columns=("step", *TIMES),
-    caption="Each printed time divided by the sample step that the reconstruction finds for its row. A "
-    "time read off samples is a whole number of steps; a quotient that is not whole, to the six printed "
-    "digits, betrays a misprint.",
+    rows=STEP_ROWS,
+    columns=("step", *TIMES, "off_settling", "off_delay", "off_rise"),
+    caption="Each printed time in sample steps of its row, and how far it is from the nearest whole number "
+    "of steps, in units of its sixth significant digit. A time read off samples is a whole number of "
+    "steps, so it can be off by half a unit, from rounding, but not by more.",
     labels={
-        **{f"{table.id}-{row}": f"Table {table.id[-1]}, {row}" for table, _ in TABLES for row in table.rows},
+        **{key: f"Table {key[6]}, {key[8:]}" for key in STEP_ROWS},
         "step": "Sample step",
-        "settling_time": "Settling time / step",
-        "delay_time": "Delay time / step",
-        "rise_time": "Rise time / step",
+        "settling_time": "Settling time, steps",
+        "delay_time": "Delay time, steps",
+        "rise_time": "Rise time, steps",
+        "off_settling": "Settling time, off by",
+        "off_delay": "Delay time, off by",
+        "off_rise": "Rise time, off by",
     },
 )
 
 
-@sample_grid.reading("as-written", "Printed time in sample steps")
+@sample_grid.reading("as-written", "Printed times in sample steps")
 def in_steps() -> pd.DataFrame:
     """Divide every printed time by its row's sample step."""
     import pandas as pd
@@ -70,14 +75,24 @@ def in_steps() -> pd.DataFrame:
         for row in table.rows:
             response = sampled_response(process, found[row].k, found[row].ki)
             if response is None:
-                msg = f"{table.id}, {row}: the loop is unstable on the authors' grid, so its row has no "
-                "sample step"
+                msg = f"{table.id}, {row}: the loop is unstable on the authors' grid: no sample step"
                 raise ValueError(msg)
-            rows[f"{table.id}-{row}"] = [
-                response.spacing,
-                *(float(printed[row, time]) / response.spacing for time in TIMES),
-            ]
+            step = response.spacing
+            times = [float(printed[row, time]) for time in TIMES]
+            off = [(time - round(time / step) * step) / last_digit(time) for time in times]
+            rows[f"{table.id}-{row}"] = [step, *(time / step for time in times), *off]
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(sample_grid.columns))
+
+
+def last_digit(value: float) -> float:
+    """Return the weight of the sixth significant digit.
+
+    Examples
+    --------
+    >>> last_digit(14.8902), last_digit(0.0387)
+    (0.0001, 1e-07)
+    """
+    return float(f"1e{math.floor(math.log10(abs(value))) - 5}")
 
 
 match_count = paper.table(

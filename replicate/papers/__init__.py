@@ -1,0 +1,1 @@
+"""The papers that come with the project, one package each."""

@@ -1,0 +1,380 @@
+"""Bayhan, Soylemez, Bostan against sympy, mpmath, scipy and closed forms, which share no code with it."""
+
+import csv
+import math
+from fractions import Fraction
+
+import mpmath as mp
+import numpy as np
+import pytest
+import sympy as sp
+from scipy import linalg, optimize
+
+from replicate.papers.bayhan import paper, pole_assignment
+from replicate.papers.bayhan.claims import UNSTABLE
+from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, competing_rules, controllers
+from replicate.papers.bayhan.readings import AUTHORS, GAINS, TEXT
+
+K, L, TAU, A, S = sp.symbols("K L tau a s", positive=True)
+
+
+@pytest.fixture(scope="module")
+def exhibits():
+    return paper.load().exhibits
+
+
+# --------------------------------------------------------------------------------------------------- formulas
+
+
+def pade(n):
+    """(5) with the coefficients of e^x's diagonal Padé approximant, from the factorial formula."""
+    x = S * L
+    terms = [sp.factorial(2 * n - k) * sp.binomial(n, k) / sp.factorial(2 * n) * x**k for k in range(n + 1)]
+    return sum((-1) ** k * term for k, term in enumerate(terms)), sum(terms)
+
+
+def characteristic(kp, ki):
+    """Monic closed-loop polynomial of K/(tau s + 1) times Padé-2 under kp + ki/s, from the block diagram."""
+    num, den = pade(2)
+    return sp.Poly(sp.expand(((TAU * S + 1) * den * S + (kp * S + ki) * K * num) * 12 / (TAU * L**2)), S)
+
+
+def test_characteristic_polynomial_14_is_that_of_the_pade_loop():
+    kp, ki = sp.symbols("kp ki")
+    ours = pole_assignment.characteristic(K, L, TAU, (kp, ki))
+    for coefficient, expected in zip(ours, reversed(characteristic(kp, ki).all_coeffs()), strict=True):
+        assert sp.simplify(coefficient - expected) == 0
+
+
+def test_gains_21_22_leave_exactly_the_residue_polynomial_23_24():
+    # Not solved for: the loop polynomial is divided by the double pole, and nothing may remain.
+    polynomial = characteristic(pole_assignment.kp(K, L, TAU, A), pole_assignment.ki(K, L, TAU, A))
+    quotient, remainder = sp.div(polynomial, sp.Poly((S + A / TAU) ** 2, S))
+    assert [sp.simplify(c) for c in remainder.all_coeffs()] == [0]
+    leading, c1, c0 = quotient.all_coeffs()
+    assert sp.simplify(leading) == 1
+    assert sp.simplify(c0 - pole_assignment.c0(L, TAU, A)) == 0
+    assert sp.simplify(c1 - pole_assignment.c1(L, TAU, A)) == 0
+    lost = sp.factor(sp.simplify(c1 - pole_assignment.c1_as_printed(L, TAU, A)))
+    delta = (A**2 * L**2 + 6 * A * TAU * L + 12 * TAU**2) ** 2
+    assert sp.simplify(lost - 864 * TAU**3 * (A * L + TAU) / (L * delta)) == 0
+
+
+def test_expanded_product_20():
+    c0, c1 = sp.symbols("c0 c1")
+    expected = sp.Poly(sp.expand((S + A / TAU) ** 2 * (S**2 + c1 * S + c0)), S).all_coeffs()
+    ours = pole_assignment.assigned(TAU, A, (c0, c1))
+    assert all(sp.simplify(x - y) == 0 for x, y in zip(ours, reversed(expected), strict=True))
+
+
+@pytest.mark.parametrize("process", [EXAMPLE_41, EXAMPLE_42, PT326], ids=lambda process: process.title)
+def test_condition_27_says_whether_the_double_pole_is_the_rightmost(process):
+    for a in (0.5 * process.a, process.a, 1.5 * process.a):
+        values = {K: process.K, L: process.L, TAU: process.tau}
+        gains = pole_assignment.assign(process.K, process.L, process.tau, a)
+        coefficients = [float(c.subs(values)) for c in characteristic(gains.Kp, gains.Ki).all_coeffs()]
+        with mp.workdps(30):
+            poles = sorted(
+                mp.polyroots(coefficients, maxsteps=300, extraprec=200),
+                key=lambda p: abs(p + a / process.tau),
+            )
+        rest = poles[2:]  # without the two nearest to -a/tau
+        assert process.dominance(a).holds == (max(p.real for p in rest) < -a / process.tau)
+
+
+# ---------------------------------------------------------------------------------------------------- Table 1
+
+# Transcribed a second time: kp = c/K r^p; ti = tau/d r^q, or tau/(d + q r); r = L/tau.
+POWER = {
+    "ISE": (1.305, -0.959, 0.492, 0.739),
+    "IAE": (0.984, -0.986, 0.608, 0.707),
+    "ITSE": (1.279, -0.945, 0.535, -0.586),
+    "ITAE": (0.859, -0.977, 0.674, 0.68),
+}
+LINEAR = {
+    "IAESPC": (0.758, -0.861, 1.02, -0.323),
+    "ITSESPC": (0.712, -0.921, 0.968, -0.247),
+    "ITAESPC": (0.586, -0.916, 1.03, -0.165),
+}
+
+
+@pytest.mark.parametrize("r", [0.3, 1.0, 2.2])
+def test_printed_rules_against_a_second_transcription(r):
+    gain, tau = 1.7, 0.6
+    symbols = {"K": gain, "tau": tau, "L": r * tau, "tau_cl": 0.25}
+    expected = {
+        "ZN": (0.9 / (gain * r), 3 * r * tau),
+        "CC": ((0.9 + r / 12) / (gain * r), (3.33 * r + 0.33 * r * r) / (1 + 2.2 * r) / gain),
+        "IMC": (tau / gain / (0.25 + r * tau), tau),
+    }
+    expected |= {id: (c / gain * r**p, tau / d * r**q) for id, (c, p, d, q) in POWER.items()}
+    expected |= {id: (c / gain * r**p, tau / (d + q * r)) for id, (c, p, d, q) in LINEAR.items()}
+    rules = competing_rules()
+    assert set(rules) == set(expected)
+    for id, (kp, ti) in expected.items():
+        found = rules[id].evaluate(**symbols)
+        assert (found.kp, found.ti) == (pytest.approx(kp, rel=1e-14), pytest.approx(ti, rel=1e-14)), id
+
+
+def test_rules_at_exact_fractions():
+    symbols = {"K": Fraction(7, 8), "tau": Fraction(2, 3), "L": Fraction(1, 5), "tau_cl": Fraction(1, 10)}
+    assert competing_rules()["IMC"].evaluate(**symbols) == competing_rules("authors")["IMC"].evaluate(
+        **symbols
+    )
+    assert competing_rules()["IMC"].evaluate(**symbols).kp == Fraction(2, 3) / (
+        Fraction(7, 8) * Fraction(3, 10)
+    )
+    assert competing_rules()["ZN"].evaluate(**symbols).ti == Fraction(3, 5)
+    # Cohen-Coon with r = L/tau = 3/10: L (30 + 9/10)/(9 + 6) = 103/250.
+    assert competing_rules("authors")["CC"].evaluate(**symbols).ti == Fraction(103, 250)
+
+
+@pytest.mark.parametrize("variant", ["printed", "corrected", "authors"])
+def test_integral_times_are_times_once_the_print_is_mended(variant):
+    """Measured in other units of time, and with another gain, a rule must give the same controller."""
+    symbols = {"K": 2.0, "tau": 0.7, "L": 0.9, "tau_cl": 0.3}
+    scaled = {name: value * (5.0 if name == "K" else 60.0) for name, value in symbols.items()}
+    wrong = set()
+    for id, rule in competing_rules(variant).items():
+        here, there = rule.evaluate(**symbols), rule.evaluate(**scaled)
+        assert there.kp == pytest.approx(here.kp / 5.0)
+        if not math.isclose(there.ti, 60.0 * here.ti):
+            wrong.add(id)
+    assert wrong == ({"CC"} if variant == "printed" else set())
+
+
+# ------------------------------------------------------------------------------- the tables, as the text says
+
+
+def imc_response(t):
+    """Unit step response of e^{-s}/(1.06 s) under unit feedback: what the IMC rule of Example 4.1 makes of
+    the loop.
+
+    Method of steps in closed form: y(t) = sum over n of (-1)^(n+1) ((t - n)/1.06)^n / n!, n = 1, ...,
+    floor(t).
+    """
+    rate = 1 / mp.mpf("1.06")
+    return mp.fsum((-1) ** (n + 1) * (rate * (t - n)) ** n / mp.factorial(n) for n in range(1, int(t) + 1))
+
+
+def test_imc_row_as_written_is_the_closed_form():
+    computed = TEXT.table(EXAMPLE_41, ["IMC"]).loc["IMC"]
+    assert computed["delay_time"] == pytest.approx(1 + 0.5 * 1.06, rel=1e-11)
+    assert computed["rise_time"] == pytest.approx(0.8 * 1.06, rel=1e-11)
+    with mp.workdps(40):
+        peak = mp.findroot(lambda t: mp.diff(imc_response, t), 3.05)
+        assert computed["overshoot"] == pytest.approx(float(imc_response(peak) - 1), rel=1e-10)
+        grid = [mp.mpf(i) / 50 for i in range(450, 750)]
+        last = max(t for t in grid if abs(imc_response(t) - 1) > 0.02)
+        side = 1 if imc_response(last) > 1 else -1
+        exit_time = mp.findroot(
+            lambda t: side * (imc_response(t) - 1) - mp.mpf("0.02"), (last, last + mp.mpf("0.02")), "anderson"
+        )
+    assert computed["settling_time"] == pytest.approx(float(exit_time), rel=1e-10)
+
+
+def rk4_response(process, k, ki, until, per_delay):
+    """Exact-delay step response by the classical Runge-Kutta method, steps aligned with the dead time.
+
+    It starts at t = L: before, the output rests and the control signal is the ramp k + ki t.
+    """
+    h = process.L / per_delay
+    count = round(until / h)
+    control = np.empty(2 * per_delay + 1 + 2 * count)  # at half steps from t = 0
+    control[: 2 * per_delay + 1] = k + ki * h / 2 * np.arange(2 * per_delay + 1)
+    y, integral = 0.0, process.L
+
+    def slope(y, u):
+        return (process.K * u - y) / process.tau
+
+    outputs = [0.0]
+    for n in range(count):
+        early, middle_u, late = control[2 * n : 2 * n + 3]
+        a = slope(y, early)
+        b = slope(y + h / 2 * a, middle_u)
+        c = slope(y + h / 2 * b, middle_u)
+        d = slope(y + h * c, late)
+        following = y + h / 6 * (a + 2 * b + 2 * c + d)
+        middle = (y + following) / 2 + h / 8 * (a - slope(following, late))  # Hermite
+        half = integral + h / 24 * (5 * (1 - y) + 8 * (1 - middle) - (1 - following))
+        integral += h / 6 * ((1 - y) + 4 * (1 - middle) + (1 - following))
+        now = 2 * per_delay + 2 * n
+        control[now + 1] = k * (1 - middle) + ki * half
+        control[now + 2] = k * (1 - following) + ki * integral
+        y = following
+        outputs.append(y)
+    return process.L + h * np.arange(count + 1), np.array(outputs)
+
+
+@pytest.mark.parametrize(
+    ("assumption", "process", "rule"),
+    [
+        (TEXT, EXAMPLE_41, "ITAESPC"),
+        (GAINS, EXAMPLE_41, "ITAESPC"),
+        (TEXT, EXAMPLE_42, "PA"),
+        (GAINS, EXAMPLE_42, "ISE"),
+    ],
+    ids=["as-written-ITAESPC", "ki-over-ti-ITAESPC", "as-written-PA", "ki-over-ti-ISE"],
+)
+def test_exact_readings_agree_with_a_plain_integration(assumption, process, rule):
+    computed = assumption.table(process, [rule]).loc[rule]
+    gains = competing_rules()[rule].evaluate(**process.symbols) if rule != "PA" else None
+    if gains is None:
+        k, ki = mp_double_pole(process)
+    else:
+        k, ki = gains.kp, gains.kp / gains.ti if assumption is TEXT else 1 / gains.ti
+    time, output = rk4_response(process, k, ki, 30 * process.L, 400)
+
+    def crossing(level):
+        i = int(np.argmax(output >= level))
+        return float(np.interp(level, output[i - 1 : i + 1], time[i - 1 : i + 1]))
+
+    assert computed["delay_time"] == pytest.approx(crossing(0.5), abs=1e-6 * process.L)
+    assert computed["rise_time"] == pytest.approx(crossing(0.9) - crossing(0.1), abs=2e-6 * process.L)
+    assert computed["overshoot"] == pytest.approx(max(output.max() - 1, 0), abs=5e-6)
+    last = int(np.flatnonzero(np.abs(output - 1) > 0.02)[-1])
+    assert time[last] - 1e-9 <= computed["settling_time"] <= time[last + 1] + 1e-9
+
+
+# -------------------------------------------------------------------------------- the tables, as computed
+# then
+
+
+def mp_double_pole(process):
+    """Gains that put a double pole at -a/tau, from value and slope of the loop polynomial at that point."""
+    kp, ki = sp.symbols("kp ki")
+    values = {
+        symbol: sp.Rational(repr(number))
+        for symbol, number in zip((K, L, TAU), (process.K, process.L, process.tau), strict=True)
+    }
+    polynomial = characteristic(kp, ki).as_expr().subs(values)
+    s = -sp.Rational(repr(process.a)) / sp.Rational(repr(process.tau))
+    solution = sp.solve([polynomial.subs(S, s), sp.diff(polynomial, S).subs(S, s)], [kp, ki])
+    return float(solution[kp]), float(solution[ki])
+
+
+def printed(table):
+    text = (paper.folder() / "printed" / f"{table}.csv").read_text(encoding="utf-8")
+    return {row.pop("row"): row for row in csv.DictReader(text.splitlines())}
+
+
+# Gains by the shortest formulas: (Kp, 1/Ti), Cohen-Coon with the original fractions.
+ROWS = [
+    ("table-2", EXAMPLE_41, "PA", None),
+    ("table-2", EXAMPLE_41, "ZN", (0.9, 1 / 3)),
+    ("table-2", EXAMPLE_41, "CC", (0.9 + 1 / 12, 29 / 33)),
+    ("table-2", EXAMPLE_41, "IMC", (1 / 1.06, 1.0)),
+    ("table-2", EXAMPLE_41, "ITAESPC", (0.586, 1.03 - 0.165)),
+    ("table-3", EXAMPLE_42, "PA", None),
+    ("table-3", EXAMPLE_42, "ITAE", (0.859 * 5**-0.977, 6.74 * 5**-0.68)),
+    ("table-3", EXAMPLE_42, "ITAESPC", (0.586 * 5**-0.916, 10.3 - 1.65 * 5)),
+]
+MISPRINTS = {("table-3", "ITAE", "rise_time")}
+
+
+@pytest.mark.parametrize(
+    ("table", "process", "rule", "gains"), ROWS, ids=[f"{row[0]}-{row[2]}" for row in ROWS]
+)
+def test_authors_reading_by_matrix_exponential(table, process, rule, gains):
+    k, ki = gains or mp_double_pole(process)
+    values = {K: process.K, L: process.L, TAU: process.tau}
+    closed = np.array([float(c.subs(values)) for c in characteristic(k, ki).all_coeffs()])
+    num, _ = pade(2)
+    zeros = sp.Poly(sp.expand((k * S + ki) * K * num * 12 / (TAU * L**2)), S).subs(values)
+    numerator = np.array([float(c) for c in sp.Poly(zeros, S).all_coeffs()])
+    companion = np.zeros((5, 5))  # controllable form with the unit step as fifth state
+    companion[0, :4], companion[0, 4] = -closed[1:], 1.0
+    companion[1:4, :3] = np.eye(3)
+    decay = process.a / process.tau if rule == "PA" else -np.roots(closed).real.max()
+    until = 2 * math.log(50) / decay
+    for _ in range(2):
+        step = until / 1000
+        forward = linalg.expm(companion * step)
+        state, output = np.array([0.0, 0, 0, 0, 1]), []
+        for _ in range(1001):
+            output.append(numerator @ state[:4])
+            state = forward @ state
+        output = np.array(output)
+        last = int(np.flatnonzero(np.abs(output - 1) > 0.02)[-1])
+        if last >= 500:
+            break
+        until = 1.1 * last * step
+    expected = {
+        "overshoot": max(output.max() - 1, 0),
+        "settling_time": last * step,
+        "delay_time": int(np.argmax(output >= 0.5)) * step,
+        "rise_time": int(np.argmax(output >= 0.9) - np.argmax(output >= 0.1)) * step,
+    }
+    computed = AUTHORS.table(process, [rule]).loc[rule]
+    for column, value in expected.items():
+        assert computed[column] == pytest.approx(value, rel=1e-8, abs=1e-8), column
+        same = f"{float(printed(table)[rule][column]):.6g}" == f"{value if value > 5e-7 else 0:.6g}"
+        assert same == ((table, rule, column) not in MISPRINTS), column
+
+
+def test_printed_times_of_the_itae_row_cannot_all_be_samples():
+    """From the print alone: the steps that settling and delay time allow miss the rise time."""
+    row = printed("table-3")["ITAE"]
+    times = [
+        (Fraction(row[name]), Fraction(1, 2 * 10 ** len(row[name].partition(".")[2])))
+        for name in ("settling_time", "delay_time", "rise_time")
+    ]
+
+    def is_multiple(time, half, low, high):
+        """Whether some whole number times some step in [low, high] rounds to the printed time."""
+        n = round(time / low)
+        return any(m * low <= time + half and m * high >= time - half for m in (n - 1, n, n + 1))
+
+    (settling, half), *others = times
+    possible = []
+    for steps in range(500, 1001):  # the grid's rule: the response settles in its second half
+        low, high = (settling - half) / steps, (settling + half) / steps
+        possible.append([is_multiple(*time, low, high) for time in others])
+    assert [True, True] not in possible
+    assert [True, False] in possible
+
+
+# ----------------------------------------------------------------------------------------------------- claims
+
+
+def crosses_stably(process, k, ki):
+    """Nyquist by hand for k, ki > 0: the phase of the loop at its only gain crossover."""
+
+    def size(w):
+        return process.K * math.hypot(k, ki / w) / math.hypot(1, process.tau * w) - 1
+
+    w = optimize.brentq(size, 1e-6, 1e6)
+    phase = math.atan2(-ki / w, k) - math.atan(process.tau * w) - process.L * w
+    return phase > -math.pi
+
+
+def test_stability_claim_of_example_42(exhibits):
+    for convention, variant, expected in (
+        ("Kp/Ti", "printed", {"ITSE"}),
+        ("1/Ti", "authors", {"CC", "IMC", "ITSE"}),
+    ):
+        unstable = set()
+        for id, rule in competing_rules(variant).items():
+            found = rule.evaluate(**EXAMPLE_42.symbols)
+            ki = found.kp / found.ti if convention == "Kp/Ti" else 1 / found.ti
+            if found.ti < 0 or not crosses_stably(EXAMPLE_42, found.kp, ki):
+                unstable.add(id)
+            ours = controllers(EXAMPLE_42, convention, variant)[id]
+            assert (ours.k, ours.ki) == (pytest.approx(found.kp), pytest.approx(ki))
+        assert unstable == expected | {"IAESPC", "ITSESPC"}
+    finding = exhibits["claims"].claims["unstable-4-2"].check()
+    assert finding.verdict == "holds-partly"
+    assert finding.value == len({"ITSE", "IAESPC", "ITSESPC"} & set(UNSTABLE))
+
+
+def test_limit_of_condition_27_for_the_pt326_set(exhibits):
+    margin = pole_assignment.dominance(sp.Rational(7, 8), sp.Rational(43, 100), sp.Rational(62, 100), A)[1]
+    roots = [float(r) for r in sp.Poly(sp.numer(sp.together(margin)), A).nroots() if r.is_real and r > 0]
+    finding = exhibits["claims"].claims["dominance-pt326"].check()
+    assert finding.verdict == "fails"
+    assert f"{min(roots):.4g}" in finding.evidence
+    assert finding.value == pytest.approx(float(margin.subs(A, sp.Rational(13, 10))))
+
+
+def test_every_numbered_exhibit_is_there(exhibits):
+    assert set(paper.numbered) <= set(exhibits)
