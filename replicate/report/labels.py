@@ -47,12 +47,17 @@ def heading(exhibit: str, title: str) -> tuple[str, str]:
     --------
     >>> heading("table-2", "Table 2: step response"), heading("table-2", "Step response")
     (('Table 2', 'Step response'), ('Table 2', 'Step response'))
+    >>> heading("claims", "Claims made in the text")
+    ('', 'Claims made in the text')
     """
     name = label(exhibit)
     if not name:
         return "", title
-    rest = title
     for spelling in (name, name.replace("Figure", "Fig.")):
         if title.lower().startswith(spelling.lower()):
-            rest = title[len(spelling) :].lstrip(" .:,–—-")
-    return name, rest[:1].upper() + rest[1:]
+            rest = title[len(spelling) :]
+            if not rest.startswith((".", ":", ",", " –", " —")):
+                return "", title
+            rest = rest.lstrip(" .:,–—")
+            return name, rest[:1].upper() + rest[1:]
+    return name, title

@@ -19,8 +19,12 @@ from replicate.errors import TemplateError
 Form = Literal["block", "inline", "plain"]
 
 # No heading ids: the page gives its own, and generated ones could clash with those of exhibits.
-_FORMAT = "markdown-auto_identifiers-implicit_figures"
-_MARKER = "replicate-fragment"
+# "(5) and (6) give ..." is a sentence about equations, not item 5 of a list.
+_LISTS = "-fancy_lists-example_lists"
+# A "<" is a less-than sign: texts hold inequalities, and elements in them could break the page.
+_NO_HTML = "-raw_html-native_divs-native_spans-markdown_in_html_blocks-raw_attribute"
+_FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LISTS}{_NO_HTML}"
+_MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 
 
@@ -46,11 +50,11 @@ class MarkdownBatch:
 
     def inline(self, text: str) -> Markup:
         """Register a text of one paragraph, to be placed inside another element."""
-        return self._token("inline", text)
+        return self._token("inline", _not_a_block(text))
 
     def plain(self, text: str) -> Markup:
         """Register a text for an attribute: converted, then stripped of all elements."""
-        return self._token("plain", text)
+        return self._token("plain", _not_a_block(text))
 
     def _token(self, form: Form, text: str) -> Markup:
         text = text.strip()
@@ -83,18 +87,20 @@ class MarkdownBatch:
 
         if not self._texts:
             return []
-        marked = [f"```{{=html}}\n<!--{_MARKER} {i}-->\n```\n\n{text}\n" for text, i in self._texts.items()]
+        marked = [f"\ue004{i}\ue005\n\n{text}\n" for text, i in self._texts.items()]
         options = ["--mathml", "--wrap=none", "--fail-if-warnings", "--reference-location=block"]
         try:
             document = pypandoc.convert_text("\n".join(marked), "html", format=_FORMAT, extra_args=options)
         except RuntimeError as error:
             msg = f"{self.name}: pandoc cannot convert a text: {self._culprit(str(error))}"
             raise TemplateError(msg) from error
-        parts = re.split(f"<!--{_MARKER} (\\d+)-->", document.replace("\r\n", "\n"))
+        # Every block has its own list of footnotes, and pandoc gives all of them the same id.
+        document = document.replace("\r\n", "\n").replace(' id="footnotes"', "")
+        parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():
-            if number not in texts:  # an unclosed fence or element swallowed the marker of the next text
-                msg = f"{self.name}: an element is not closed in or before the text '{text[:60]}'"
+            if number not in texts:  # two unclosed fences, and what lies between them became code
+                msg = f"{self.name}: a fence is not closed in or before the text '{text[:60]}'"
                 raise TemplateError(msg)
         return [texts[number].strip() for number in range(len(texts))]
 
@@ -104,6 +110,12 @@ class MarkdownBatch:
         lines = [line.strip() for line in message.splitlines() if line.strip()]
         start = next((i for i, line in enumerate(lines) if "WARNING" in line or "rror" in line), 0)
         return " ".join(lines[start : start + 2])
+
+
+def _not_a_block(text: str) -> str:
+    """Escape what would make the first line of a text a list, heading, quotation or line block."""
+    text = re.sub(r"^\s*(\d+)([.)]\s)", r"\1\\\2", text)
+    return re.sub(r"^\s*([-+*#>|:]+\s)", r"\\\1", text)
 
 
 def strip_elements(text: str) -> str:
