@@ -40,7 +40,7 @@ def _content(exhibit: Exhibit) -> str:
 
 
 def _grid(*headings: str) -> Grid:
-    grid = Grid(box=None, pad_edge=False, padding=(0, 2), header_style="bold")
+    grid = Grid(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for heading in headings:
         grid.add_column(heading, no_wrap=heading in {"paper", "exhibit"})
     return grid

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.markdown import Markdown
 from rich.padding import Padding
 from rich.table import Table as Grid
@@ -15,7 +15,9 @@ from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
 from replicate.judgement import ResultRow, VerdictRow
 from replicate.outcome import Outcome
 from replicate.outputs import number_text
+from replicate.printed import PrintedValue
 from replicate.records import ClaimsResult, FigureResult, TableResult
+from replicate.report.numbers import shown
 from replicate.report.words import MATCHES, WORDS
 from replicate.terminal.colours import colour
 from replicate.units import errors_of
@@ -41,7 +43,7 @@ def print_exhibit(
     elif isinstance(exhibit, Table) and isinstance(result, TableResult):
         if verdicts:
             results = [row for row in outcome.judgements[paper].results if row.exhibit == exhibit.id]
-            console.print(_comparison(readings, results, verdicts))
+            console.print(_comparison(exhibit, readings, results, verdicts))
         else:
             _print_frames(result, readings, console)
         _print_readings(exhibit, readings, console)
@@ -55,22 +57,31 @@ def print_exhibit(
             console.print(Text(f"failed{f' ({part})' if part else ''}: {why}", style="red"))
 
 
-def _comparison(readings: Sequence[str], results: list[ResultRow], verdicts: list[VerdictRow]) -> Grid:
-    """Return one line per printed value."""
+def _comparison(
+    table: Table, readings: Sequence[str], results: list[ResultRow], verdicts: list[VerdictRow]
+) -> Grid:
+    """Return one line per printed value; computed values have a digit or two more than the print."""
     grid = _grid("row", "", ">printed", *(f">{reading}" for reading in readings), "verdict")
     found = {(row.row, row.column, row.reading): row for row in results}
     previous = ""
     for verdict in verdicts:
+        printed = PrintedValue(verdict.printed, significant_digits=table.significant_digits)
         computed = [found.get((verdict.row, verdict.column, reading)) for reading in readings]
         grid.add_row(
             "" if verdict.row == previous else verdict.row,
             verdict.column,
             verdict.printed,
-            *(f"{_short(row.computed)} {MATCHES[row.match][0]:1}" if row else "" for row in computed),
+            *(_computed(row, printed) for row in computed),
             _verdict(verdict),
         )
         previous = verdict.row
     return grid
+
+
+def _computed(row: ResultRow | None, printed: PrintedValue) -> str:
+    if row is None or not row.computed:
+        return ""
+    return f"{shown(float(row.computed), printed)} {MATCHES[row.match][0]:1}"
 
 
 def _print_frames(result: TableResult, readings: Sequence[str], console: Console) -> None:
@@ -148,8 +159,10 @@ def _short(computed: str) -> str:
 
 def _grid(*headings: str) -> Grid:
     """Return an empty table; a heading that begins with ``>`` is that of a column of numbers."""
-    grid = Grid(box=None, pad_edge=False, padding=(0, 2), header_style="bold")
+    grid = Grid(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for heading in headings:
         numeric = heading.startswith(">")
-        grid.add_column(Text(heading.removeprefix(">")), justify="right" if numeric else "left")
+        # Where space is short, numbers may wrap at the sign of their match; words stay whole.
+        justify: JustifyMethod = "right" if numeric else "left"
+        grid.add_column(Text(heading.removeprefix(">")), justify=justify, no_wrap=not numeric)
     return grid

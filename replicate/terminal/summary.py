@@ -16,7 +16,7 @@ from replicate.terminal.colours import colour
 
 def print_summary(outcome: Outcome, console: Console) -> None:
     """Print the verdicts on printed values and claims, and the state of the exhibits, per paper."""
-    table = Table(box=None, pad_edge=False, padding=(0, 2), header_style="bold")
+    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     table.add_column("")
     papers = list(outcome.judgements)
     for heading in (*papers, "all"):
