@@ -3,11 +3,12 @@
 In the accepted folder, for each paper: ``<exhibit>.csv`` holds the computed values and verdicts of a table
 (``row,column,reading,computed,printed,verdict``), of the claims (``row,verdict,computed``), or the curves of
 a figure (``panel,curve,x,y``). A figure has its axes beside it in ``<exhibit>.json`` and a picture for people
-in ``<exhibit>.png``, which is never compared. Numbers have nine significant digits.
+in ``<exhibit>.png``, small and never compared. Numbers have nine significant digits.
 """
 
 from __future__ import annotations
 
+import io
 import json
 import shutil
 from collections.abc import Iterator, Mapping
@@ -112,8 +113,20 @@ def state(outcome: Outcome, paper: str, exhibit: str) -> dict[str, bytes]:
     files = {f"{exhibit}.csv": _csv(outcome, result).encode()}
     if isinstance(result, FigureResult):
         files[f"{exhibit}.json"] = (json.dumps(result.axes, indent=1, ensure_ascii=False) + "\n").encode()
-        files[f"{exhibit}.png"] = result.png
+        files[f"{exhibit}.png"] = _small(result.png)
     return files
+
+
+def _small(png: bytes) -> bytes:
+    """Return a picture of half the size in few colours, for people to glance at."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(png)) as picture:
+        half = (picture.width // 2, picture.height // 2)
+        small = picture.convert("RGB").resize(half, Image.Resampling.LANCZOS)
+    buffer = io.BytesIO()
+    small.quantize(64, dither=Image.Dither.NONE).save(buffer, format="png", optimize=True)
+    return buffer.getvalue()
 
 
 def _csv(outcome: Outcome, result: Result) -> str:

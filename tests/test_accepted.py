@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import synthetic
+from PIL import Image
 
 from replicate.accepted import LOG, compare, write
 from replicate.changes import Change
@@ -41,7 +43,16 @@ OUTPUT, INPUT = (T, 1.0 - np.exp(-T)), (T, np.where(T < 3.0, 0.0, 1.0))
 BOTH: Curves = {"output": OUTPUT, "input": INPUT}
 
 
-def figure(curves: Curves = BOTH, axes: list[dict[str, Any]] = AXES, png: bytes = b"png") -> FigureResult:
+def picture(colour: str) -> bytes:
+    buffer = io.BytesIO()
+    Image.new("RGB", (40, 20), colour).save(buffer, format="png")
+    return buffer.getvalue()
+
+
+PICTURE, OTHER_FONTS = picture("red"), picture("blue")
+
+
+def figure(curves: Curves = BOTH, axes: list[dict[str, Any]] = AXES, png: bytes = PICTURE) -> FigureResult:
     frames = [
         pd.DataFrame({"panel": "panel 1", "curve": name, "x": x, "y": y}) for name, (x, y) in curves.items()
     ]
@@ -105,7 +116,7 @@ def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -
         "input": (np.array([0.0, 2.95, 3.0, 10.0]), np.array([0.0, 0.0, 1.0, 1.0])),
     }
     same = [
-        outcome(data, figure(png=b"other fonts")),
+        outcome(data, figure(png=OTHER_FONTS)),
         outcome(
             data, figure({"output": (T, 1.0 - np.exp(-T) + noise), "input": (T, np.where(T < 3.0, 0.0, 1.0))})
         ),
@@ -202,10 +213,12 @@ def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
 
 
 def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None:
-    present = outcome(data, figure(png=b"other fonts"), as_written=synthetic.frame(ax=1.001))
+    present = outcome(data, figure(png=OTHER_FONTS), as_written=synthetic.frame(ax=1.001))
     (change,) = write(present, accepted, "a better\n solver")
     assert change.exhibit == "table-1"
-    assert (accepted / "toy/fig-1.png").read_bytes() == b"png"
+    with Image.open(accepted / "toy/fig-1.png") as kept:
+        assert kept.size == (20, 10)
+        assert kept.convert("RGB").getpixel((5, 5)) == (255, 0, 0)
     assert (
         (accepted / LOG)
         .read_text()
