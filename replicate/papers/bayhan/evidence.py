@@ -46,19 +46,19 @@ sample_grid = paper.table(
     "The printed times count samples",
     printed=False,
     rows=STEP_ROWS,
-    columns=("step", *TIMES, "off_settling", "off_delay", "off_rise"),
+    columns=("step", "settling_time", "off_settling", "delay_time", "off_delay", "rise_time", "off_rise"),
     caption="Each printed time in sample steps of its row, and how far it is from the nearest whole number "
     "of steps, in units of its sixth significant digit. A time read off samples is a whole number of "
     "steps, so it can be off by half a unit, from rounding, but not by more.",
     labels={
         **{key: f"Table {key[6]}, {key[8:]}" for key in STEP_ROWS},
-        "step": "Sample step",
-        "settling_time": "Settling time, steps",
-        "delay_time": "Delay time, steps",
-        "rise_time": "Rise time, steps",
-        "off_settling": "Settling time, off by",
-        "off_delay": "Delay time, off by",
-        "off_rise": "Rise time, off by",
+        "step": "Step",
+        "settling_time": "Settling",
+        "delay_time": "Delay",
+        "rise_time": "Rise",
+        "off_settling": "off by",
+        "off_delay": "off by",
+        "off_rise": "off by",
     },
 )
 
@@ -80,7 +80,9 @@ def in_steps() -> pd.DataFrame:
             step = response.spacing
             times = [float(printed[row, time]) for time in TIMES]
             off = [(time - round(time / step) * step) / last_digit(time) for time in times]
-            rows[f"{table.id}-{row}"] = [step, *(time / step for time in times), *off]
+            counts = [time / step for time in times]
+            pairs = zip(counts, off, strict=True)
+            rows[f"{table.id}-{row}"] = [step, *(number for pair in pairs for number in pair)]
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(sample_grid.columns))
 
 
@@ -103,14 +105,18 @@ match_count = paper.table(
     columns=("table_2", "table_3", "both", "within_1_percent", "printed"),
     caption="How many printed values of Tables 2 and 3 come out equal at all six significant digits, under "
     "each combination of integral gain (equation (3), or $1/T_i$) and method (exact, or Padé model and "
-    "sample grid).",
+    "sample grid), and how many come within 1 % of the print.",
     labels={
-        **{a.id: a.title for a in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS)},
-        "table_2": "Equal, Table 2",
-        "table_3": "Equal, Table 3",
-        "both": "Equal, both",
-        "within_1_percent": "Within 1 %, both",
-        "printed": "Printed values",
+        TEXT.id: "Equation (3), exact",
+        TEXT_ON_GRID.id: "Equation (3), Padé and grid",
+        GAINS.id: "$K_i = 1/T_i$, exact",
+        GAINS_ON_GRID.id: "$K_i = 1/T_i$, Padé and grid",
+        AUTHORS.id: "The same, original Cohen–Coon",
+        "table_2": "Table 2",
+        "table_3": "Table 3",
+        "both": "Both",
+        "within_1_percent": "Within 1 %",
+        "printed": "Of",
     },
 )
 

@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 STYLES = {
     "ZN": ("C6", "-."),
     "CC": ("C4", "-."),
-    "IMC": ("C2", "-."),
-    "ISE": ("C5", "-"),
+    "IMC": ("C5", "-."),
+    "ISE": ("C0", "-"),
     "IAE": ("C1", "-"),
     "IAESPC": ("C1", "--"),
     "ITSE": ("C3", "-"),
     "ITSESPC": ("C3", "--"),
-    "ITAE": ("C0", "-"),
-    "ITAESPC": ("C0", "--"),
+    "ITAE": ("C2", "-"),
+    "ITAESPC": ("C2", "--"),
 }
 
 PANELS = {"Kp/Ti": "$K_i = K_p/T_i$, equation (3)", "1/Ti": "$K_i = 1/T_i$, as in the tables"}
