@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.loops.errors import LoopError
+
 if TYPE_CHECKING:
     from replicate.loops import PI, Plant
 
@@ -42,8 +44,20 @@ def pade_loop(
     -------
     control.StateSpace
         Single input, single output.
+
+    Raises
+    ------
+    LoopError
+        If the plant is not rational, or the controller has filters, which this model leaves out.
     """
     import control
+
+    if not plant.is_rational:
+        msg = f"a Padé model needs a rational plant, not {plant!r}"
+        raise LoopError(msg)
+    if controller.measurement_filter or controller.setpoint_filter:
+        msg = f"the Padé model is made for a PI controller without filters, not {controller!r}"
+        raise LoopError(msg)
 
     delay_num, delay_den = control.pade(plant.dead_time, order) if plant.dead_time else ([1.0], [1.0])
     num = np.polymul(plant.num, delay_num)

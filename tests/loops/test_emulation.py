@@ -1,21 +1,13 @@
 """The emulated toolchain (made of python-control) against scipy, mpmath and hand-made samples."""
 
-from types import SimpleNamespace
-
 import mpmath as mp
 import numpy as np
 import pytest
 from scipy import signal
 
+from replicate.loops import PI, Plant
 from replicate.loops.emulation import SampledResponse, dominant_pole, pade_loop, sampled_step
-
-
-def process(num, den, dead_time):
-    return SimpleNamespace(num=np.array(num), den=np.array(den), dead_time=dead_time)
-
-
-def controller(k, ki, b=1.0):
-    return SimpleNamespace(k=k, ki=ki, b=b)
+from replicate.loops.errors import LoopError
 
 
 def closed_form(numerator, denominator, t):
@@ -43,13 +35,13 @@ def test_setpoint_response_of_the_pade_loop_is_its_residue_sum(b, t):
         closed[1 + i] += k * c
         closed[2 + i] += ki * c
     numerator = [b * k * NUM[0], b * k * NUM[1] + ki * NUM[0], b * k * NUM[2] + ki * NUM[1], ki * NUM[2]]
-    system = pade_loop(process([1.0], [1.0, 1.0], 1.0), controller(0.6, 0.5, b))
+    system = pade_loop(Plant([1.0], [1.0, 1.0], 1.0), PI(0.6, 0.5, b))
     response = sampled_step(system, t, 400)
     assert response.output[-1] == pytest.approx(closed_form(numerator, closed, t), abs=1e-11)
 
 
 def test_load_response_agrees_with_scipy_for_a_second_order_plant():
-    system = pade_loop(process([2.0], [1.0, 3.0, 2.0], 0.4), controller(0.7, 0.9), order=3, response="load")
+    system = pade_loop(Plant([2.0], [1.0, 3.0, 2.0], 0.4), PI(0.7, 0.9), order=3, response="load")
     # Padé (3, 3) of e^{-0.4 s}: 1 -+ x/2 + x^2/10 -+ x^3/120 with x = 0.4 s.
     x = np.array([0.4**3 / 120, 0.4**2 / 10, 0.2, 1.0])
     num = 2.0 * x * np.array([-1.0, 1.0, -1.0, 1.0])
@@ -61,7 +53,7 @@ def test_load_response_agrees_with_scipy_for_a_second_order_plant():
 
 
 def test_without_dead_time_the_loop_is_the_rational_one():
-    response = sampled_step(pade_loop(process([1.0], [1.0, 1.0], 0.0), controller(2.0, 2.0)), 3.0, 300)
+    response = sampled_step(pade_loop(Plant([1.0], [1.0, 1.0], 0.0), PI(2.0, 2.0)), 3.0, 300)
     np.testing.assert_allclose(response.output, 1.0 - np.exp(-2.0 * response.time), atol=1e-12)
 
 
@@ -74,14 +66,14 @@ def test_dominant_pole_of_a_double_pole_is_accurate_to_rounding():
     dd = mp.polyval([4 * DEN[0], 3 * DEN[1], 2 * DEN[2], DEN[3]], s)
     matrix = mp.matrix([[s * n, n], [n + s * dn, dn]])
     k, ki = mp.lu_solve(matrix, mp.matrix([-d, -dd]))
-    pole = dominant_pole(pade_loop(process([1.0], [1.0, 1.0], 1.0), controller(float(k), float(ki))))
+    pole = dominant_pole(pade_loop(Plant([1.0], [1.0, 1.0], 1.0), PI(float(k), float(ki))))
     assert pole.imag == 0.0
     assert pole.real == pytest.approx(-0.5, abs=1e-13)
 
 
 def test_dominant_pole_of_a_pair_is_the_upper_one():
     # k s + ki over s (s + 1) with k = 1, ki = 5: s^2 + 2 s + 5 = 0.
-    pole = dominant_pole(pade_loop(process([1.0], [1.0, 1.0], 0.0), controller(1.0, 5.0)))
+    pole = dominant_pole(pade_loop(Plant([1.0], [1.0, 1.0], 0.0), PI(1.0, 5.0)))
     assert pole == pytest.approx(-1.0 + 2.0j, abs=1e-12)
 
 
@@ -94,6 +86,13 @@ def test_metrics_are_samples_not_interpolations():
     assert response.settling_time(0.02) == 1.75
     assert response.delay_time() == 0.75
     assert response.rise_time() == 1.25 - 0.25
+
+
+def test_what_the_model_leaves_out_is_refused():
+    with pytest.raises(LoopError, match="needs a rational plant"):
+        pade_loop(Plant.from_function(lambda s: np.exp(-np.sqrt(s))), PI(1.0, 1.0))
+    with pytest.raises(LoopError, match="without filters"):
+        pade_loop(Plant([1.0], [1.0, 1.0], 1.0), PI(1.0, 1.0, measurement_filter=0.1))
 
 
 def test_a_level_that_is_never_reached_is_an_error():

@@ -79,10 +79,10 @@ def in_steps() -> pd.DataFrame:
                 raise ValueError(msg)
             step = response.spacing
             times = [float(printed[row, time]) for time in TIMES]
-            off = [(time - round(time / step) * step) / last_digit(time) for time in times]
+            off = [round((time - round(time / step) * step) / last_digit(time), 2) for time in times]
             counts = [time / step for time in times]
             pairs = zip(counts, off, strict=True)
-            rows[f"{table.id}-{row}"] = [step, *(number for pair in pairs for number in pair)]
+            rows[f"{table.id}-{row}"] = [step, *(entry for pair in pairs for entry in pair)]
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(sample_grid.columns))
 
 
