@@ -14,6 +14,7 @@ import importlib.metadata
 import os
 import pickle
 import platform
+import re
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -37,7 +38,7 @@ _CORE = (
     "units.py",
 )
 _LIBRARIES = ("control", "matplotlib", "numpy", "pandas", "schemdraw", "scipy")
-_PROSE = frozenset({"ledger.toml", "notes.md", "handout.md"})
+_PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)")
 # Settings that choose the numerical kernels, and with them the last bits of a result.
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 
@@ -111,7 +112,7 @@ def _content(place: Traversable, name: str) -> Iterator[bytes]:
     """Yield name and bytes of a file, or of every file in a folder in alphabetical order."""
     if place.is_dir():
         for entry in sorted(place.iterdir(), key=lambda entry: entry.name):
-            if entry.name != "__pycache__" and entry.name not in _PROSE:
+            if entry.name != "__pycache__" and not _PROSE.fullmatch(entry.name):
                 yield from _content(entry, f"{name}/{entry.name}")
     elif place.is_file():
         yield name.encode()

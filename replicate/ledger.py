@@ -23,7 +23,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Literal, get_args
@@ -56,8 +56,8 @@ class LedgerEntry:
         Keys, or ``("*",)``.
     corrected
         The right value as text; empty if the reading's value is to be shown at the printed precision.
-    line
-        Line of the entry in the ledger, from 1.
+    line, file
+        Line of the entry in its file, from 1, and what messages call that file.
     """
 
     exhibit: str
@@ -69,6 +69,7 @@ class LedgerEntry:
     corrected: str = ""
     evidence: str = ""
     line: int = 0
+    file: str = ""
 
     @property
     def explicit(self) -> bool:
@@ -127,6 +128,25 @@ class Ledger:
         _check_named_once(name, entries)
         return cls(name, entries)
 
+    @classmethod
+    def load_all(cls, folder: Traversable | Path, paper: Paper) -> Ledger:
+        """Read ``ledger.toml`` and, for a work of several parts, every ``ledger-<part>.toml`` of a paper's folder.
+
+        Raises
+        ------
+        LedgerError
+            As `load`, and if two files name the same cell.
+        """
+        parts = sorted(
+            entry.name for entry in folder.iterdir() if entry.name.startswith("ledger-") and entry.name.endswith(".toml")
+        )
+        ledgers = [cls.load(folder / name, paper) for name in ("ledger.toml", *parts)]
+        entries = tuple(
+            replace(entry, file=ledger.name) for ledger in ledgers for entry in ledger.entries
+        )
+        _check_named_once(ledgers[0].name, entries)
+        return cls(ledgers[0].name, entries)
+
     def of(self, exhibit: str) -> list[LedgerEntry]:
         """Return the entries of one exhibit, those that name their cells explicitly first."""
         return sorted(
@@ -136,7 +156,7 @@ class Ledger:
 
     def place(self, entry: LedgerEntry) -> str:
         """Return file and line of an entry, as messages name it."""
-        return f"{self.name}:{entry.line}"
+        return f"{entry.file or self.name}:{entry.line}"
 
 
 def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> LedgerEntry:

@@ -75,7 +75,7 @@ def judge(
     """
     paper.load()
     printed = read_all_printed(paper) if printed is None else printed
-    ledger = Ledger.load(paper.folder() / "ledger.toml", paper) if ledger is None else ledger
+    ledger = Ledger.load_all(paper.folder(), paper) if ledger is None else ledger
     judgement = Judgement()
     if exhibits is None:
         judgement.problems.extend(
@@ -134,7 +134,7 @@ def _explain(
         verdict = judgement.verdicts[index]
         try:
             text = prose.render(
-                verdict.explanation, ledger.name, entry.line, row=verdict.row, column=verdict.column
+                verdict.explanation, entry.file or ledger.name, entry.line, row=verdict.row, column=verdict.column
             )
         except TemplateError as error:
             text = f"(This text cannot be shown: {error})"

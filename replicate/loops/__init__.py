@@ -4,7 +4,9 @@ Plants with dead time, PI and PID controllers, and the loops made of them: time 
 metrics read from the piecewise polynomial, poles, sensitivity peaks and margins with the exact dead time.
 """
 
+from replicate.loops.circles import Circle
 from replicate.loops.controller import PI, PID
+from replicate.loops.design_pi import PIDesign, design_pi, setpoint_weight
 from replicate.loops.errors import ImproperLoopError, LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.loop import Loop, Response, step_responses
 from replicate.loops.margins import Margins
@@ -15,16 +17,20 @@ from replicate.loops.signal import Peak, Signal
 __all__ = [
     "PI",
     "PID",
+    "Circle",
     "FrequencyPeak",
     "ImproperLoopError",
     "Loop",
     "LoopError",
     "Margins",
     "NotSettledError",
+    "PIDesign",
     "Peak",
     "Plant",
     "Response",
     "Signal",
     "UnstableLoopError",
+    "design_pi",
+    "setpoint_weight",
     "step_responses",
 ]

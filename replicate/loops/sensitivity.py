@@ -55,14 +55,18 @@ class _Kind:
     bound: Callable[[float], float]
 
 
-def sensitivity_peak(transfer: LoopTransfer, poles: NDArray[np.complex128]) -> FrequencyPeak:
-    """Return Ms = max |1/(1+L)| of a stable loop; ``poles`` (closed loop) show where narrow peaks are."""
+def sensitivity_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], center: float = 1.0) -> FrequencyPeak:
+    """Return max 1/|center + L| of a stable loop; with center 1 this is Ms.
+
+    For any center >= 1 its inverse is the distance of the Nyquist curve from the point -center. ``poles`` (closed loop)
+    show where narrow peaks are.
+    """
 
     def slope(w: float) -> float:
         value = complex(transfer(1j * w))
-        return float((-1j * value * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
+        return float((-1j * value * complex(transfer.log_derivative(1j * w)) / (center + value)).real)
 
-    kind = _Kind(lambda w: np.abs(1.0 / (1.0 + transfer(1j * w))), slope, lambda gain: 1.0 / (1.0 - gain))
+    kind = _Kind(lambda w: np.abs(1.0 / (center + transfer(1j * w))), slope, lambda gain: 1.0 / (center - gain))
     return _peak(transfer, poles, kind)
 
 

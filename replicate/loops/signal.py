@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 # An extremum between two samples of a degree-18 piece exceeds them by far less than this fraction of the signal's range.
 SAMPLES = 40
 MARGIN = 0.02
+ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
 
 
 class Peak(float):
@@ -323,7 +324,8 @@ class Signal:
         self._require_stable("overshoot")
         self._require_final("overshoot")
         peak = self._extreme(1.0 if self.final > 0.0 else -1.0)
-        return max(0.0, (float(peak) - self.final) / self.final)
+        excess = (float(peak) - self.final) / self.final
+        return excess if excess > ROUNDING else 0.0
 
     def settling_time(self, band: float = 0.02) -> float:
         """Return the last time at which the response is further than the band from its final value.

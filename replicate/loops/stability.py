@@ -16,12 +16,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.errors import ImproperLoopError
+from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.loop_transfer import LoopTransfer
 
 Array = NDArray[np.float64]
 
 LARGEST_TURN = 0.8  # rad between neighbouring points; anything below pi/2 identifies the branch
+MOST_POINTS = 2_000_000
 DEEPEST = 60  # bisections of one interval before a zero is taken to lie on the axis
 
 
@@ -45,7 +46,7 @@ def unstable_poles(transfer: LoopTransfer) -> int:
     w = np.concatenate([[0.0], w]) if transfer.plant.is_rational else w
     turn = _argument_change(transfer, w)
     if turn is None:
-        return max(1, _zeros_on_axis_side(transfer))
+        return 1  # a zero on the axis itself
     poles = np.roots(transfer.den)
     # arg D from the last point to infinity, root by root
     remainder = float(np.sum(0.5 * np.pi - np.angle(1j * end - poles)))
@@ -77,6 +78,9 @@ def frequency_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) 
     parts = [np.geomspace(start, end, count)]
     if transfer.dead_time:
         step = np.pi / (10.0 * transfer.dead_time)
+        if end > step * MOST_POINTS:
+            msg = f"|L| stays near one over more than {MOST_POINTS // 20} turns of the dead time: its stability is not resolved"
+            raise LoopError(msg)
         parts.append(np.arange(step, end, step))
     resonant = corners[(np.abs(corners.real) < 0.3 * moduli) & (corners.imag > 0.0)]
     spread = np.concatenate([-np.geomspace(30.0, 0.1, 12), [0.0], np.geomspace(0.1, 30.0, 12)])
@@ -103,6 +107,3 @@ def _argument_change(transfer: LoopTransfer, w: Array) -> float | None:
         f = np.insert(f, coarse + 1, transfer.characteristic(1j * middle))
     return None
 
-
-def _zeros_on_axis_side(transfer: LoopTransfer) -> int:
-    return 1 if transfer.den.size else 0
