@@ -17,11 +17,13 @@ from matplotlib.figure import Figure as Canvas
 
 from replicate import plotstyle
 from replicate.exhibits import Figure
-from replicate.readback import describe, read_curves
+from replicate.readback import read_panel
 from replicate.records import FigureResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+_LONGEST_NAME = 24
 
 
 def capture(paper: str, exhibit: Figure) -> FigureResult:
@@ -45,10 +47,10 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     with plotstyle.style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = Canvas(figsize=exhibit.size)
         exhibit.draw(canvas)
-        panels = list(_panels(canvas))
-        curves = [row for name, axes in panels for row in read_curves(name, axes)]
+        panels = [read_panel(name, axes) for name, axes in _panels(canvas)]
+        curves = [row for rows, _ in panels for row in rows]
         frame = pd.DataFrame(curves, columns=["panel", "curve", "x", "y"])
-        described = [describe(name, axes) for name, axes in panels]
+        described = [description for _, description in panels]
         if described:
             described[0] |= _outside_the_axes(canvas)
         return FigureResult(
@@ -68,11 +70,16 @@ def no_figure(paper: str, exhibit: str, error: str) -> FigureResult:
 
 
 def _panels(canvas: Canvas) -> Iterator[tuple[str, Axes]]:
-    """Name every axes by its title, or by its place where it has none; a name used again gets a number."""
+    """Name every axes by its title, or by its place where it has none that is short and plain.
+
+    The name stands in every line of the data; one used again gets a number.
+    """
     used: dict[str, int] = {}
     for place, axes in enumerate((axes for axes in canvas.axes if axes.get_visible()), start=1):
         title = axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right")
-        name = " ".join(title.split()) or f"panel {place}"
+        name = " ".join(title.split())
+        if not name or len(name) > _LONGEST_NAME or "$" in name:
+            name = f"panel {place}"
         used[name] = used.get(name, 0) + 1
         yield (name if used[name] == 1 else f"{name} ({used[name]})"), axes
 

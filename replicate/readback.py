@@ -7,7 +7,8 @@ that they can be redrawn faithfully from at most `MOST_POINTS` points.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from matplotlib.collections import LineCollection, PathCollection
@@ -25,46 +26,66 @@ if TYPE_CHECKING:
     from matplotlib.transforms import Transform
 
 #: A dropped point lies within this fraction of the axes' width or height from the thinned curve ...
-TOLERANCE = 2e-5
+TOLERANCE = 5e-5
 #: ... unless the curve would need more points than this.
-MOST_POINTS = 300
+MOST_POINTS = 400
 
 _DIGITS = 9
 _BREAK = np.array([[np.nan, np.nan]])
 
 CurvePoint = tuple[str, str, float, float]
+Kind = Literal["line", "points", "area"]
 
 
-def read_curves(panel: str, axes: Axes) -> list[CurvePoint]:
-    """Return every line, scatter, filled area, contour and shape of an axes as ``(panel, curve, x, y)``.
+@dataclass(frozen=True)
+class _Curve:
+    """One artist; `error` is how far a point that thinning dropped may lie from the curve."""
 
-    A curve is named by its label, otherwise by its place ("line 2"). A row with ``nan`` for x and y is a
-    break: the curve continues elsewhere. Artists placed in axes or figure coordinates only (not in data
-    coordinates) are left out, as is what lies far outside the limits of the axes.
-    """
-    axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
-    rows: list[CurvePoint] = []
-    used: dict[str, int] = {}
-    for name, points in _curves(axes):
-        if len(points) == 0:
-            continue
-        used[name] = used.get(name, 0) + 1
-        unique = name if used[name] == 1 else f"{name} ({used[name]})"
-        rows += [(panel, unique, float(x), float(y)) for x, y in _rounded(points, axes)]
-    return rows
+    name: str
+    kind: Kind
+    points: Points
+    error: float = 0.0
 
 
-def describe(panel: str, axes: Axes) -> dict[str, Any]:
-    """Return limits, scales, labels, title, legend entries and annotation texts of an axes.
+def read_panel(panel: str, axes: Axes) -> tuple[list[CurvePoint], dict[str, Any]]:
+    """Return what one axes shows: its curves as ``(panel, curve, x, y)``, and the description of everything else.
+
+    Every line, scatter, filled area, contour and shape is a curve. It is named by its label, otherwise by its
+    place ("line 2"). A row with ``nan`` for x and y is a break: the curve continues elsewhere. Artists placed
+    in axes or figure coordinates only (not in data coordinates) are left out, as is what lies far outside the
+    limits of the axes.
 
     Returns
     -------
-    dict
+    curves
+        Rows in drawing order.
+    description
         ``panel, title, xlabel, ylabel, xscale, yscale, xlim, ylim, legend, texts``; ready for JSON. A text is
-        ``{"text", "x", "y"}`` with its anchor in the coordinates it was placed in.
+        ``{"text", "x", "y"}`` with its anchor in data coordinates, or with ``"in": "axes"`` in fractions of the
+        axes. Only where it applies: ``aspect`` ("equal"), ``hidden`` (axes that are switched off), ``points``
+        and ``areas`` (names of the curves that are no lines), and ``thinned`` (by name, how far a curve of
+        very many points may lie from what was drawn, as a fraction of the axes).
     """
+    axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
+    rows: list[CurvePoint] = []
+    special: dict[str, Any] = {"points": [], "areas": [], "thinned": {}}
+    used: dict[str, int] = {}
+    for curve in _curves(axes):
+        if len(curve.points) == 0:
+            continue
+        used[curve.name] = used.get(curve.name, 0) + 1
+        unique = curve.name if used[curve.name] == 1 else f"{curve.name} ({used[curve.name]})"
+        rows += [(panel, unique, float(x), float(y)) for x, y in _rounded(curve.points, axes)]
+        if curve.kind != "line":
+            special["points" if curve.kind == "points" else "areas"].append(unique)
+        if curve.error > TOLERANCE:
+            special["thinned"][unique] = float(f"{curve.error:.2g}")
+    return rows, _describe(panel, axes) | {name: value for name, value in special.items() if value}
+
+
+def _describe(panel: str, axes: Axes) -> dict[str, Any]:
     legend = axes.get_legend()
-    return {
+    description: dict[str, Any] = {
         "panel": panel,
         "title": axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right"),
         "xlabel": axes.get_xlabel(),
@@ -74,13 +95,20 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         "xlim": [_digits(limit) for limit in axes.get_xlim()],
         "ylim": [_digits(limit) for limit in axes.get_ylim()],
         "legend": [text.get_text() for text in legend.get_texts()] if legend else [],
-        "texts": [_text(text) for text in axes.texts if text.get_text() and text.get_visible()],
+        "texts": [_text(text, axes) for text in axes.texts if text.get_text() and text.get_visible()],
     }
+    if axes.get_aspect() != "auto":
+        description["aspect"] = "equal"
+    if not axes.axison:
+        description["hidden"] = True
+    return description
 
 
-def _text(text: Any) -> dict[str, Any]:
+def _text(text: Any, axes: Axes) -> dict[str, Any]:
     x, y = getattr(text, "xy", text.get_position())
-    return {"text": text.get_text(), "x": _digits(x), "y": _digits(y)}
+    coordinates = getattr(text, "xycoords", text.get_transform())
+    fraction = coordinates in ("axes fraction", axes.transAxes)
+    return {"text": text.get_text(), "x": _digits(x), "y": _digits(y)} | ({"in": "axes"} if fraction else {})
 
 
 def _digits(value: Any) -> float | str:
@@ -91,13 +119,13 @@ def _digits(value: Any) -> float | str:
         return str(value)
 
 
-def _curves(axes: Axes) -> Iterator[tuple[str, Points]]:
+def _curves(axes: Axes) -> Iterator[_Curve]:
     for place, line in enumerate(_visible(axes.lines), start=1):
-        yield _name(line, f"line {place}"), _line(line, axes)
+        yield _line(line, axes, f"line {place}")
     for place, collection in enumerate(_visible(axes.collections), start=1):
         yield from _collection(collection, axes, place)
     for place, patch in enumerate(_visible(axes.patches), start=1):
-        yield _name(patch, f"shape {place}"), _shape(patch, axes)
+        yield _Curve(_name(patch, f"shape {place}"), "line", *_shape(patch, axes))
 
 
 def _visible(artists: Any) -> Iterator[Any]:
@@ -109,28 +137,33 @@ def _name(artist: Artist, otherwise: str) -> str:
     return otherwise if not label or label.startswith("_") else label
 
 
-def _line(line: Line2D, axes: Axes) -> Points:
+def _line(line: Line2D, axes: Axes, otherwise: str) -> _Curve:
+    name = _name(line, otherwise)
     points = _to_data(np.asarray(line.get_xydata(), dtype=float), line.get_transform(), axes)
-    has_line = line.get_linestyle() not in {"None", "none", "", " "}
-    return _thinned(points, axes) if has_line else points
+    if line.get_linestyle() in {"None", "none", "", " "}:
+        return _Curve(name, "points", points)
+    return _Curve(name, "line", *_thinned(points, axes))
 
 
-def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[tuple[str, Points]]:
+def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Curve]:
     if isinstance(collection, ContourSet):
         base = _name(collection, "level")
+        kind: Kind = "area" if collection.filled else "line"
         for level, path in zip(collection.levels, collection.get_paths(), strict=False):
-            yield f"{base} {level:.{_DIGITS}g}", _thinned(_of_path(path), axes)
+            yield _Curve(f"{base} {level:.{_DIGITS}g}", kind, *_thinned(_of_path(path), axes))
     elif isinstance(collection, PathCollection):  # a scatter plot: the offsets are the data
         offsets: Points = np.ma.filled(np.ma.asarray(collection.get_offsets(), dtype=float), np.nan)
-        yield _name(collection, f"points {place}"), _to_data(offsets, collection.get_offset_transform(), axes)
+        points = _to_data(offsets, collection.get_offset_transform(), axes)
+        yield _Curve(_name(collection, f"points {place}"), "points", points)
     else:
-        kind = "lines" if isinstance(collection, LineCollection) else "area"
+        lines = isinstance(collection, LineCollection)
         pieces = [_of_path(path) for path in collection.get_paths()]
         points = _to_data(_joined(pieces), collection.get_transform(), axes)
-        yield _name(collection, f"{kind} {place}"), _thinned(points, axes)
+        name = _name(collection, f"{'lines' if lines else 'area'} {place}")
+        yield _Curve(name, "line" if lines else "area", *_thinned(points, axes))
 
 
-def _shape(patch: Patch, axes: Axes) -> Points:
+def _shape(patch: Patch, axes: Axes) -> tuple[Points, float]:
     in_patch = _of_path(patch.get_path())
     in_data = patch.get_patch_transform().transform(in_patch)
     return _thinned(_to_data(in_data, patch.get_data_transform(), axes), axes)
@@ -174,10 +207,16 @@ def _to_data(points: Points, transform: Transform, axes: Axes) -> Points:
     return np.column_stack([points[:, i] if in_data[i] else mapped[:, i] for i in (0, 1)])
 
 
-def _thinned(points: Points, axes: Axes) -> Points:
-    """Thin each unbroken piece, leaving out what lies more than half a width or height outside the axes."""
+def _thinned(points: Points, axes: Axes) -> tuple[Points, float]:
+    """Thin each unbroken piece, leaving out what lies more than half a width or height outside the axes.
+
+    Returns
+    -------
+    points, error
+        The largest distance of a dropped point from what is left, as a fraction of the axes.
+    """
     if len(points) == 0:
-        return points
+        return points, 0.0
     unit = _in_axes_units(points, axes)
     finite = np.logical_and.reduce(np.isfinite(np.hstack([points, unit])), axis=1)
     near = finite & np.logical_and.reduce(np.abs(unit - 0.5) <= 1.0, axis=1)
@@ -186,11 +225,13 @@ def _thinned(points: Points, axes: Axes) -> Points:
     edges = np.flatnonzero(np.diff(np.r_[False, wanted, False].astype(int)))
     runs = [np.arange(start, end) for start, end in zip(edges[::2], edges[1::2], strict=True)]
     total = sum(len(run) for run in runs)
-    pieces = []
+    pieces, error = [], 0.0
     for run in runs:
         share = max(2, round(MOST_POINTS * len(run) / total))
-        pieces.append(points[run[simplify(unit[run], TOLERANCE, share)]])
-    return _joined(pieces)
+        kept, distance = simplify(unit[run], TOLERANCE, share)
+        pieces.append(points[run[kept]])
+        error = max(error, distance)
+    return _joined(pieces), error
 
 
 def _in_axes_units(points: Points, axes: Axes) -> Points:

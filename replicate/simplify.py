@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 Points = NDArray[np.float64]
 
 
-def simplify(points: Points, tolerance: float, most: int) -> NDArray[np.intp]:
-    """Return the indices of the points to keep.
+def simplify(points: Points, tolerance: float, most: int) -> tuple[NDArray[np.intp], float]:
+    """Return the indices of the points to keep, and how far the others lie from what is left.
 
     Parameters
     ----------
@@ -35,31 +35,32 @@ def simplify(points: Points, tolerance: float, most: int) -> NDArray[np.intp]:
 
     Returns
     -------
-    ndarray
+    kept
         Increasing indices; the first and the last point are always among them.
+    error
+        The largest distance of a dropped point from its chord.
 
     Examples
     --------
     >>> import numpy as np
     >>> corner = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 0.5], [1.0, 1.0]])
-    >>> simplify(corner, 1e-6, 100).tolist()
-    [0, 2, 4]
+    >>> kept, error = simplify(corner, 1e-6, 100)
+    >>> kept.tolist(), error
+    ([0, 2, 4], 0.0)
     """
     last = len(points) - 1
     if last < 2:
-        return np.arange(last + 1)
+        return np.arange(last + 1), 0.0
     kept = {0, last}
     # Ties are broken by position, so the choice does not depend on the order in which chords were split.
     heap = [_worst(points, 0, last)]
-    while heap and len(kept) < most:
-        negative_distance, start, split, end = heapq.heappop(heap)
-        if -negative_distance <= tolerance:
-            break
+    while heap and len(kept) < most and -heap[0][0] > tolerance:
+        _, start, split, end = heapq.heappop(heap)
         kept.add(split)
         for low, high in ((start, split), (split, end)):
             if high - low > 1:
                 heapq.heappush(heap, _worst(points, low, high))
-    return np.array(sorted(kept))
+    return np.array(sorted(kept)), -heap[0][0] if heap else 0.0
 
 
 def _worst(points: Points, start: int, end: int) -> tuple[float, int, int, int]:

@@ -59,7 +59,7 @@ def description(alt: str, axes: list[dict[str, Any]]) -> str:
 
     Examples
     --------
-    >>> axes = {"panel": "panel 1", "xlabel": "t", "ylabel": "y", "xlim": [0, 9], "ylim": [0, 1]}
+    >>> axes = {"title": "", "xlabel": "t", "ylabel": "y", "xlim": [0, 9], "ylim": [0, 1]}
     >>> description("", [axes | {"legend": ["PA", "ZN"]}])
     'y from 0 to 1 over t from 0 to 9: PA, ZN.'
     """
@@ -68,7 +68,7 @@ def description(alt: str, axes: list[dict[str, Any]]) -> str:
     sentences = []
     for panel in axes:
         named = [f"{panel[f'{axis}label'] or axis} from {_range(panel[f'{axis}lim'])}" for axis in "yx"]
-        name = "" if panel["panel"].startswith("panel ") else f"{panel['panel']}: "
+        name = f"{panel['title']}: " if panel["title"] else ""
         curves = f": {', '.join(panel['legend'])}" if panel["legend"] else ""
         sentences.append(f"{name}{' over '.join(named)}{curves}.")
     return " ".join(sentences)
