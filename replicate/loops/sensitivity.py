@@ -116,8 +116,8 @@ def _grid(transfer: LoopTransfer, end: float, poles: NDArray[np.complex128], sta
     w = frequency_grid(transfer, end, per_decade=80)
     spread = np.concatenate([-np.geomspace(10.0, 0.03, 12), [0.0], np.geomspace(0.03, 10.0, 12)])
     near = [p.imag + abs(p.real) * spread for p in poles if p.imag > 0.0]
-    w = np.unique(np.concatenate([w, *near]))
-    return w[(w > start) & (w <= end)]
+    w = np.unique(np.concatenate([w, *near, [start, end]]))  # both ends, so that bands that overlap leave no gap
+    return w[(w > 0.0) & (w >= start) & (w <= end)]
 
 
 def _best_on(kind: _Kind, w: Array) -> FrequencyPeak:
@@ -126,6 +126,12 @@ def _best_on(kind: _Kind, w: Array) -> FrequencyPeak:
     best = FrequencyPeak(float(m[0]), float(w[0]))
     if m[-1] > best.value:
         best = FrequencyPeak(float(m[-1]), float(w[-1]))
+    # A peak in the first or last interval can hide behind the end point: then the slope there points inwards.
+    for left, right, end in ((w[0], w[1], w[0]), (w[-2], w[-1], w[-1])) if w.size > 1 else ():
+        frequency = _polish(kind, float(left), float(end), float(right))
+        value = float(kind.magnitude(np.array([frequency]))[0])
+        if value > best.value:
+            best = FrequencyPeak(value, frequency)
     if inner.size == 0:
         return best
     # polishing gains little on a grid this fine: only the highest few can win
