@@ -7,9 +7,11 @@ metrics read from the piecewise polynomial, poles, sensitivity peaks and margins
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PI, PID
 from replicate.loops.design_pi import PIDesign, design_pi, setpoint_weight
+from replicate.loops.design_pid import PIDDesign, design_pid, pid_setpoint_weight, search_range
 from replicate.loops.errors import ImproperLoopError, LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.loop import Loop, Response, step_responses
 from replicate.loops.margins import Margins
+from replicate.loops.nyquist_constraints import Constraint
 from replicate.loops.plant import Plant
 from replicate.loops.sensitivity import FrequencyPeak
 from replicate.loops.signal import Peak, Signal
@@ -18,12 +20,14 @@ __all__ = [
     "PI",
     "PID",
     "Circle",
+    "Constraint",
     "FrequencyPeak",
     "ImproperLoopError",
     "Loop",
     "LoopError",
     "Margins",
     "NotSettledError",
+    "PIDDesign",
     "PIDesign",
     "Peak",
     "Plant",
@@ -31,6 +35,9 @@ __all__ = [
     "Signal",
     "UnstableLoopError",
     "design_pi",
+    "design_pid",
+    "pid_setpoint_weight",
+    "search_range",
     "setpoint_weight",
     "step_responses",
 ]

@@ -1,0 +1,105 @@
+r"""Constraints on the Nyquist curve of a PID loop, as functions of the gains x = (k, ki, kd) at each frequency.
+
+With :math:`L(i\omega) = \sum_j x_j \varphi_j(\omega)` linear in the gains, all three are quadratic in x:
+
+* sensitivity: :math:`|C + L|^2 - R^2 \ge 0`, outside a circle;
+* curvature: :math:`-\mathrm{Im}(\bar{\dot L} \ddot L) \ge 0`, the curve only ever bends clockwise;
+* phase: :math:`-\mathrm{Im}(\bar L \dot L) \ge 0`, the phase only ever falls.
+
+Dots are derivatives with respect to frequency. Each value is divided by what makes it dimensionless, so that one tolerance
+serves all: the sensitivity by R^2, the phase slope becomes d(arg L)/d(log w), the bend the curvature of the curve itself.
+
+Reference: Panagopoulos, thesis (2000), supplement to paper II, (1) to (5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.circles import Circle
+from replicate.loops.jets import controller_basis_jets, plant_jet, series_product
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+Kind = Literal["sensitivity", "curvature", "phase"]
+
+
+@dataclass(frozen=True)
+class Constraint:
+    """One constraint and the frequencies on which it is asked for.
+
+    Attributes
+    ----------
+    kind
+        ``sensitivity``, ``curvature`` or ``phase``.
+    low, high
+        The frequency range, rad per unit of time.
+    margin
+        For ``curvature``: the signed curvature must be at most ``-margin`` (in the Nyquist plane, dimensionless).
+    """
+
+    kind: Kind
+    low: float = 0.0
+    high: float = float("inf")
+    margin: float = 0.0
+
+
+@dataclass(frozen=True)
+class LoopJet:
+    """The basis of L and its derivatives at fixed frequencies; shape (derivative order + 1, 3, len(w))."""
+
+    w: Array
+    phi: ComplexArray
+
+    @classmethod
+    def of(cls, plant: Plant, w: Array, order: int = 2) -> LoopJet:
+        """Return the basis (G, G/(i w), i w G) and its first ``order`` derivatives."""
+        jet = plant_jet(plant, w, order)
+        basis = controller_basis_jets(w, order)
+        products = np.stack([series_product(jet, part) for part in basis], axis=1)
+        factorials = np.array([1.0, 1.0, 2.0, 6.0])[: order + 1]
+        return cls(np.asarray(w, dtype=float), products * factorials[:, None, None])
+
+    def values(self, kind: Kind, circle: Circle, x: Array, margin: float = 0.0) -> tuple[Array, Array]:
+        """Return the constraint's values (>= 0 where it holds), shape (n,), and gradients in x, shape (n, 3)."""
+        loop = np.einsum("dxn,x->dn", self.phi, x)
+        if kind == "sensitivity":
+            offset = circle.center + loop[0]
+            value = np.abs(offset) ** 2 / circle.radius**2 - 1.0
+            gradient = 2.0 * (np.conj(offset) * self.phi[0]).real / circle.radius**2
+            return value, gradient.T
+        if kind == "phase":
+            # -w d(arg L)/dw
+            size = np.abs(loop[0]) ** 2 / self.w
+            value = -(np.conj(loop[0]) * loop[1]).imag / size
+            inner = -(np.conj(self.phi[0]) * loop[1] + np.conj(loop[0]) * self.phi[1]).imag
+            shrink = 2.0 * (np.conj(loop[0]) * self.phi[0]).real / self.w
+            return value, ((inner - value * shrink) / size).T
+        speed = np.abs(loop[1])
+        value = -(np.conj(loop[1]) * loop[2]).imag / speed**3
+        inner = -(np.conj(self.phi[1]) * loop[2] + np.conj(loop[1]) * self.phi[2]).imag
+        shrink = 3.0 * (np.conj(loop[1]) * self.phi[1]).real / speed**2
+        return value - margin, (inner / speed**3 - value * shrink).T
+
+
+def constraint_slope(plant: Plant, constraint: Constraint, circle: Circle, x: Array, w: float) -> float:
+    """Return w times the derivative of a constraint's value with respect to frequency, from the exact third jets."""
+    jet = LoopJet.of(plant, np.array([w]), order=3)
+    loop = np.einsum("dxn,x->dn", jet.phi, x)[:, 0]
+    if constraint.kind == "sensitivity":
+        return float(w * 2.0 * (np.conj(circle.center + loop[0]) * loop[1]).real / circle.radius**2)
+    if constraint.kind == "phase":
+        # value = -w Im(L'/L)
+        ratio = loop[1] / loop[0]
+        return float(-w * (ratio + w * (loop[2] / loop[0] - ratio**2)).imag)
+    speed = abs(loop[1])
+    top = -(np.conj(loop[1]) * loop[2]).imag
+    top_slope = -(np.conj(loop[1]) * loop[3]).imag
+    speed_slope = (np.conj(loop[1]) * loop[2]).real / speed
+    return float(w * (top_slope / speed**3 - 3.0 * top * speed_slope / speed**4))
