@@ -12,8 +12,9 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from loops.closed_forms import pi_dead_time, root_plant_first_wave, root_plant_pi
+from loops.closed_forms import pi_dead_time, root_plant, root_plant_first_wave, root_plant_pi
 from loops.problems import PROBLEMS, ROOT_PI, ROOT_POLES, root_plant_function
+from loops.references import de_hoog
 from replicate.loops import PI, PID, ImproperLoopError, Loop, LoopError, Plant, UnstableLoopError, step_responses
 
 SIGNALS = ("y", "u", "load_y", "load_u")
@@ -53,6 +54,18 @@ def test_root_plant_soon_after_the_step():
     y = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki)).step(until=31.0)
     times = np.array([0.001, 0.005, 0.01])
     assert_close(y(times), [root_plant_first_wave(k, ki, t) for t in times])
+
+
+@pytest.mark.parametrize(("k", "ki"), [(10.0, 50.0), (20.0, 20.0)])
+def test_root_plant_near_its_limit_of_stability(k, ki):
+    # stable for k < e^pi = 23.1 under proportional control; the response rings
+    def closed_loop(s):
+        loop = root_plant(s) * (k + ki / s)
+        return loop / (1 + loop) / s
+
+    times = np.array([0.3, 3.0])
+    y = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki)).step(until=3.5)
+    assert_close(y(times), [de_hoog(closed_loop, t) for t in times])
 
 
 def test_root_plant_with_dead_time():
