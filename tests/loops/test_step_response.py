@@ -63,8 +63,8 @@ def test_root_plant_near_its_limit_of_stability(k, ki):
         loop = root_plant(s) * (k + ki / s)
         return loop / (1 + loop) / s
 
-    times = np.array([0.3, 3.0])
-    y = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki)).step(until=3.5)
+    times = np.array([0.3, 3.0, 19.0])
+    y = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki)).step(until=20.0)
     assert_close(y(times), [de_hoog(closed_loop, t) for t in times])
 
 
