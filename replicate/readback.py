@@ -30,8 +30,13 @@ TOLERANCE = 5e-5
 #: ... unless the curve would need more points than this.
 MOST_POINTS = 400
 
+#: Chords that stand for one Bezier curve; matplotlib's own subdivision works in pixels, not in data units.
+CHORDS = 64
+
 _DIGITS = 9
 _BREAK = np.array([[np.nan, np.nan]])
+_ALONG = np.linspace(0.0, 1.0, CHORDS + 1)[1:]
+_END = np.array([1.0])
 
 CurvePoint = tuple[str, str, float, float]
 Kind = Literal["line", "points", "area"]
@@ -170,20 +175,17 @@ def _shape(patch: Patch, axes: Axes) -> tuple[Points, float]:
 
 
 def _of_path(path: Path) -> Points:
-    """Return the vertices of a path, Bezier curves as short chords, with a break between its pieces."""
+    """Return the vertices of a path, Bezier curves as `CHORDS` chords, with a break between its pieces."""
     if path.codes is None:
         return np.asarray(path.vertices, dtype=float)
-    if np.isin(path.codes, (Path.CURVE3, Path.CURVE4)).any():
-        return _joined([np.asarray(piece, dtype=float) for piece in path.to_polygons(closed_only=False)])
-    pieces: list[Points] = []
-    for vertices, code in path.iter_segments(curves=False, simplify=False):
+    pieces: list[list[Points]] = []
+    segments: Any = path.iter_bezier()  # pairs of segment and code; matplotlib's stub has the segments only
+    for segment, code in segments:
         if code == Path.MOVETO:
-            pieces.append(vertices[None, :])
-        elif code == Path.CLOSEPOLY and pieces:
-            pieces[-1] = np.vstack([pieces[-1], pieces[-1][:1]])
-        elif pieces:
-            pieces[-1] = np.vstack([pieces[-1], vertices.reshape(-1, 2)])
-    return _joined(pieces)
+            pieces.append([segment.control_points[:1]])
+        else:  # a closing line ends where its piece began
+            pieces[-1].append(segment(_ALONG if code in {Path.CURVE3, Path.CURVE4} else _END))
+    return _joined([np.vstack(piece) for piece in pieces])
 
 
 def _joined(pieces: list[Points]) -> Points:

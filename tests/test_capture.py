@@ -236,3 +236,22 @@ def luminance(colour: str) -> float:
 def test_curves_have_contrast_on_white_and_dark_pages(colour: str, page: str) -> None:
     lighter, darker = sorted((luminance(colour), luminance(page)), reverse=True)
     assert (lighter + 0.05) / (darker + 0.05) >= 3.0
+
+
+def test_a_bezier_curve_is_read_back_along_the_curve() -> None:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    control = np.array([[0.0, 0.0], [0.0, 0.004], [0.003, 0.004], [0.004, 0.001]])  # small: pixels must not matter
+
+    def draw(axes: Axes) -> None:
+        axes.set(xlim=(0.0, 0.004), ylim=(0.0, 0.004))
+        axes.add_patch(PathPatch(Path(control, [1, 4, 4, 4]), fill=False, label="cubic"))
+
+    t = np.linspace(0.0, 1.0, 20_001)[:, None]
+    bernstein = [(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3]
+    exact = sum(weight * corner for weight, corner in zip(bernstein, control, strict=True))
+    points = curve(on_axes(draw), "cubic")
+    assert len(points) > 20
+    assert KDTree(exact).query(points)[0].max() < 1e-6
+    assert KDTree(points).query(exact)[0].max() < 4e-4  # the points are a few chords apart
