@@ -9,8 +9,10 @@ from replicate.loops.controller import PI, PID
 from replicate.loops.design_pi import PIDesign, design_pi, setpoint_weight
 from replicate.loops.design_pid import PIDDesign, design_pid, pid_setpoint_weight, search_range
 from replicate.loops.errors import ImproperLoopError, LoopError, NotSettledError, UnstableLoopError
+from replicate.loops.gamma_norm import Weight, gamma_norm, stability_margin
 from replicate.loops.loop import Loop, Response, step_responses
 from replicate.loops.margins import Margins
+from replicate.loops.nu_gap import WindingCount, chordal_distance, nu_gap, winding_count
 from replicate.loops.nyquist_constraints import Constraint
 from replicate.loops.plant import Plant
 from replicate.loops.sensitivity import FrequencyPeak
@@ -34,10 +36,17 @@ __all__ = [
     "Response",
     "Signal",
     "UnstableLoopError",
+    "Weight",
+    "WindingCount",
+    "chordal_distance",
     "design_pi",
     "design_pid",
+    "gamma_norm",
+    "nu_gap",
     "pid_setpoint_weight",
     "search_range",
     "setpoint_weight",
+    "stability_margin",
     "step_responses",
+    "winding_count",
 ]

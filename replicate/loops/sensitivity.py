@@ -1,7 +1,9 @@
 r"""Peaks of the sensitivity S = 1/(1+L) and the complementary sensitivity T = L/(1+L).
 
-A peak is found on a grid that resolves every resonance and dead-time rotation and polished by bracketing the root of the
-derivative of log|1+L|. The band is cut where :math:`|S| \le 1/(1-|L|)` proves that nothing beyond can exceed the peak found.
+A peak is found on a grid that resolves every resonance and dead-time rotation and polished by bracketing the
+root of the
+derivative of log|1+L|. The band is cut where :math:`|S| \le 1/(1-|L|)` proves that nothing beyond can exceed
+the peak found.
 """
 
 from __future__ import annotations
@@ -33,6 +35,7 @@ class FrequencyPeak(float):
     frequency: float
 
     def __new__(cls, value: float, frequency: float) -> FrequencyPeak:
+        """Return the peak with its frequency."""
         peak = super().__new__(cls, value)
         peak.frequency = frequency
         return peak
@@ -87,7 +90,7 @@ def complementary_peak(transfer: LoopTransfer, poles: NDArray[np.complex128]) ->
 def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) -> FrequencyPeak:
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = _grid(transfer, end, poles)
-    best = _best_on(kind, w)
+    best = highest_peak(kind.magnitude, kind.slope, w)
     # Extend the band until the bound on the rest is below the best peak, or the limit at infinity is the supremum.
     limit = kind.bound(transfer.feedthrough)
     if transfer.dead_time == 0.0 and transfer.feedthrough:
@@ -96,7 +99,8 @@ def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) ->
         if kind.bound(float(abs(transfer(1j * end)))) <= max(best.value, limit):
             break
         wider = end * 1.5
-        best = max(best, _best_on(kind, _grid(transfer, wider, poles, start=0.98 * end)), key=float)
+        beyond = _grid(transfer, wider, poles, start=0.98 * end)
+        best = max(best, highest_peak(kind.magnitude, kind.slope, beyond), key=float)
         end = wider
     at_rest = _at_rest(transfer, kind)
     if at_rest >= best.value:
@@ -120,30 +124,34 @@ def _grid(transfer: LoopTransfer, end: float, poles: NDArray[np.complex128], sta
     return w[(w > 0.0) & (w >= start) & (w <= end)]
 
 
-def _best_on(kind: _Kind, w: Array) -> FrequencyPeak:
-    m = kind.magnitude(w)
+def highest_peak(magnitude: Callable[[Array], Array], slope: Callable[[float], float], w: Array) -> FrequencyPeak:
+    """Return the highest peak of a magnitude on ascending frequencies, polished between them.
+
+    ``slope(w)`` has the sign of the magnitude's derivative.
+    """
+    m = magnitude(w)
     inner = np.nonzero((m[1:-1] >= m[:-2]) & (m[1:-1] >= m[2:]))[0] + 1
     best = FrequencyPeak(float(m[0]), float(w[0]))
     if m[-1] > best.value:
         best = FrequencyPeak(float(m[-1]), float(w[-1]))
     # A peak in the first or last interval can hide behind the end point: then the slope there points inwards.
     for left, right, end in ((w[0], w[1], w[0]), (w[-2], w[-1], w[-1])) if w.size > 1 else ():
-        frequency = _polish(kind, float(left), float(end), float(right))
-        value = float(kind.magnitude(np.array([frequency]))[0])
+        frequency = _polish(slope, float(left), float(end), float(right))
+        value = float(magnitude(np.array([frequency]))[0])
         if value > best.value:
             best = FrequencyPeak(value, frequency)
     if inner.size == 0:
         return best
     # polishing gains little on a grid this fine: only the highest few can win
     for index in inner[np.argsort(-m[inner])][:6]:
-        frequency = _polish(kind, float(w[index - 1]), float(w[index]), float(w[index + 1]))
-        value = float(kind.magnitude(np.array([frequency]))[0])
+        frequency = _polish(slope, float(w[index - 1]), float(w[index]), float(w[index + 1]))
+        value = float(magnitude(np.array([frequency]))[0])
         if value > best.value:
             best = FrequencyPeak(value, frequency)
     return best
 
 
-def _polish(kind: _Kind, left: float, middle: float, right: float) -> float:
-    if kind.slope(left) > 0.0 > kind.slope(right):
-        return float(brentq(kind.slope, left, right, xtol=1e-300, rtol=8.9e-16, maxiter=200))
+def _polish(slope: Callable[[float], float], left: float, middle: float, right: float) -> float:
+    if slope(left) > 0.0 > slope(right):
+        return float(brentq(slope, left, right, xtol=1e-300, rtol=8.9e-16, maxiter=200))
     return middle
