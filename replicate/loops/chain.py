@@ -1,13 +1,14 @@
 """The open chain from the delayed control signal to the controller's building blocks.
 
 On an interval no longer than the dead time the plant sees only what the controller did one dead time ago. Everything in
-that interval, output and next control signal alike, is therefore an explicit linear function of known signals: there is no
-feedback inside. The chain holds the states of the plant, of the filters and of the integrator,
+that interval, output and next control signal alike, is therefore an explicit linear function of known signals:
+there is no feedback inside. The chain holds the states of the plant, of the filters and of the integrator,
 
     X' = A X + B v + E r,    y = C X + D v,    w = W_x X + W_v v + W_r r,    u = g . w,
 
 with v the plant input after the dead time, r the set-point, and w the four signals r_f, y_f, integral(r_f - y_f) and
-derivative whose gains are (k b, -k, ki, kd). The gains appear only in the last product, so one chain serves a whole sweep.
+derivative whose gains are (k b, -k, ki, kd). The gains appear only in the last product, so one chain serves a
+whole sweep.
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ Trefethen, "Spectral Methods in MATLAB" (2000), chapters 6 and 12; Clenshaw and 
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev as cheb
@@ -101,6 +102,6 @@ def real_roots(coefficients: Array) -> Array:
     return np.sort(real)
 
 
-def _frozen(array: Array) -> Array:
+def _frozen(array: NDArray[np.floating[Any]]) -> Array:
     array.setflags(write=False)  # cached arrays are shared
-    return array
+    return np.asarray(array, dtype=np.float64)

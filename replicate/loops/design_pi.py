@@ -2,10 +2,13 @@ r"""PI design by non-convex optimisation: the largest integral gain with a bound
 
 Maximise :math:`k_i` subject to :math:`|C + (k + k_i/s) G(s)| \ge R` on the imaginary axis and closed-loop stability.
 
-For a fixed frequency the constraint forbids the interior of an ellipse in the (k, ki) plane; for a fixed k it forbids an
-interval of ki at every frequency. What is left between the intervals are gaps, and inside a connected gap stability cannot
-change, because the point -1 lies inside the circle. The design therefore looks at the upper ends of the gaps over k, keeps
-the local maxima that are stable, and polishes each: tangency at one frequency by the equation h(w) = 0 (18), tangency at
+For a fixed frequency the constraint forbids the interior of an ellipse in the (k, ki) plane; for a fixed k it
+forbids an interval of ki at every frequency. What is left between the intervals are gaps, and inside a connected gap
+stability cannot
+change, because the point -1 lies inside the circle. The design therefore looks at the upper ends of the gaps
+over k, keeps
+the local maxima that are stable, and polishes each: tangency at one frequency by the equation h(w) = 0 (18),
+tangency at
 two frequencies (a corner of the envelope) by the four equations (15). Every solution is verified on all frequencies.
 
 Reference: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on non-convex optimization", Automatica 34
@@ -101,7 +104,8 @@ def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) ->
     Raises
     ------
     LoopError
-        If no bound is given or a bound is not greater than one. That no controller exists is not an error: see ``status``.
+        If no bound is given or a bound is not greater than one. That no controller exists is not an error: see
+        ``status``.
 
     Examples
     --------
@@ -154,7 +158,9 @@ def smooth_condition(plant: Plant, circle: Circle, w: Array) -> Array:
     value = plant(1j * w)
     slope = 1j * plant.log_derivative(1j * w)  # d log G / d w = r'/r + i phi'
     phase = np.angle(value)
-    h = (circle.radius + circle.center * np.sin(phase)) * (slope.real - 1.0 / w) - circle.center * slope.imag * np.cos(phase)
+    h = (circle.radius + circle.center * np.sin(phase)) * (slope.real - 1.0 / w) - circle.center * slope.imag * np.cos(
+        phase
+    )
     return np.asarray(h)
 
 
@@ -197,7 +203,7 @@ def design_grid(plant: Plant) -> Array:
 
 @dataclass(frozen=True)
 class _Maximum:
-    """The upper end ``ki`` of a gap at gain ``k`` that no gap connected to it exceeds; ``inside`` is a ki in the gap."""
+    """The upper end ``ki`` of a gap at ``k`` that no connected gap exceeds; ``inside`` is a ki in the gap."""
 
     k: float
     ki: float
@@ -254,7 +260,7 @@ def _gain_grid(loci: Array, r: Array) -> Array:
 
 
 def _polish(plant: Plant, circle: Circle, w: Array, found: _Maximum) -> PIDesign | None:
-    """Return the verified optimum near a maximum found on the grid, smooth if one tangency explains it, else a corner."""
+    """Return the verified optimum near a maximum of the grid: smooth if one tangency explains it, else a corner."""
     attempts = [_smooth(plant, circle, w, found.frequency)]
     pairs = {_closest(plant, circle, w, found.k, found.ki), (min(found.neighbours), max(found.neighbours))}
     attempts += [_corner(plant, circle, found.k, found.ki, *pair) for pair in sorted(pairs)]

@@ -1,11 +1,14 @@
 r"""PID design by constrained optimisation: the largest integral gain of a robust and well-shaped loop.
 
-Maximise :math:`k_i` over (k, ki, kd) subject to the sensitivity circle, negative curvature and negative phase slope of the
-Nyquist curve, each on its frequency range, and closed-loop stability.
+Maximise :math:`k_i` over (k, ki, kd) subject to the sensitivity circle, negative curvature and negative phase
+slope of the Nyquist curve, each on its frequency range, and closed-loop stability.
 
-The search is local (sequential quadratic programming on a frequency grid) from several starts, the PI design among them,
-because the feasible set has ridges and look-alikes behind the circle where the loop is unstable. What it finds is finished
-by Newton's method on the optimality system of the semi-infinite problem: every active constraint touches zero at its own
+The search is local (sequential quadratic programming on a frequency grid) from several starts, the PI design
+among them,
+because the feasible set has ridges and look-alikes behind the circle where the loop is unstable. What it finds
+is finished
+by Newton's method on the optimality system of the semi-infinite problem: every active constraint touches zero
+at its own
 frequency, where it is stationary, and the gradient of ki is a combination of the active gradients with positive
 multipliers. Each result is verified on all frequencies and for stability.
 
@@ -37,7 +40,7 @@ Status = Literal["optimal", "not-polished", "no-controller"]
 
 MESSAGES: dict[str, str] = {
     "optimal": "the optimality conditions hold to rounding and all constraints were verified on all frequencies",
-    "not-polished": "the search found this point, feasible and stable, but the optimality system did not converge to it",
+    "not-polished": "a feasible and stable point was found, but the optimality system did not converge to it",
     "no-controller": "no stabilising controller that satisfies the constraints was found",
 }
 
@@ -122,9 +125,10 @@ def design_pid(
     ms, mp
         Bounds > 1 on the sensitivity and the complementary sensitivity; with both, the combined circle is used.
     constraints
-        Besides the circle: ``"curvature"``, ``"phase"``, or `Constraint` records with their own range and margin. A bare
-        name is asked for on `search_range`. Default: both, without curvature for integrating plants, for which it is too
-        severe. An empty sequence leaves the circle alone.
+        Besides the circle: ``"curvature"``, ``"phase"``, or `Constraint` records with their own range and
+        margin. A bare
+        name is asked for on `search_range`. Default: both, without curvature for integrating plants, for which
+        it is too severe. An empty sequence leaves the circle alone.
     start
         Gains (k, ki, kd) to start from besides the usual starts.
 
@@ -143,9 +147,9 @@ def design_pid(
     """
     circle = Circle.of(ms, mp)
     pi = design_pi(plant, ms, mp)
-    if constraints is None:
-        constraints = ("phase",) if plant.integrators else ("curvature", "phase")
-    asked = [Constraint("sensitivity"), *(_constraint(plant, pi.k, pi.ki, item) for item in constraints)]
+    shape: Sequence[Constraint | str] = ("phase",) if plant.integrators else ("curvature", "phase")
+    asked = [Constraint("sensitivity")]
+    asked += [_constraint(plant, pi.k, pi.ki, item) for item in (shape if constraints is None else constraints)]
     problem = _Problem(plant, circle, tuple(asked))
     best: PIDDesign | None = None
     for gains in _starts(plant, pi.k, pi.ki, pi.frequency, start):
@@ -263,7 +267,7 @@ class _Problem:
             return np.concatenate([self._values(i, z * scale)[1] * scale for i in range(len(self.grids))])
 
         with np.errstate(all="ignore"):
-            result = minimize(
+            result = minimize(  # type: ignore[call-overload]  # the stubs want exact dict types, not literals
                 lambda z: -z[1],
                 x / scale,
                 jac=lambda _: np.array([0.0, -1.0, 0.0]),
@@ -283,7 +287,7 @@ class _Problem:
         return value * squash, gradient * (squash**2)[:, None]
 
     def finish(self, x: Array) -> PIDDesign | None:
-        """Return the verified design near a grid optimum: polished if the optimality system converges, else as found."""
+        """Return the verified design near a grid optimum, polished if the optimality system converges."""
         active = self._active(x)
         polished = self._newton(x, active) if active else None
         if polished is not None:
@@ -296,7 +300,7 @@ class _Problem:
         return None
 
     def _active(self, x: Array) -> list[ActiveConstraint]:
-        """Return the touching points with positive multipliers, from a non-negative least-squares fit of the gradient."""
+        """Return the touching points with positive multipliers, from a non-negative fit of the gradient."""
         candidates: list[tuple[int, float, Array]] = []
         for index, grid in enumerate(self.grids):
             value, gradient = self._values(index, x)
@@ -312,8 +316,8 @@ class _Problem:
         if residual > 0.3:
             return []
         active: list[ActiveConstraint] = []
-        for (index, frequency, _), multiplier in zip(candidates, multipliers, strict=True):
-            kind, weight = self.constraints[index].kind, float(multiplier)
+        for (index, touch, _), multiplier in zip(candidates, multipliers, strict=True):
+            kind, frequency, weight = self.constraints[index].kind, touch, float(multiplier)
             if weight <= 1e-6:
                 continue
             if active and active[-1].kind == kind and frequency < active[-1].frequency * (1.0 + SAME_TOUCH):
@@ -338,13 +342,17 @@ class _Problem:
             rows = []
             for part, kind, at_end, shift, multiplier in zip(active, kinds, fixed, logs, multipliers, strict=True):
                 w = part.frequency * np.exp(shift)
-                value, gradient = LoopJet.of(self.plant, np.array([w])).values(kind.kind, self.circle, gains, kind.margin)
+                value, gradient = LoopJet.of(self.plant, np.array([w])).values(
+                    kind.kind, self.circle, gains, kind.margin
+                )
                 balance = balance + multiplier * gradient[0] * size
                 rows += [value[0], shift if at_end else constraint_slope(self.plant, kind, self.circle, gains, w)]
             return np.concatenate([balance, rows])
 
         with np.errstate(all="ignore"):
-            solution = root(equations, start, method="hybr", options={"xtol": 1e-14, "maxfev": 4000})
+            solution = root(  # type: ignore[call-overload]  # as above
+                equations, start, method="hybr", options={"xtol": 1e-14, "maxfev": 4000}
+            )
         if not np.max(np.abs(solution.fun)) < 1e-9:
             return None
         gains = solution.x[:3] * size

@@ -19,9 +19,7 @@ if TYPE_CHECKING:
     from replicate.loops import PI, Plant
 
 Array = NDArray[np.float64]
-StateSpace = (
-    Any  # control.StateSpace: python-control publishes no types, and is imported only where it is used
-)
+StateSpace = Any  # control.StateSpace: python-control publishes no types, and is imported only where it is used
 
 
 def pade_loop(

@@ -2,10 +2,11 @@ r"""Time responses of loops around plants given by a function, by contour invers
 
 .. math:: y(t) = \frac{1}{2\pi i} \int_\Gamma e^{st} Y(s)\, ds
 
-The contour is a hyperbola that opens to the left, so that :math:`e^{st}` decays along it. It must leave every closed-loop
-pole on its left: the winding of 1 + L along it is counted, and the flattest hyperbola that passes is taken. The integrand
-is analytic near the contour, so the trapezoidal rule converges exponentially; it is refined until two successive sets of
-quadrature points agree.
+The contour is a hyperbola that opens to the left, so that :math:`e^{st}` decays along it. It must leave every
+closed-loop
+pole on its left: the winding of 1 + L along it is counted, and the flattest hyperbola that passes is taken.
+The integrand is analytic near the contour, so the trapezoidal rule converges exponentially; it is refined until two
+successive sets of quadrature points agree.
 
 Reference: Weideman and Trefethen, "Parabolic and hyperbolic contours for computing the Bromwich integral",
 Math. Comp. 76 (2007).
@@ -14,6 +15,8 @@ Math. Comp. 76 (2007).
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -28,47 +31,81 @@ ComplexArray = NDArray[np.complex128]
 
 OPENINGS = (0.62, 0.45, 0.3, 0.2, 0.12, 0.07, 0.04)  # rad by which the contour's arms lean to the left of vertical
 DEGREE = 18
+RESIDUE_POINTS = 64
 TOLERANCE = 1e-13
 RESOLVED = 5e-13
 FIRST = 1e-3  # length of the first piece, in time scales
 GROWTH = 1.35
 KINKS = 12
+EXPANDED = 5  # dead times during which the response is summed up delay by delay
 
 
-def respond(
-    transfer: LoopTransfer, transform: Callable[[Any], ComplexArray], until: float, start: float, time_scale: float
-) -> tuple[Array, Array]:
-    """Return (breaks, Chebyshev coefficients) of the inverse transform on [0, until]; zero before ``start``.
+@dataclass(frozen=True)
+class ClosedLoop:
+    """What is inverted: the response ``forward exp(-s dead_time) / (1 + L)`` and where its poles are.
+
+    Attributes
+    ----------
+    forward
+        The open response without the dead time, drive times plant over s, for complex arrays.
+    poles
+        The rightmost closed-loop poles with Im > 0. They are counted: whether these are all is checked.
+    """
+
+    transfer: LoopTransfer
+    forward: Callable[[Any], ComplexArray]
+    poles: ComplexArray
+
+    def closed(self, s: Any) -> ComplexArray:
+        """Evaluate the response's transform without the dead time of its first path."""
+        return np.asarray(self.forward(s) / (1.0 + self.transfer(s)))
+
+    def path(self, trips: int) -> Callable[[Any], ComplexArray]:
+        """Return the transform, without dead time, of the part that has been around the loop ``trips`` times."""
+        delay = self.transfer.dead_time
+        return lambda s: np.asarray(self.forward(s) * (-self.transfer(s) * np.exp(s * delay)) ** trips)
+
+    def residue(self, pole: complex) -> complex:
+        """Return the residue of the closed transform at a pole, by Cauchy's integral."""
+        others = [abs(pole - q) for q in self.poles if q != pole]
+        radius = 0.3 * min([abs(pole), 2.0 * pole.imag, *others])
+        turn = np.exp(2j * np.pi * np.arange(RESIDUE_POINTS) / RESIDUE_POINTS)
+        return complex(np.mean(self.closed(pole + radius * turn) * radius * turn))
+
+
+def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, Array]:
+    """Return (breaks, Chebyshev coefficients) of the response on [0, until]; zero during the dead time.
 
     Parameters
     ----------
-    transform
-        Y(s) of a response that is continuous for t > start, for complex arrays.
     time_scale
-        Time constant of the slowest mode. Pieces grow geometrically from a small fraction of it, because such responses
-        start infinitely flat and end in an algebraic tail; pieces that are not resolved are halved.
+        Time constant of the slowest mode. Pieces grow geometrically from a small fraction of it, because such
+        responses start infinitely flat and end in an algebraic tail; pieces that are not resolved are halved.
 
     Raises
     ------
     LoopError
-        If no contour leaves all closed-loop poles on its left, or the quadrature does not converge.
+        If no contour separates the known poles from all others, or the quadrature does not converge.
     """
+    start = loop.transfer.dead_time
     end = until - start
+    if end <= 0.0:
+        return np.array([0.0, until]), np.zeros((1, DEGREE + 1))
     edges = [0.0, min(end, FIRST * time_scale)]
     while edges[-1] < end:
         edges.append(min(end, GROWTH * edges[-1]))
-    if transfer.dead_time:  # the response is smooth only between multiples of the dead time, ever smoother later
-        kinks = transfer.dead_time * np.arange(1, KINKS)
+    if start:  # the response is smooth only between multiples of the dead time, ever smoother later
+        kinks = start * np.arange(1, KINKS)
         edges = sorted({*edges, *kinks[kinks < end].tolist()})
-    pending = [(left, right) for left, right in zip(edges[:-1], edges[1:], strict=True)][::-1]
+    pending = list(pairwise(edges))[::-1]
     to_coefficients = chebyshev.values_to_coefficients(DEGREE)
     lefts: list[float] = []
     pieces: list[Array] = []
-    largest = float(np.abs(transform(1.0 / time_scale)) / time_scale)  # the response's size, before any piece is known
+    largest = float(np.abs(loop.closed(1.0 / time_scale)) / time_scale)  # the response's size, before any piece is known
     while pending:
         left, right = pending.pop()
         t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)
-        series = to_coefficients @ _invert(transfer, transform, t, start)
+        series = to_coefficients @ _values(loop, t)
         largest = max(largest, float(np.max(np.abs(series))))
         if np.max(np.abs(series[-2:])) > RESOLVED * largest and right - left > 1e-6 * time_scale:
             middle = 0.5 * (left + right)
@@ -84,41 +121,60 @@ def respond(
     return breaks, coefficients
 
 
-def _invert(transfer: LoopTransfer, transform: Callable[[Any], ComplexArray], t: Array, start: float) -> Array:
-    later = t[t > 0.0]
+def _values(loop: ClosedLoop, t: Array) -> Array:
+    """Return the response at times within one piece, counted from the end of the first dead time."""
+    delay = loop.transfer.dead_time
+    middle = float(t[t.size // 2])
+    if delay and middle < EXPANDED * delay:
+        # after n dead times the loop has been gone around n times at most: a finite sum without closed-loop poles
+        parts = [_invert(loop.path(n), t - n * delay, None) for n in range(int(middle / delay) + 1)]
+        return np.asarray(np.sum(parts, axis=0))
+    return _invert(loop.closed, t, loop)
+
+
+def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array:
+    """Invert a transform at times t; with a loop, its poles to the right of the contour are added as residues."""
     result = np.zeros_like(t)
-    if later.size == 0:
+    later = t > 1e-14 * max(float(t.max()), 0.0)
+    if not later.any():
         return result
-    longest = float(later.max())
-    shortest = max(float(later.min()), 0.02 * longest)
+    longest = float(t.max())
+    shortest = max(float(t[later].min()), 0.02 * longest)
     for opening in OPENINGS:
         for scale in (3.0 / longest, 9.0 / longest):
             contour = _Contour(scale, opening)
-            if contour.passes(transfer, shortest):
-                values = _refined(contour, transform, later, shortest, start)
-                if values is not None:
-                    result[t > 0.0] = values
-                    return result
-    msg = "no contour passes to the right of all closed-loop poles: the loop is unstable or too lightly damped to invert"
+            outside = contour.poles_to_the_right(loop, shortest) if loop else np.empty(0, dtype=complex)
+            if outside is None:
+                continue
+            values = _refined(contour, transform, t[later], shortest)
+            if values is None:
+                continue
+            if loop:
+                for pole in outside:
+                    values = values + 2.0 * (loop.residue(complex(pole)) * np.exp(pole * t[later])).real
+            result[later] = values
+            return result
+    msg = "no contour separates the loop's known poles from the others: it is unstable or too lightly damped to invert"
     raise LoopError(msg)
 
 
 def _refined(
-    contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float, start: float
+    contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float
 ) -> Array | None:
-    """Return the response at times ``t``, or None if the quadrature does not converge on this contour."""
+    """Return the integral along the contour at times ``t``, or None if the quadrature does not converge on it."""
     reach = contour.reach(shortest)
     previous: Array | None = None
     for count in (60, 120, 240, 480, 960, 1920, 3840):
         # midpoint rule on the upper arm; the lower one is its conjugate
         step = reach / count
-        theta = step * (np.arange(count) + 0.5)
+        theta = np.asarray(step * (np.arange(count) + 0.5), dtype=float)
         s, ds = contour(theta)
         with np.errstate(all="ignore"):
-            weights = transform(s) * np.exp(s * start) * ds * step / np.pi
+            weights = transform(s) * ds * step / np.pi
         weights = np.where(np.isfinite(weights), weights, 0.0)
         values = np.imag(np.exp(np.outer(t, s)) @ weights)
-        if previous is not None and np.max(np.abs(values - previous)) <= TOLERANCE * max(1.0, float(np.max(np.abs(values)))):
+        size = max(1.0, float(np.max(np.abs(values))))
+        if previous is not None and np.max(np.abs(values - previous)) <= TOLERANCE * size:
             return np.asarray(values)
         previous = values
     return None
@@ -140,12 +196,13 @@ class _Contour:
         depth = 40.0 / (self.scale * shortest * np.sin(self.opening)) + 2.0 / np.sin(self.opening)
         return float(np.arccosh(max(depth, 2.0)))
 
-    def passes(self, transfer: LoopTransfer, shortest: float) -> bool:
-        """Whether no closed-loop pole whose mode has not yet decayed lies to the right of the contour.
+    def poles_to_the_right(self, loop: ClosedLoop, shortest: float) -> ComplexArray | None:
+        """Return the known closed-loop poles to the right of the contour, or None if they are not all there are.
 
         The argument of 1 + L is followed around the region between the upper arm, cut where exp(s t) has decayed, the
-        vertical line above its tip, and the vertical line through the contour's vertex.
+        vertical line above its tip, and the vertical line through the contour's vertex: each pole inside adds a turn.
         """
+        transfer = loop.transfer
         arm, _ = self(np.linspace(0.0, self.reach(shortest), 3000))
         vertex, tip = arm[0].real, arm[-1]
         top = max(2.0 * tip.imag, 2.0 * transfer.beyond(0.1))
@@ -157,5 +214,12 @@ class _Contour:
         with np.errstate(all="ignore"):
             value = 1.0 + transfer(path)
         if not np.isfinite(value).all():
-            return False
-        return abs(float(np.sum(np.angle(value[1:] / value[:-1])))) < 1.0
+            return None
+        turns = round(abs(float(np.sum(np.angle(value[1:] / value[:-1])))) / (2.0 * np.pi))
+        inside = [pole for pole in loop.poles if pole.imag > 0.0 and _encloses(path, complex(pole))]
+        return np.array(inside, dtype=complex) if len(inside) == turns else None
+
+
+def _encloses(path: ComplexArray, point: complex) -> bool:
+    offsets = np.append(path, path[0]) - point
+    return abs(float(np.sum(np.angle(offsets[1:] / offsets[:-1])))) > np.pi

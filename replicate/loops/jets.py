@@ -1,6 +1,7 @@
 """Derivatives of a plant's frequency response with respect to frequency, exact.
 
-For rational plants the Taylor coefficients of numerator, denominator and dead time are divided and multiplied as series.
+For rational plants the Taylor coefficients of numerator, denominator and dead time are divided and multiplied
+as series.
 For plants given by a function they come from Cauchy's integral on a circle around i w, which converges geometrically.
 """
 
@@ -21,7 +22,7 @@ CIRCLE_RADIUS = 0.35  # of |w|; a cut or poles on the negative real axis stay we
 
 
 def plant_jet(plant: Plant, w: Array, order: int) -> ComplexArray:
-    """Return the Taylor coefficients of G(i w) in w, shape (order + 1, len(w)); row n is the n-th derivative over n!."""
+    """Return the Taylor coefficients of G(i w) in w, shape (order + 1, len(w)); row n is n-th derivative / n!."""
     s = 1j * np.asarray(w, dtype=float)
     if plant.is_rational:
         series = series_quotient(_polynomial_jet(plant.num, s, order), _polynomial_jet(plant.den, s, order))

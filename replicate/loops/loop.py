@@ -74,7 +74,7 @@ class Loop:
         return stability.is_stable(self.transfer)
 
     def is_stable(self) -> bool:
-        """Return whether all closed-loop poles are in the open left half-plane (argument principle, exact dead time)."""
+        """Return whether all closed-loop poles are in the open left half-plane, by the argument principle."""
         return self._stable
 
     def unstable_poles(self) -> int:
@@ -179,9 +179,7 @@ class Loop:
         if load and load_at:
             base = self.respond(setpoint=setpoint, until=end)
             added = self.respond(setpoint=0.0, load=load, until=end - load_at)
-            return Response(
-                base.output + added.output.delayed(load_at), base.control + added.control.delayed(load_at)
-            )
+            return Response(base.output + added.output.delayed(load_at), base.control + added.control.delayed(load_at))
         if not self.plant.is_rational:
             return self._respond_by_inversion(setpoint, load, end)
         length, y, u = method_of_steps.respond(self.plant, [self.controller], end, setpoint=setpoint, load=load)
@@ -190,14 +188,14 @@ class Loop:
     def _signals(
         self, length: float, y: NDArray[np.float64], u: NDArray[np.float64], end: float, setpoint: float, load: float
     ) -> tuple[Signal, Signal]:
-        final_y, final_u = self._final(setpoint, load)
+        final_y, final_u = self.steady_state(setpoint, load)
         return (
             Signal.from_pieces(length, y, end, final=final_y, stable=self.is_stable),
             Signal.from_pieces(length, u, end, final=final_u, stable=self.is_stable),
         )
 
-    def _final(self, setpoint: float, load: float) -> tuple[float, float]:
-        """Return the steady-state values of output and control signal."""
+    def steady_state(self, setpoint: float, load: float) -> tuple[float, float]:
+        """Return the steady-state values of output and control signal for the given set-point and load steps."""
         gain = self.plant.gain
         num, den = self.controller.setpoint_filter_polynomials()
         reference = setpoint * float(num[-1] / den[-1])
@@ -215,15 +213,13 @@ class Loop:
     def _respond_by_inversion(self, setpoint: float, load: float, end: float) -> Response:
         plant, controller = self.plant, self.controller
 
-        def transform(s: object) -> ComplexArray:
-            s_ = np.asarray(s, dtype=complex)
-            drive = setpoint * controller.feedforward(s_) + load
-            return np.asarray(drive * plant(s_) / (1.0 + self.transfer(s_)) / s_)
+        def forward(s: ArrayLike) -> ComplexArray:
+            s = np.asarray(s, dtype=complex)
+            return np.asarray((setpoint * controller.feedforward(s) + load) * plant.delay_free(s) / s)
 
-        breaks, coefficients = inversion.respond(
-            self.transfer, transform, end, plant.dead_time, 1.0 / abs(self.rightmost_pole().real)
-        )
-        final_y, final_u = self._final(setpoint, load)
+        closed = inversion.ClosedLoop(self.transfer, forward, self.poles(count=8))
+        breaks, coefficients = inversion.respond(closed, end, 1.0 / abs(self.rightmost_pole().real))
+        final_y, final_u = self.steady_state(setpoint, load)
         output = Signal(breaks, coefficients, final=final_y, stable=self.is_stable)
         return Response(output, _control_from_output(controller, output, setpoint, final_u))
 
@@ -245,7 +241,7 @@ def _control_from_output(controller: PID, output: Signal, setpoint: float, final
     control = control + proportional
     if controller.kd:
         control = control + output.derivative() * -controller.kd
-    return Signal(control.breaks, control.coefficients, final=final, stable=output._stable)
+    return Signal(control.breaks, control.coefficients, final=final, stable=output.stable)
 
 
 def step_responses(
@@ -264,6 +260,6 @@ def step_responses(
     signals = []
     for controller, coefficients in zip(controllers, y, strict=True):
         loop = Loop(plant, controller)
-        final, _ = loop._final(setpoint, load)
+        final, _ = loop.steady_state(setpoint, load)
         signals.append(Signal.from_pieces(length, coefficients, until, final=final, stable=loop.is_stable))
     return signals

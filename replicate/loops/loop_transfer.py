@@ -43,7 +43,8 @@ class LoopTransfer:
         """
         num, den = controller.feedback_polynomials()
         if plant.is_rational:
-            num, den = np.polymul(num, plant.num), np.polymul(den, plant.den)
+            num = np.asarray(np.polymul(num, plant.num), dtype=float)
+            den = np.asarray(np.polymul(den, plant.den), dtype=float)
         transfer = cls(np.trim_zeros(num, "f"), den, plant.dead_time, plant)
         if plant.is_rational and transfer.num.size > den.size:
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
@@ -70,7 +71,9 @@ class LoopTransfer:
         rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(
             np.polyder(self.den), s
         ) / np.polyval(self.den, s)
-        return np.asarray(rational - self.dead_time if self.plant.is_rational else rational + self.plant.log_derivative(s))
+        return np.asarray(
+            rational - self.dead_time if self.plant.is_rational else rational + self.plant.log_derivative(s)
+        )
 
     @cached_property
     def feedthrough(self) -> float:
@@ -83,8 +86,10 @@ class LoopTransfer:
     def gain_stationary(self) -> Array:
         """Positive frequencies at which |L(i w)| is stationary, ascending; |L| is monotone beyond the last one."""
         n, d = _squared_magnitude(self.num), _squared_magnitude(self.den)
-        slope = np.polysub(np.polymul(np.polyder(n), d), np.polymul(n, np.polyder(d)))
-        roots = np.roots(np.trim_zeros(slope, "f")) if np.any(slope) else np.empty(0)
+        slope: Array = np.asarray(
+            np.polysub(np.polymul(np.polyder(n), d), np.polymul(n, np.polyder(d))), dtype=float
+        )
+        roots = _roots(slope)
         # a nearly double root may leave the axis: keep everything close to it, it only makes the bound safer
         x = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 0.5 * np.abs(roots.real))]
         return np.sort(np.sqrt(x))
@@ -92,8 +97,8 @@ class LoopTransfer:
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending (rational plants)."""
-        difference = np.polysub(_squared_magnitude(self.num), _squared_magnitude(self.den))
-        roots = np.roots(np.trim_zeros(difference, "f")) if np.any(difference) else np.empty(0)
+        difference = np.asarray(np.polysub(_squared_magnitude(self.num), _squared_magnitude(self.den)), dtype=float)
+        roots = _roots(difference)
         real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots.real))]
         w = np.sort(np.sqrt(real))
         for _ in range(3):  # Newton on log |L|
@@ -104,8 +109,8 @@ class LoopTransfer:
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
         """Nonzero poles and zeros of L's rational part: where its frequency response bends."""
-        roots = np.concatenate([np.roots(self.num), np.roots(self.den)])
-        return roots[np.abs(roots) > 0.0]
+        roots = np.concatenate([np.roots(self.num), np.roots(self.den)]).astype(complex)
+        return np.asarray(roots[np.abs(roots) > 0.0])
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which |L(i w)| provably stays below ``level`` > `feedthrough`.
@@ -115,7 +120,9 @@ class LoopTransfer:
         """
         corners = np.abs(self.corner_frequencies)
         w = max(
-            [1e-6, *self.gain_stationary.tolist(), *corners.tolist()] if self.plant.is_rational else [1.0, *corners.tolist()]
+            [1e-6, *self.gain_stationary.tolist(), *corners.tolist()]
+            if self.plant.is_rational
+            else [1.0, *corners.tolist()]
         )
         w *= 1.0 + 1e-9
         for _ in range(200):
@@ -126,6 +133,11 @@ class LoopTransfer:
             w *= 1.5
         msg = f"the loop gain does not fall below {level:g} at high frequency"
         raise ImproperLoopError(msg)
+
+
+def _roots(polynomial: Array) -> ComplexArray:
+    trimmed = np.trim_zeros(np.atleast_1d(polynomial), "f")
+    return np.asarray(np.roots(trimmed), dtype=complex)
 
 
 def _squared_magnitude(polynomial: Array) -> Array:

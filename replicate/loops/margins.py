@@ -29,7 +29,8 @@ class Margins:
     delay
         Smallest additional dead time that makes it unstable; ``inf`` if none does.
     phase_crossover, phase_crossover_low, gain_crossover, delay_crossover
-        Frequencies that belong to gain, gain_reduction, phase and delay (``nan`` where there is none), rad per unit time.
+        Frequencies that belong to gain, gain_reduction, phase and delay (``nan`` where there is none), rad per
+        unit time.
     phase_crossovers, gain_crossovers
         All frequencies with arg L = -180 degrees (modulo 360) and with |L| = 1, ascending.
     """
@@ -55,9 +56,9 @@ def margins(transfer: LoopTransfer) -> Margins:
     reduction, reduction_at = _extreme(factors[below], phase_crossovers[below], np.argmax, 0.0)
     if not transfer.dead_time and transfer.feedthrough:
         gain = min(gain, _algebraic_limit(transfer))
-    elif transfer.feedthrough:  # the tail of a neutral loop loses stability when |L(i inf)| reaches one
-        if 1.0 / transfer.feedthrough < gain:
-            gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
+    elif transfer.feedthrough and 1.0 / transfer.feedthrough < gain:
+        # the tail of a neutral loop loses stability when |L(i inf)| reaches one
+        gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
 
     w = transfer.gain_crossovers if transfer.plant.is_rational else _gain_crossovers(transfer)
     lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
@@ -98,10 +99,14 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
         return float(complex(transfer(1j * x)).imag)
 
     found = [
-        brentq(imaginary, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200) for i in np.nonzero(turned & negative)[0]
+        brentq(imaginary, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200)
+        for i in np.nonzero(turned & negative)[0]
     ]
     roots = np.sort(np.concatenate([np.array(found), exact]))
-    return roots[transfer(1j * roots).real < 0.0] if roots.size else roots
+    roots = roots[transfer(1j * roots).real < 0.0] if roots.size else roots
+    # without integral action the curve starts on the real axis, where a pole can pass through s = 0
+    starts_negative = bool(transfer.den[-1]) and float(complex(transfer(0.0)).real) < 0.0
+    return np.concatenate([[0.0], roots]) if starts_negative else roots
 
 
 def _gain_crossovers(transfer: LoopTransfer) -> Array:

@@ -71,7 +71,7 @@ class Plant:
         LoopError
             If the system is discrete or has several inputs or outputs.
         """
-        import control  # noqa: PLC0415  (takes seconds to import)
+        import control  # takes seconds to import
 
         transfer = control.tf(system)
         if transfer.ninputs != 1 or transfer.noutputs != 1:
@@ -174,7 +174,9 @@ class Plant:
 
     def __repr__(self) -> str:
         if self.function is not None:
-            return f"Plant.from_function({getattr(self.function, '__name__', 'function')}, dead_time={self.dead_time:g})"
+            return (
+                f"Plant.from_function({getattr(self.function, '__name__', 'function')}, dead_time={self.dead_time:g})"
+            )
         return f"Plant({self.num.tolist()}, {self.den.tolist()}, dead_time={self.dead_time:g})"
 
 

@@ -1,7 +1,8 @@
 """Closed-loop poles of loops with dead time.
 
 Candidates are the eigenvalues of the infinitesimal generator, discretised by Chebyshev collocation of the transport of
-the control signal through the dead time (Breda, Maset and Vermiglio, "Stability of Linear Delay Differential Equations",
+the control signal through the dead time (Breda, Maset and Vermiglio, "Stability of Linear Delay Differential
+Equations",
 2015, chapter 4); each is polished by Newton's method on the exact characteristic function. The discretisation only says
 where to look: what is returned satisfies f(s) = 0 to rounding, and stability is decided by the argument principle.
 """
@@ -34,15 +35,18 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     LoopError
         If no pole is found.
     """
+    polynomial = plant.is_rational and plant.dead_time == 0.0
     if not plant.is_rational:
         starts = _starts_on_grid(transfer)
-    elif plant.dead_time == 0.0:
+    elif polynomial:
         starts = np.asarray(np.roots(np.polyadd(transfer.den, transfer.num)), dtype=complex)
     else:
         starts = _generator_eigenvalues(plant, controller, transfer)
     found: list[complex] = []
     for start in starts[np.argsort(-starts.real)]:
         pole = _newton(transfer, complex(start.real, abs(start.imag)))
+        if pole is None and polynomial:
+            pole = complex(start)  # a multiple root: Newton has no slope there, the eigenvalue is as good as it gets
         if pole is None:
             continue
         pole = complex(pole.real, abs(pole.imag))
@@ -100,11 +104,12 @@ def _starts_on_grid(transfer: LoopTransfer) -> ComplexArray:
     low = (inner <= relative[:-2, :]) & (inner <= relative[2:, :])
     padded = np.pad(relative, ((0, 0), (1, 1)), mode="edge")[1:-1]
     low &= (inner <= padded[:, :-2]) & (inner <= padded[:, 2:])
-    return s[1:-1][low]
+    return np.asarray(s[1:-1][low])
 
 
 def _newton(transfer: LoopTransfer, s: complex) -> complex | None:
-    """Polish a zero of 1 + L by Newton's method on log(-L) = 0 modulo 2 pi i where L is large or small, on f otherwise."""
+    """Polish a zero of the characteristic function by Newton's method with limited steps."""
+    step = complex("inf")
     with np.errstate(all="ignore"):
         for _ in range(NEWTON_STEPS):
             if s == 0.0:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev as cheb
@@ -18,7 +19,8 @@ from replicate.loops.errors import LoopError, NotSettledError, UnstableLoopError
 
 Array = NDArray[np.float64]
 
-# An extremum between two samples of a degree-18 piece exceeds them by far less than this fraction of the signal's range.
+# An extremum between two samples of a degree-18 piece exceeds them by far less than this fraction of the
+# signal's range.
 SAMPLES = 40
 MARGIN = 0.02
 ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
@@ -38,6 +40,7 @@ class Peak(float):
     time: float
 
     def __new__(cls, value: float, time: float) -> Peak:
+        """Return the extremum with its time."""
         peak = super().__new__(cls, value)
         peak.time = time
         return peak
@@ -72,12 +75,17 @@ class Signal:
     """
 
     def __init__(
-        self, breaks: Array, coefficients: Array, *, final: float = float("nan"), stable: Callable[[], bool] | None = None
+        self,
+        breaks: Array,
+        coefficients: Array,
+        *,
+        final: float = float("nan"),
+        stable: Callable[[], bool] | None = None,
     ) -> None:
         self.breaks = np.asarray(breaks, dtype=float)
         self.coefficients = np.asarray(coefficients, dtype=float)
         self.final = float(final)
-        self._stable = stable
+        self.stable = stable
 
     @classmethod
     def from_pieces(
@@ -119,7 +127,7 @@ class Signal:
         flat = np.atleast_1d(times).ravel()
         end = self.breaks[-1]
         if flat.size and flat.max() > end * (1.0 + 1e-12):
-            msg = f"t = {flat.max():g} lies beyond the response's horizon of {end:g}; compute it with until={flat.max():g}"
+            msg = f"t = {flat.max():g} lies beyond the response's horizon of {end:g}: compute a longer one"
             raise LoopError(msg)
         index = self._piece_index(flat)
         start = self.breaks[index]
@@ -127,9 +135,8 @@ class Signal:
         significant = self._significant
         table = chebyshev.basis(np.clip(x, -1.0, 1.0), significant.shape[0] - 1)
         values = np.zeros_like(flat)
-        for row, column in zip(table, significant, strict=True):
-            row *= column[index]
-            values += row
+        for polynomial, column in zip(table, significant, strict=True):
+            values += polynomial * column[index]
         if flat.size and flat.min() < 0.0:
             values[flat < 0.0] = 0.0
         return np.asarray(values.reshape(times.shape))
@@ -164,7 +171,7 @@ class Signal:
     def derivative(self) -> Signal:
         """Return the derivative inside the pieces (jumps at breaks are not differentiated)."""
         coefficients = cheb.chebder(self.coefficients, axis=1) * (2.0 / self._lengths)[:, None]
-        return Signal(self.breaks, coefficients, final=0.0, stable=self._stable)
+        return Signal(self.breaks, coefficients, final=0.0, stable=self.stable)
 
     def antiderivative(self) -> Signal:
         """Return the running integral from t = 0."""
@@ -172,7 +179,7 @@ class Signal:
         inner = cheb.chebint(self.coefficients, lbnd=-1.0, axis=1) * half[:, None]
         starts = np.concatenate([[0.0], np.cumsum(self._piece_integrals(self.coefficients))[:-1]])
         inner[:, 0] += starts
-        return Signal(self.breaks, inner, stable=self._stable)
+        return Signal(self.breaks, inner, stable=self.stable)
 
     def delayed(self, delay: float) -> Signal:
         """Return the signal shifted to start at t = ``delay`` >= 0, zero before."""
@@ -180,7 +187,7 @@ class Signal:
             return self
         zero = np.zeros((1, self.coefficients.shape[1]))
         breaks = np.concatenate([[0.0], self.breaks + delay])
-        return Signal(breaks, np.concatenate([zero, self.coefficients]), final=self.final, stable=self._stable)
+        return Signal(breaks, np.concatenate([zero, self.coefficients]), final=self.final, stable=self.stable)
 
     def __add__(self, other: Signal) -> Signal:
         """Superpose two responses on the common part of their horizons."""
@@ -192,11 +199,11 @@ class Signal:
         degree = max(self.degree, other.degree)
         values = self._resampled(breaks, degree) + other._resampled(breaks, degree)
         coefficients = values @ chebyshev.values_to_coefficients(degree).T
-        return Signal(breaks, coefficients, final=self.final + other.final, stable=self._stable)
+        return Signal(breaks, coefficients, final=self.final + other.final, stable=self.stable)
 
     def __mul__(self, factor: float) -> Signal:
         """Scale the response."""
-        return Signal(self.breaks, self.coefficients * factor, final=self.final * factor, stable=self._stable)
+        return Signal(self.breaks, self.coefficients * factor, final=self.final * factor, stable=self.stable)
 
     __rmul__ = __mul__
 
@@ -221,7 +228,9 @@ class Signal:
         """Return (value, time) at the ends and at all stationary points of a piece."""
         series = self.coefficients[piece]
         candidates = np.concatenate([[-1.0], chebyshev.real_roots(cheb.chebder(series)), [1.0]])
-        return [(float(v), self._time(piece, x)) for x, v in zip(candidates, cheb.chebval(candidates, series), strict=True)]
+        return [
+            (float(v), self._time(piece, x)) for x, v in zip(candidates, cheb.chebval(candidates, series), strict=True)
+        ]
 
     def _extreme(self, sign: float) -> Peak:
         samples = sign * self._samples
@@ -304,7 +313,7 @@ class Signal:
     # ---- step metrics ---------------------------------------------------------------------------------------------
 
     def _require_stable(self, what: str) -> None:
-        if self._stable is not None and not self._stable():
+        if self.stable is not None and not self.stable():
             msg = f"an unstable loop has no {what}"
             raise UnstableLoopError(msg)
 
@@ -360,7 +369,9 @@ class Signal:
         series[0] -= self.final
         if abs(cheb.chebval(1.0, series)) > width:
             return self._time(piece, 1.0)
-        crossings = np.concatenate([self._crossing_roots(piece, self.final + width), self._crossing_roots(piece, self.final - width)])
+        crossings = np.concatenate(
+            [self._crossing_roots(piece, self.final + width), self._crossing_roots(piece, self.final - width)]
+        )
         for x in np.sort(crossings)[::-1]:  # the last root beyond which |error| really was larger
             before = max(-1.0, x - 1e-7)
             if abs(cheb.chebval(before, series)) > width:
@@ -442,7 +453,7 @@ class Signal:
         total = float(np.sum(whole[~signed]))
         for piece in np.nonzero(signed & ~negligible)[0]:
             ends = np.concatenate([[-1.0], chebyshev.real_roots(self._error[piece]), [1.0]])
-            for left, right in zip(ends[:-1], ends[1:], strict=True):
+            for left, right in pairwise(ends):
                 x = 0.5 * (left + right) + 0.5 * (right - left) * points
                 part = cheb.chebval(x, self._error[piece])
                 t = self.breaks[piece] + 0.5 * self._lengths[piece] * (x + 1.0)

@@ -1,7 +1,7 @@
 r"""Stability by the argument principle, never by a Pade model.
 
-For the characteristic function :math:`f = D (1 + L)` with D of degree n and |L| finally below one, the number Z of zeros in
-the open right half-plane follows from the continuous change of its argument along the imaginary axis,
+For the characteristic function :math:`f = D (1 + L)` with D of degree n and |L| finally below one, the number
+Z of zeros in the open right half-plane follows from the continuous change of its argument along the imaginary axis,
 
 .. math:: \Delta_{0\to\infty} \arg f(i\omega) = (n - 2 Z) \frac{\pi}{2}.
 
@@ -79,13 +79,12 @@ def frequency_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) 
     if transfer.dead_time:
         step = np.pi / (10.0 * transfer.dead_time)
         if end > step * MOST_POINTS:
-            msg = f"|L| stays near one over more than {MOST_POINTS // 20} turns of the dead time: its stability is not resolved"
+            msg = f"|L| stays near one for {MOST_POINTS // 20} turns of the dead time: stability is not resolved"
             raise LoopError(msg)
         parts.append(np.arange(step, end, step))
     resonant = corners[(np.abs(corners.real) < 0.3 * moduli) & (corners.imag > 0.0)]
     spread = np.concatenate([-np.geomspace(30.0, 0.1, 12), [0.0], np.geomspace(0.1, 30.0, 12)])
-    for root in resonant:
-        parts.append(root.imag + max(abs(root.real), 1e-12 * abs(root)) * spread)
+    parts += [root.imag + max(abs(root.real), 1e-12 * abs(root)) * spread for root in resonant]
     w = np.unique(np.concatenate(parts))
     return w[(w > 0.0) & (w <= end)]
 
@@ -106,4 +105,3 @@ def _argument_change(transfer: LoopTransfer, w: Array) -> float | None:
         w = np.insert(w, coarse + 1, middle)
         f = np.insert(f, coarse + 1, transfer.characteristic(1j * middle))
     return None
-

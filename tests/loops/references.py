@@ -268,6 +268,24 @@ def de_hoog(transform: Transform, t: float, degree: int = 60) -> mp.mpf:
         return mp.invertlaplace(transform, mp.mpf(t), method="dehoog", degree=degree)
 
 
+def bromwich(transform: Transform, t: float, top: float, depth: float = 90.0) -> mp.mpf:
+    """Value at ``t`` by quadrature up the line Re s = 1/t and then to the left at Im s = ``top``.
+
+    For ringing responses: de Hoog and Talbot, whose abscissas scale with 1/t, lose lightly damped poles at large t
+    without any sign of it. ``top`` must lie above all poles that matter; exp(-depth) is neglected.
+    """
+    with mp.workdps(DIGITS):
+        start, shift = mp.mpf(1) / t, mp.mpf(depth) / t
+        pieces = max(40, int(4 * top * t / 6))
+
+        def integrand(s: mp.mpc) -> mp.mpc:
+            return transform(s) * mp.exp(s * t)
+
+        up = mp.quad(lambda w: integrand(mp.mpc(start, w)) * 1j, mp.linspace(0, top, pieces))
+        left = mp.quad(lambda x: -integrand(mp.mpc(start - x, top)), mp.linspace(0, shift, 40))
+        return mp.im(up + left) / mp.pi
+
+
 def parseval(transform: Transform, breaks: Sequence[float]) -> mp.mpf:
     """Integral of the squared signal over all time, by quadrature of its transform along ``breaks``.
 
