@@ -1,10 +1,10 @@
 """The exhibit vocabulary: the words in which a paper's package describes itself.
 
-A paper is a list of exhibits. A `Table` (a printed table, a worked example, a formula) has *readings*, functions that
-return the whole exhibit as a DataFrame with the row and column keys of its printed CSV; a `Figure` has one function that
-draws on an ordinary matplotlib figure; `Claims` collects sentences that can be true or false; `NotComputable` is an
-exhibit that exists in the paper but cannot be recomputed, with the reason. This module only describes: computing, judging
-and rendering happen elsewhere.
+A paper is a list of exhibits. A `Table` (a printed table, a worked example, a formula) has *readings*,
+functions that return the whole exhibit as a DataFrame with the row and column keys of its printed CSV; a
+`Figure` has one function that draws on an ordinary matplotlib figure; `Claims` collects sentences that can be
+true or false; `NotComputable` is an exhibit that exists in the paper but cannot be recomputed, with the reason.
+This module only describes: computing, judging and rendering happen elsewhere.
 """
 
 from __future__ import annotations
@@ -80,7 +80,9 @@ class Table:
     printed: bool = True
     readings: dict[str, Reading] = field(default_factory=dict)
 
-    def reading(self, id: str, title: str, note: str = "") -> Callable[[Callable[[], pd.DataFrame]], Callable[[], pd.DataFrame]]:  # noqa: E501
+    def reading(
+        self, id: str, title: str, note: str = ""
+    ) -> Callable[[Callable[[], pd.DataFrame]], Callable[[], pd.DataFrame]]:
         """Register the decorated function as a reading; the first must be ``as-written``."""
 
         def register(compute: Callable[[], pd.DataFrame]) -> Callable[[], pd.DataFrame]:
@@ -139,7 +141,9 @@ class Claims:
     kind: Literal["claims"] = "claims"
     claims: dict[str, Claim] = field(default_factory=dict)
 
-    def claim(self, id: str, text: str, *, where: str = "", printed: str = "") -> Callable[[Callable[[], Finding]], Callable[[], Finding]]:  # noqa: E501
+    def claim(
+        self, id: str, text: str, *, where: str = "", printed: str = ""
+    ) -> Callable[[Callable[[], Finding]], Callable[[], Finding]]:
         """Register the decorated function as the check of a claim.
 
         Parameters
@@ -244,7 +248,16 @@ class Paper:
             msg = f"{self.id}: {id} has printed values, so its row and column keys must be given"
             raise PaperDefinitionError(msg)
         exhibit = Table(
-            id, kind, title, caption, tuple(rows), tuple(columns), labels or {}, units or {}, significant_digits, printed
+            id,
+            kind,
+            title,
+            caption,
+            tuple(rows),
+            tuple(columns),
+            labels or {},
+            units or {},
+            significant_digits,
+            printed,
         )
         self._add(exhibit)
         return exhibit

@@ -101,7 +101,8 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
     to_coefficients = chebyshev.values_to_coefficients(DEGREE)
     lefts: list[float] = []
     pieces: list[Array] = []
-    largest = float(np.abs(loop.closed(1.0 / time_scale)) / time_scale)  # the response's size, before any piece is known
+    # the response's size, before any piece is known
+    largest = float(np.abs(loop.closed(1.0 / time_scale)) / time_scale)
     while pending:
         left, right = pending.pop()
         t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)

@@ -86,10 +86,7 @@ class LoopTransfer:
     def gain_stationary(self) -> Array:
         """Positive frequencies at which |L(i w)| is stationary, ascending; |L| is monotone beyond the last one."""
         n, d = _squared_magnitude(self.num), _squared_magnitude(self.den)
-        slope: Array = np.asarray(
-            np.polysub(np.polymul(np.polyder(n), d), np.polymul(n, np.polyder(d))), dtype=float
-        )
-        roots = _roots(slope)
+        roots = _roots(_polynomial_product(_slope(n), d), _polynomial_product(n, _slope(d)))
         # a nearly double root may leave the axis: keep everything close to it, it only makes the bound safer
         x = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 0.5 * np.abs(roots.real))]
         return np.sort(np.sqrt(x))
@@ -97,8 +94,7 @@ class LoopTransfer:
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending (rational plants)."""
-        difference = np.asarray(np.polysub(_squared_magnitude(self.num), _squared_magnitude(self.den)), dtype=float)
-        roots = _roots(difference)
+        roots = _roots(_squared_magnitude(self.num), _squared_magnitude(self.den))
         real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots.real))]
         w = np.sort(np.sqrt(real))
         for _ in range(3):  # Newton on log |L|
@@ -135,9 +131,17 @@ class LoopTransfer:
         raise ImproperLoopError(msg)
 
 
-def _roots(polynomial: Array) -> ComplexArray:
-    trimmed = np.trim_zeros(np.atleast_1d(polynomial), "f")
-    return np.asarray(np.roots(trimmed), dtype=complex)
+def _roots(left: Array, right: Array) -> ComplexArray:
+    """Return the roots of the difference of two polynomials."""
+    return np.asarray(np.roots(np.trim_zeros(np.polysub(left, right), "f")), dtype=complex)
+
+
+def _slope(polynomial: Array) -> Array:
+    return np.asarray(polynomial[:-1] * np.arange(polynomial.size - 1, 0, -1)) if polynomial.size > 1 else np.zeros(1)
+
+
+def _polynomial_product(left: Array, right: Array) -> Array:
+    return np.asarray(np.polymul(left, right), dtype=float)
 
 
 def _squared_magnitude(polynomial: Array) -> Array:
