@@ -30,6 +30,7 @@ from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
 
 INDEX = "index.html"
+METHODS = "methods.html"
 
 
 @dataclass(frozen=True)
@@ -98,7 +99,11 @@ def build_report(
         If a file cannot be written.
     """
     site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
-    texts = {INDEX: _render("index.html", INDEX, site=site, papers=papers)}
+    methods = (templates_dir() / "methods.md").read_text(encoding="utf-8")
+    texts = {
+        INDEX: _render("index.html", INDEX, site=site, papers=papers),
+        METHODS: _render("methods.html", METHODS, methods=methods),
+    }
     for pages in site.values():
         for page in pages:
             texts[page.file] = _render("paper.html", page.file, page=page, pages=pages)

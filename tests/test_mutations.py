@@ -1,0 +1,89 @@
+"""Every verdict is earned: a changed digit changes it, and an unexplained one does not pass.
+
+The results are those of a full run of every paper; they come from the same cache as `make report` and `make check`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from replicate.check import check
+from replicate.discovery import find_papers
+from replicate.ledger import Ledger
+from replicate.outcome import Outcome, recompute
+from replicate.printed import PrintedValue
+from replicate.verdicts import judge, read_all_printed
+
+ROOT = Path(__file__).parent.parent
+HOLDS = {"reproduced", "reconstructed", "near"}
+EXPLAINED = {"misprint", "discrepant", "unexplained", "not-computable"}
+
+PAPERS = {paper.id: paper for paper in find_papers()}
+
+
+@pytest.fixture(scope="module", params=sorted(PAPERS))
+def outcome(request) -> Outcome:
+    return recompute([PAPERS[request.param]], cache_dir=ROOT / "build" / "cache")
+
+
+def altered(text: str) -> str:
+    """Change the leading digit by three: '1.43' -> '4.43', '-0.52' -> '-0.82', '0' -> '3'."""
+    place = next((i for i, c in enumerate(text) if c.isdigit() and c != "0"), None)
+    if place is None:
+        place = text.index("0")
+    digit = int(text[place])
+    return text[:place] + str(digit + 3 if digit <= 6 else digit - 3) + text[place + 1 :]
+
+
+def test_altering():
+    assert [altered(t) for t in ("1.43", "-0.52", "0", "0.00", "972", "8e-3")] == [
+        "4.43",
+        "-0.82",
+        "3",
+        "3.00",
+        "672",
+        "5e-3",
+    ]
+
+
+def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
+    (paper,) = outcome.papers
+    before = outcome.judgements[paper.id]
+    cells = {(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in HOLDS}
+    assert cells
+    printed = {
+        exhibit: {
+            key: PrintedValue(altered(value.text), *key, value.line, significant_digits=value.significant_digits)
+            if (exhibit, *key) in cells
+            else value
+            for key, value in values.items()
+        }
+        for exhibit, values in read_all_printed(paper).items()
+    }
+    after = judge(paper, outcome.results, printed=printed)
+    old = {(v.exhibit, v.row, v.column): v.verdict for v in before.verdicts}
+    new = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}
+    unchanged = sorted(cell for cell in cells if new[cell] == old[cell])
+    assert not unchanged
+    told = "\n".join(check(replace(outcome, judgements={paper.id: after}), ROOT / "figures"))
+    silent = sorted(cell for cell in cells if cell[0] not in told or cell[1] not in told)
+    assert not silent
+
+
+def test_a_verdict_without_its_ledger_entry_fails_check(outcome):
+    (paper,) = outcome.papers
+    before = outcome.judgements[paper.id]
+    cells = [(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in EXPLAINED and v.column != "claim"]
+    after = judge(paper, outcome.results, ledger=Ledger())
+    told = "\n".join(after.problems)
+    changed = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}
+    old = {(v.exhibit, v.row, v.column): v.verdict for v in before.verdicts}
+    silent = [cell for cell in cells if changed[cell] == old[cell] and f"{cell[0]} {cell[1]}" not in told]
+    assert not silent
+
+
+def test_the_paper_as_it_is_passes(outcome):
+    assert check(outcome, ROOT / "figures") == []
