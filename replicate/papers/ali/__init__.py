@@ -1,0 +1,48 @@
+"""Ali, Majhi: controller design for unstable first-order plants with dead time, based on sensitivity."""
+
+from replicate.exhibits import Paper
+
+paper = Paper(
+    id="ali",
+    package=__name__,
+    title="Controller Design for Unstable FOPTD Plants based on Sensitivity",
+    authors=("Ahmad Ali", "Somanath Majhi"),
+    # Venue and year are not on the page we have; they are how the paper is cited.
+    citation="A. Ali and S. Majhi, “Controller design for unstable FOPTD plants based on sensitivity”, "
+    "Proceedings of the 17th IFAC World Congress, Seoul, 2008.",
+    year=2008,
+    modules=(
+        "equations",
+        "table_1",
+        "table_2",
+        "sensitivity_count",
+        "tangency",
+        "eq_11",
+        "stability",
+        "quoted_settings",
+        "example_1",
+        "fig_1",
+        "fig_2",
+        "fig_3",
+        "fig_4",
+        "example_2",
+        "fig_5",
+        "fig_6",
+        "fig_7",
+        "fig_8",
+        "claims",
+        "claims_examples",
+    ),
+    numbered=(
+        "table-1",
+        "table-2",
+        "example-1",
+        "example-2",
+        *(f"fig-{number}" for number in range(1, 9)),
+    ),
+    summary="A PID rule for unstable plants with dead time. Every tuned setting and the fitted cubic come "
+    "out at all printed digits, and every design is stable with the exact dead time. The printed maximum "
+    "sensitivities are not those of the printed controller: they belong to another place of the derivative "
+    "filter and to the 1 % tolerance of a norm routine. The promise that the Nyquist curve keeps the "
+    "specified distance is not kept, because a square root was taken with the wrong sign.",
+)

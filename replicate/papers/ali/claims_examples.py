@@ -1,0 +1,326 @@
+"""The checkable sentences about the two examples, section 3."""
+# ruff: noqa: D103  -- the text of a claim documents its check
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from replicate.exhibits import Finding
+from replicate.loops import Signal
+from replicate.papers.ali.claims import claims, number
+from replicate.papers.ali.examples import (
+    EXAMPLE_1,
+    EXAMPLE_2,
+    example_1,
+    example_2,
+    load_response,
+    loop,
+    setpoint_response,
+    total_variation,
+)
+from replicate.papers.ali.structures import NAMES, STRUCTURES
+
+FORMS = {"series": "both in the form (2)", "ideal": "Padma Sree in the parallel form"}
+KINDS = {"setpoint": "set point", "load": "load"}
+ENOUGH = 60.0  # the largest peak comes in the first oscillations, long before
+
+
+class Pair(NamedTuple):
+    """A number for the proposed controller and for its competitor."""
+
+    proposed: float
+    competitor: float
+
+    def __str__(self) -> str:
+        """Write both for an evidence text."""
+        return f"{number(self.proposed)} against {number(self.competitor)}"
+
+
+def _example_1(kind: str, structure: str) -> tuple[Signal, Signal]:
+    """Return the outputs of the proposed controller, in (2), and of Padma Sree's in the given structure."""
+    response = setpoint_response if kind == "setpoint" else load_response
+    settings = example_1()
+    return (
+        response(EXAMPLE_1, "series", settings["proposed"]).output,
+        response(EXAMPLE_1, structure, settings["padma-sree"]).output,
+    )
+
+
+def _peak(structure: str, settings: str) -> float:
+    """Return the peak of a set-point response of Example 1."""
+    controlled = loop(EXAMPLE_1, structure, example_1()[settings])
+    return controlled.respond(until=ENOUGH).output.peak().value
+
+
+@claims.claim(
+    "ti-from-11",
+    "The design takes $T_i$ from (11).",
+    where="section 2, step 4; section 3",
+)
+def ti_from_11() -> Finding:
+    found = {}
+    for name, theta, settings in (("1", EXAMPLE_1, example_1()), ("2", EXAMPLE_2, example_2())):
+        used, by_rule = (
+            setpoint_response(theta, "series", settings[row]).output for row in ("proposed", "proposed-eq-11")
+        )
+        change = 100.0 * (by_rule.peak().value / used.peak().value - 1.0)
+        found[name] = (settings["proposed"].Ti, settings["proposed-eq-11"].Ti, change)
+    return Finding(
+        "holds" if all(used == rule for used, rule, _ in found.values()) else "fails",
+        found["2"][1],
+        "The examples take it from the tables: "
+        + "; ".join(
+            f"Example {name}, {used:g} where (11) gives {number(rule)} (the set-point peak would change by "
+            f"{change:+.1f} %)"
+            for name, (used, rule, change) in found.items()
+        )
+        + ".",
+    )
+
+
+@claims.claim(
+    "larger-overshoot-setpoint",
+    "Example 1: the overshoot of the proposed method is larger than Padma Sree's for the set point.",
+    where="section 3, Example 1",
+)
+def larger_overshoot_setpoint() -> Finding:
+    proposed = {structure: _peak(structure, "proposed") for structure in STRUCTURES}
+    competitor = {structure: _peak(structure, "padma-sree") for structure in STRUCTURES}
+    same = {s: Pair(proposed[s], competitor[s]) for s in STRUCTURES}
+    larger = [s for s, pair in same.items() if pair.proposed > pair.competitor]
+    mixed = [(a, b) for a in STRUCTURES for b in STRUCTURES if a != b and proposed[a] > competitor[b]]
+    partners = " or ".join(sorted({NAMES[b] for _, b in mixed}))
+    return Finding(
+        "holds" if len(larger) == len(same) else "holds-partly" if larger else "fails",
+        same["series"].proposed - same["series"].competitor,
+        "The peak of the proposed response is the smaller one: "
+        + ", ".join(f"{pair} ({NAMES[s]})" for s, pair in same.items())
+        + f". Of the {len(STRUCTURES) * (len(STRUCTURES) - 1)} combinations of two different structures, "
+        f"{len(mixed)} would make the sentence true, with Padma Sree's controller in: {partners}. The paper "
+        "does not mention such a difference.",
+    )
+
+
+@claims.claim(
+    "larger-overshoot-load",
+    "Example 1: the overshoot of the proposed method is larger than Padma Sree's for the load.",
+    where="section 3, Example 1",
+)
+def larger_overshoot_load() -> Finding:
+    pairs = {s: Pair(*(signal.peak().value for signal in _example_1("load", s))) for s in FORMS}
+    return Finding(
+        "holds" if all(p.proposed > p.competitor for p in pairs.values()) else "fails",
+        pairs["series"].proposed - pairs["series"].competitor,
+        "Peak of the load response: "
+        + "; ".join(f"{p} ({FORMS[s]})" for s, p in pairs.items())
+        + ".",
+    )
+
+
+@claims.claim(
+    "shorter-settling",
+    "Example 1: the proposed method settles faster than Padma Sree's, for set point and load.",
+    where="section 3, Example 1",
+)
+def shorter_settling() -> Finding:
+    pairs = {
+        (kind, s): Pair(*(signal.settling_time() for signal in _example_1(kind, s)))
+        for kind in ("setpoint", "load")
+        for s in FORMS
+    }
+    return Finding(
+        "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
+        pairs["setpoint", "series"].competitor / pairs["setpoint", "series"].proposed,
+        "Settling to 2 %: "
+        + "; ".join(
+            f"{KINDS[kind]}, {p} ({FORMS[s]})" for (kind, s), p in pairs.items()
+        )
+        + ".",
+    )
+
+
+@claims.claim(
+    "padma-sree-oscillates",
+    "Example 1: Padma Sree's controller gives an oscillatory response.",
+    where="section 3, Example 1",
+)
+def padma_sree_oscillates() -> Finding:
+    settings = example_1()["padma-sree"]
+    found = {}
+    for structure in ("series", "d-filter", "ideal"):
+        controlled = loop(EXAMPLE_1, structure, settings)
+        pole = controlled.rightmost_pole()
+        found[structure] = (-pole.real / abs(pole), controlled.sensitivity_peak().value)
+    return Finding(
+        "holds" if max(ratio for ratio, _ in found.values()) < 0.1 else "fails",
+        found["series"][0],
+        "Damping ratio of its dominant poles and $M_s$: "
+        + "; ".join(f"{number(ratio)} and {number(peak)} ({NAMES[s]})" for s, (ratio, peak) in found.items())
+        + ". The loop is close to instability in every structure.",
+    )
+
+
+VISIOLI = {"series": "all in the form (2)", "ideal": "Visioli in the parallel form"}
+
+
+def _example_2(kind: str, structure: str, setting: str = "") -> tuple[Signal, Signal]:
+    """Return the outputs of the proposed controller, in (2), and of Visioli's in the given structure."""
+    response = setpoint_response if kind == "setpoint" else load_response
+    settings = example_2()
+    return (
+        response(EXAMPLE_2, "series", settings["proposed"]).output,
+        response(EXAMPLE_2, structure, settings[f"visioli-{setting or kind}"]).output,
+    )
+
+
+@claims.claim(
+    "same-speed", "Example 2: both methods give the same speed of response.", where="section 3, Example 2, Fig. 5"
+)
+def same_speed() -> Finding:
+    half = {s: Pair(*(signal.delay_time() for signal in _example_2("setpoint", s))) for s in VISIOLI}
+    rise = {s: Pair(*(signal.rise_time() for signal in _example_2("setpoint", s))) for s in VISIOLI}
+    ratio = rise["ideal"].proposed / rise["ideal"].competitor
+    return Finding(
+        "holds" if 0.8 < ratio < 1.25 else "holds-partly",
+        ratio,
+        "Only by the eye, because the dead time dominates: half the step is reached after "
+        + " and ".join(f"{p} ({VISIOLI[s]})" for s, p in half.items())
+        + ", dead time included; but the rise from 10 % to 90 % takes "
+        + " and ".join(f"{p}" for p in rise.values())
+        + ".",
+    )
+
+
+@claims.claim(
+    "less-overshoot", "Example 2: the proposed method has less overshoot.", where="section 3, Example 2, Fig. 5"
+)
+def less_overshoot() -> Finding:
+    pairs = {s: Pair(*(100.0 * signal.overshoot() for signal in _example_2("setpoint", s))) for s in VISIOLI}
+    return Finding(
+        "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
+        pairs["ideal"].competitor - pairs["ideal"].proposed,
+        "Overshoot in per cent: "
+        + "; ".join(f"{p} ({VISIOLI[s]})" for s, p in pairs.items())
+        + ".",
+    )
+
+
+@claims.claim(
+    "slightly-longer-settling",
+    "Example 2: the settling time of the proposed method is slightly longer.",
+    where="section 3, Example 2, Fig. 5",
+)
+def slightly_longer_settling() -> Finding:
+    pairs = {s: Pair(*(signal.settling_time() for signal in _example_2("setpoint", s))) for s in VISIOLI}
+    longer = [s for s, p in pairs.items() if p.proposed > p.competitor]
+    return Finding(
+        "holds" if len(longer) == len(pairs) else "holds-partly" if longer else "fails",
+        pairs["ideal"].proposed / pairs["ideal"].competitor,
+        "The structure decides: "
+        + "; ".join(f"{p} ({VISIOLI[s]})" for s, p in pairs.items())
+        + ". The sentence is evidence that Visioli's controller was simulated in the parallel form.",
+    )
+
+
+@claims.claim(
+    "visioli-load-stable",
+    "Example 2: Visioli's load setting is stable in the printed structure (2) (implied by the comparison).",
+    where="section 3, Example 2, Figs. 6 and 8",
+)
+def visioli_load_stable() -> Finding:
+    settings = example_2()["visioli-load"]
+    poles = {s: loop(EXAMPLE_2, s, settings).rightmost_pole() for s in ("series", "d-filter", "ideal")}
+    return Finding(
+        "fails" if poles["series"].real > 0.0 else "holds",
+        poles["series"].real,
+        "Rightmost pole, exact dead time: "
+        + "; ".join(f"${p.real:+.4f} \\pm {p.imag:.3f}\\mathrm{{i}}$ ({NAMES[s]})" for s, p in poles.items())
+        + ". Only the parallel form is stable, so Figs. 6 and 8 cannot have been made with (2).",
+    )
+
+
+@claims.claim(
+    "visioli-better-load",
+    "Example 2: Visioli's method rejects the load better, but the proposed one rejects it, too.",
+    where="section 3, Example 2, Fig. 6",
+)
+def visioli_better_load() -> Finding:
+    proposed, competitor = _example_2("load", "ideal")
+    better = competitor.iae() < proposed.iae() and competitor.peak().value < proposed.peak().value
+    return Finding(
+        "holds" if better else "fails",
+        proposed.iae() / competitor.iae(),
+        f"In the parallel form its IAE is {number(competitor.iae())} against {number(proposed.iae())} and "
+        f"its peak {number(competitor.peak().value)} against {number(proposed.peak().value)}; both settle, "
+        f"after {number(competitor.settling_time())} and {number(proposed.settling_time())}. In the form (2) "
+        "the sentence is false, since Visioli's loop is unstable.",
+    )
+
+
+@claims.claim(
+    "two-settings",
+    "Example 2: Visioli needs two settings, the proposed method one.",
+    where="section 3, Example 2",
+)
+def two_settings() -> Finding:
+    proposed, own = _example_2("load", "ideal")
+    _, other = _example_2("load", "ideal", "setpoint")
+    settings = example_2()
+    return Finding(
+        "holds" if settings["visioli-setpoint"] != settings["visioli-load"] else "fails",
+        other.iae() / own.iae(),
+        "Two are quoted. One would do, though: with Visioli's set-point setting the IAE of the load response "
+        "is "
+        f"{number(other.iae())}, below the {number(own.iae())} of the load setting and the "
+        f"{number(proposed.iae())} of the proposed one "
+        "(parallel form).",
+    )
+
+
+@claims.claim(
+    "visioli-control-oscillates",
+    "Example 2: Visioli's control signals oscillate significantly before they reach their final value.",
+    where="section 3, Example 2, Figs. 7 and 8",
+)
+def visioli_control_oscillates() -> Finding:
+    settings = example_2()
+    variation = {
+        kind: Pair(
+            total_variation(response(EXAMPLE_2, "series", settings["proposed"]).control),
+            total_variation(response(EXAMPLE_2, "ideal", settings[f"visioli-{kind}"]).control),
+        )
+        for kind, response in (("setpoint", setpoint_response), ("load", load_response))
+    }
+    ratios = [p.competitor / p.proposed for p in variation.values()]
+    return Finding(
+        "holds" if min(ratios) > 2.0 else "fails",
+        min(ratios),
+        "Total variation of $u$ (Visioli in the parallel form): "
+        + "; ".join(f"{p} ({KINDS[kind]})" for kind, p in variation.items())
+        + ".",
+    )
+
+
+@claims.claim(
+    "satisfactory",
+    "The proposed method performs satisfactorily for both set point and load.",
+    where="sections 1 and 3",
+)
+def satisfactory() -> Finding:
+    found = {}
+    for name, theta, settings in (("1", EXAMPLE_1, example_1()), ("2", EXAMPLE_2, example_2())):
+        controlled = loop(theta, "series", settings["proposed"])
+        overshoot = setpoint_response(theta, "series", settings["proposed"]).output.overshoot()
+        found[name] = (100.0 * overshoot, controlled.sensitivity_peak().value, controlled.margins().gain)
+    return Finding(
+        "holds" if max(over for over, _, _ in found.values()) < 50.0 else "holds-partly",
+        found["1"][0],
+        "Both loops are stable and settle. "
+        + " ".join(
+            f"Example {name}: overshoot {over:.0f} %, $M_s$ {number(peak)}, and the gain may rise by "
+            f"{100 * (gain - 1):.0f} %."
+            for name, (over, peak, gain) in found.items()
+        )
+        + " A weighted or filtered set point, which the paper does not use, would be needed against the "
+        "overshoot.",
+    )

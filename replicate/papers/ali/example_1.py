@@ -1,0 +1,29 @@
+"""Example 1: theta = 0.7, the proposed setting against Padma Sree's."""
+
+from replicate.papers.ali import paper
+from replicate.papers.ali.examples import (
+    CAPTION,
+    COLUMNS,
+    EXAMPLE_1,
+    LABELS,
+    add_readings,
+    example_1,
+)
+
+example = paper.table(
+    "example-1",
+    "Example 1, $G(s) = e^{-0.7s}/(s-1)$",
+    kind="example",
+    printed=False,
+    rows=("proposed", "proposed-eq-11", "padma-sree"),
+    columns=COLUMNS,
+    caption=CAPTION + "The proposed setting is simulated as printed in Table 2; Padma Sree's is quoted from another "
+    "paper and simulated as printed.",
+    labels=LABELS,
+)
+add_readings(
+    example,
+    EXAMPLE_1,
+    example_1(),
+    {},
+)
