@@ -261,13 +261,19 @@ def _gain_grid(loci: Array, r: Array) -> Array:
 
 def _polish(plant: Plant, circle: Circle, w: Array, found: _Maximum) -> PIDesign | None:
     """Return the verified optimum near a maximum of the grid: smooth if one tangency explains it, else a corner."""
-    attempts = [_smooth(plant, circle, w, found.frequency)]
+    smooth = _smooth(plant, circle, w, found.frequency)
+    if smooth is not None and _plausible(smooth, found) and _verified(plant, circle, smooth):
+        return smooth
     pairs = {_closest(plant, circle, w, found.k, found.ki), (min(found.neighbours), max(found.neighbours))}
-    attempts += [_corner(plant, circle, found.k, found.ki, *pair) for pair in sorted(pairs)]
-    for attempt in attempts:
-        if attempt is not None and 0.3 * found.ki < attempt.ki < 3.0 * found.ki and _verified(plant, circle, attempt):
-            return attempt
+    for pair in sorted(pairs):
+        corner = _corner(plant, circle, found.k, found.ki, *pair)
+        if corner is not None and _plausible(corner, found) and _verified(plant, circle, corner):
+            return corner
     return None
+
+
+def _plausible(design: PIDesign, found: _Maximum) -> bool:
+    return 0.3 * found.ki < design.ki < 3.0 * found.ki
 
 
 def _smooth(plant: Plant, circle: Circle, w: Array, near: float) -> PIDesign | None:

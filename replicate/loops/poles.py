@@ -25,6 +25,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 NEWTON_STEPS = 40
+MOST_STARTS = 24
 
 
 def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
@@ -42,22 +43,19 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         starts = np.asarray(np.roots(np.polyadd(transfer.den, transfer.num)), dtype=complex)
     else:
         starts = _generator_eigenvalues(plant, controller, transfer)
+    starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]
+    polished, converged = _newton(transfer, starts.real + 1j * np.abs(starts.imag))
+    if polynomial:  # a multiple root has no slope for Newton: there the eigenvalue is as good as it gets
+        polished, converged = np.where(converged, polished, starts), np.ones(starts.size, dtype=bool)
     found: list[complex] = []
-    for start in starts[np.argsort(-starts.real)]:
-        pole = _newton(transfer, complex(start.real, abs(start.imag)))
-        if pole is None and polynomial:
-            pole = complex(start)  # a multiple root: Newton has no slope there, the eigenvalue is as good as it gets
-        if pole is None:
-            continue
-        pole = complex(pole.real, abs(pole.imag))
+    for value in polished[converged]:
+        pole = complex(value.real, abs(value.imag))
         if abs(pole.imag) < 1e-12 * abs(pole):
             pole = complex(pole.real, 0.0)
-        if not plant.is_rational and abs(pole.imag) < 1e-9 * max(1.0, abs(pole)) and pole.real <= 0.0:
+        if not plant.is_rational and pole.imag < 1e-9 * max(1.0, abs(pole)) and pole.real <= 0.0:
             continue  # on the cut
         if all(abs(pole - other) > 1e-8 * max(1e-3, abs(pole)) for other in found):
             found.append(pole)
-        if len(found) >= 3 * count + 6:
-            break
     if not found:
         msg = "no closed-loop pole was found"
         raise LoopError(msg)
@@ -107,38 +105,33 @@ def _starts_on_grid(transfer: LoopTransfer) -> ComplexArray:
     return np.asarray(s[1:-1][low])
 
 
-def _newton(transfer: LoopTransfer, s: complex) -> complex | None:
-    """Polish a zero of the characteristic function by Newton's method with limited steps."""
-    step = complex("inf")
+def _newton(transfer: LoopTransfer, s: ComplexArray) -> tuple[ComplexArray, NDArray[np.bool_]]:
+    """Polish zeros of the characteristic function by Newton's method with limited steps, all at once.
+
+    Returns the points and whether each has converged; a multiple zero stops at the root of the rounding error.
+    """
+    s = np.array(s, dtype=complex)
+    step = np.full(s.shape, np.inf, dtype=complex)
     with np.errstate(all="ignore"):
         for _ in range(NEWTON_STEPS):
-            if s == 0.0:
-                return None
-            value = complex(transfer.characteristic(s))
-            slope = _characteristic_slope(transfer, s)
-            if slope == 0.0 or not np.isfinite(slope):
-                return None
-            step = value / slope
-            if abs(step) > 0.3 * max(abs(s), 1e-6):
-                step *= 0.3 * max(abs(s), 1e-6) / abs(step)
-            s -= step
-            if abs(step) <= 4e-16 * abs(s):
-                return s
-        # a multiple zero converges linearly and stops at the root of the rounding error
-        return s if abs(step) <= 1e-6 * abs(s) else None
+            moving = (np.abs(step) > 4e-16 * np.abs(s)) & np.isfinite(s) & (s != 0.0)
+            if not moving.any():
+                break
+            at = s[moving]
+            change = transfer.characteristic(at) / _characteristic_slope(transfer, at)
+            longest = 0.3 * np.maximum(np.abs(at), 1e-6)
+            change *= np.minimum(1.0, longest / np.abs(change))
+            step[moving] = change
+            s[moving] = at - change
+    return s, np.isfinite(s) & (s != 0.0) & (np.abs(step) <= 1e-6 * np.abs(s))
 
 
-def _characteristic_slope(transfer: LoopTransfer, s: complex) -> complex:
-    delayed = complex(np.polyval(transfer.num, s)) * np.exp(-s * transfer.dead_time)
-    slope = complex(np.polyval(np.polyder(transfer.den), s))
+def _characteristic_slope(transfer: LoopTransfer, s: ComplexArray) -> ComplexArray:
+    slope = np.polyval(np.polyder(transfer.den), s)
+    fed_back = np.exp(-s * transfer.dead_time)
     if transfer.plant.is_rational:
-        top = complex(np.polyval(np.polyder(transfer.num), s)) * np.exp(-s * transfer.dead_time)
-        return complex(slope + top - transfer.dead_time * delayed)
-    if delayed == 0.0:
-        return slope
-    value = delayed * complex(transfer.plant.delay_free(s))
-    return complex(slope + value * complex(transfer.log_derivative(s) + _den_log_slope(transfer, s)))
-
-
-def _den_log_slope(transfer: LoopTransfer, s: complex) -> complex:
-    return complex(np.polyval(np.polyder(transfer.den), s) / np.polyval(transfer.den, s))
+        top = np.polyval(np.polyder(transfer.num), s) - transfer.dead_time * np.polyval(transfer.num, s)
+        return np.asarray(slope + top * fed_back)
+    value = np.polyval(transfer.num, s) * fed_back * transfer.plant.delay_free(s)
+    den_slope = slope / np.polyval(transfer.den, s)
+    return np.asarray(slope + value * (transfer.log_derivative(s) + den_slope))
