@@ -1,0 +1,81 @@
+"""III, Table 1: corresponding values of M and gamma."""
+
+from __future__ import annotations
+
+import csv
+from functools import cache
+from typing import TYPE_CHECKING
+
+from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import gamma_of_m, m_of_gamma
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+COLUMNS = ("1.37", "1.40", "1.50", "1.60", "1.65", "1.70", "1.80", "1.90", "1.91", "2.00")
+
+LABELS = {"M": "$M$", "gamma": "$\\gamma$"}
+
+table_1 = paper.table(
+    "III-table-1",
+    "Corresponding values of $M$ and $\\gamma$",
+    rows=("M", "gamma"),
+    columns=COLUMNS,
+    labels=LABELS,
+    caption="Each row is computed from the other one as printed: $M$ by (13), $\\gamma$ by (14).",
+)
+
+
+@cache
+def printed_pairs() -> dict[str, tuple[float, float]]:
+    """Return (M, gamma) as printed, by column."""
+    text = (paper.folder() / "printed" / "III-table-1.csv").read_text(encoding="utf-8")
+    m, gamma = csv.DictReader(text.splitlines())
+    return {column: (float(m[column]), float(gamma[column])) for column in COLUMNS}
+
+
+@table_1.reading(
+    "as-written",
+    "Each row from the other",
+    note="(13) and (14) are inverse to each other, but two-digit numbers are not: the table has columns in which only "
+    "one of the two formulas gives the printed digits.",
+)
+def as_written() -> pd.DataFrame:
+    """Compute M from the printed gamma and gamma from the printed M."""
+    import pandas as pd
+
+    rows = {
+        "M": [float(m_of_gamma(gamma)) for _, gamma in printed_pairs().values()],
+        "gamma": [float(gamma_of_m(m)) for m, _ in printed_pairs().values()],
+    }
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS))
+
+
+direction = paper.table(
+    "III-table-1-direction",
+    "Which way round each column of Table 1 was made",
+    printed=False,
+    rows=COLUMNS,
+    columns=("gamma_of_M", "off_gamma", "M_of_gamma", "off_M"),
+    labels={
+        "gamma_of_M": "$\\gamma(M)$, (14)",
+        "off_gamma": "off by",
+        "M_of_gamma": "$M(\\gamma)$, (13)",
+        "off_M": "off by",
+    },
+    caption="How far each formula is from the printed value, in units of the second decimal. More than half a unit "
+    "means that the column was not made with this formula from the printed other value.",
+)
+
+
+@direction.reading("as-written", "Both formulas against the print")
+def both_ways() -> pd.DataFrame:
+    """Compare both directions with the print."""
+    import pandas as pd
+
+    rows = {}
+    for column, (m, gamma) in printed_pairs().items():
+        forward, backward = float(gamma_of_m(m)), float(m_of_gamma(gamma))
+        off = [round(100.0 * difference, 9) + 0.0 for difference in (forward - gamma, backward - m)]
+        rows[column] = [forward, off[0], backward, off[1]]
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(direction.columns))
