@@ -365,7 +365,7 @@ def test_first_dead_time_of_the_control_signal_is_its_closed_form(exhibits):
     lead = 1.0 + (settings.Td / lag - 1.0) * fade
     integral = t + (settings.Td - lag) * (1.0 - fade)
     assert u(t) == pytest.approx(settings.Kp * (lead + integral / settings.Ti), rel=1e-12)
-    row = exhibits["example-1"].readings["as-written"].compute().loc["padma-sree"]
+    row = exhibits["example-1"].readings["as-written"].compute()["padma-sree"]
     assert row["u0"] == pytest.approx(settings.Kp / ALPHA, rel=1e-12)
 
 
@@ -373,13 +373,13 @@ def test_loads_are_cancelled_with_ie_equal_to_ti_over_kp(exhibits):
     # A load response that does not change sign has IAE = IE = Ti/Kp; one that does has more.
     for id, row in (("example-1", "proposed"), ("example-2", "proposed")):
         settings = (example_1() if id == "example-1" else example_2())[row]
-        found = exhibits[id].readings["as-written"].compute().loc[row]
+        found = exhibits[id].readings["as-written"].compute()[row]
         assert settings.Ti / settings.Kp <= found["load_iae"] <= 1.1 * settings.Ti / settings.Kp
 
 
 def test_visioli_load_setting_is_unstable_in_2_and_stable_in_parallel_form(exhibits):
     for reading, sign in (("as-written", 1), ("filter-on-d", 1), ("ideal", -1)):
-        row = exhibits["example-2"].readings[reading].compute().loc["visioli-load"]
+        row = exhibits["example-2"].readings[reading].compute()["visioli-load"]
         assert math.copysign(1, row["pole_re"]) == sign
         assert math.isnan(row["ts"]) is (sign > 0)
         structure = {"as-written": "series", "filter-on-d": "d-filter", "ideal": "ideal"}[reading]

@@ -91,7 +91,7 @@ for _id, _title, _fit, _note in _FITS:
 
 
 eq_11_error = paper.table(
-    "eq-11-error",
+    "cubic-error",
     "The cubic (11) against its own data",
     printed=False,
     rows=ROWS,

@@ -3,9 +3,9 @@
 from replicate.papers.ali import paper
 from replicate.papers.ali.examples import (
     CAPTION,
-    COLUMNS,
     EXAMPLE_1,
     LABELS,
+    QUANTITIES,
     add_readings,
     example_1,
 )
@@ -15,8 +15,8 @@ example = paper.table(
     "Example 1, $G(s) = e^{-0.7s}/(s-1)$",
     kind="example",
     printed=False,
-    rows=("proposed", "proposed-eq-11", "padma-sree"),
-    columns=COLUMNS,
+    rows=QUANTITIES,
+    columns=("proposed", "proposed-eq-11", "padma-sree"),
     caption=CAPTION + "The proposed setting is simulated as printed in Table 2; Padma Sree's is quoted from another "
     "paper and simulated as printed.",
     labels=LABELS,

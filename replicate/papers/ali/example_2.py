@@ -3,9 +3,9 @@
 from replicate.papers.ali import paper
 from replicate.papers.ali.examples import (
     CAPTION,
-    COLUMNS,
     EXAMPLE_2,
     LABELS,
+    QUANTITIES,
     add_readings,
     example_2,
 )
@@ -15,8 +15,8 @@ example = paper.table(
     "example-2",
     "Example 2, $G(s) = e^{-0.2s}/(s-1)$",
     kind="example",
-    rows=("proposed", "proposed-eq-11", "visioli-setpoint", "visioli-load"),
-    columns=COLUMNS,
+    rows=QUANTITIES,
+    columns=("proposed", "proposed-eq-11", "visioli-setpoint", "visioli-load"),
     caption=CAPTION + "Settings are simulated as printed (the proposed one is shown unrounded); Visioli's are quoted "
     "from another paper, one for the set point and one for the load, and each is tried on both.",
     labels=LABELS,

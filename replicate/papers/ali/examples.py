@@ -31,32 +31,32 @@ DECAYED = 26.0  # time constants of the slowest mode, exp(-26) = 5e-12
 EXAMPLE_1 = Fraction(7, 10)  # theta; T = K = 1
 EXAMPLE_2 = Fraction(1, 5)
 
-COLUMNS = (
+QUANTITIES = (
     "Kp", "Ti", "Td", "pole_re", "Ms", "y_max", "ts", "iae", "u0", "u_min", "tv",
     "load_max", "load_ts", "load_iae", "load_tv",
 )  # fmt: skip
 
 LABELS = {
     "proposed": "proposed",
-    "proposed-eq-11": "proposed, $T_i$ by (11)",
+    "proposed-eq-11": "$T_i$ by (11)",
     "padma-sree": "Padma Sree",
-    "visioli-setpoint": "Visioli, set point",
+    "visioli-setpoint": "Visioli, s.p.",
     "visioli-load": "Visioli, load",
     "Kp": "$K_p$",
     "Ti": "$T_i$",
     "Td": "$T_d$",
     "pole_re": "Re $p$",
     "Ms": "$M_s$",
-    "y_max": "set point: peak",
-    "ts": "settling",
-    "iae": "IAE",
-    "u0": "$u(0^+)$",
-    "u_min": "min $u$",
-    "tv": "TV of $u$",
-    "load_max": "load: peak",
-    "load_ts": "settling",
-    "load_iae": "IAE",
-    "load_tv": "TV of $u$",
+    "y_max": "set point: peak of $y$",
+    "ts": "set point: settling time",
+    "iae": "set point: IAE",
+    "u0": "set point: $u(0^+)$",
+    "u_min": "set point: min $u$",
+    "tv": "set point: TV of $u$",
+    "load_max": "load: peak of $y$",
+    "load_ts": "load: settling time",
+    "load_iae": "load: IAE",
+    "load_tv": "load: TV of $u$",
 }
 
 
@@ -133,8 +133,8 @@ def total_variation(signal: Signal) -> float:
 
 
 def performance(theta: Fraction, structure: str, settings: Settings) -> dict[str, float]:
-    """Return the numbers of one row but the settings; an unstable loop has its rightmost pole and nothing else."""
-    found = dict.fromkeys(COLUMNS[3:], math.nan)
+    """Return the numbers of one column but the settings; an unstable loop has its rightmost pole and nothing else."""
+    found = dict.fromkeys(QUANTITIES[3:], math.nan)
     controlled = loop(theta, structure, settings)
     found["pole_re"] = controlled.rightmost_pole().real
     if not controlled.is_stable():
@@ -188,9 +188,9 @@ def add_readings(table: Table, theta: Fraction, settings: dict[str, Settings], r
     Parameters
     ----------
     settings
-        What is simulated, by row.
+        What is simulated, by column.
     rules
-        Rows whose settings are compared with the print: what the paper's own rules give, unrounded. The other rows show
+        Columns whose settings are compared with the print: what the paper's own rules give, unrounded. The others show
         the settings that are simulated.
     """
     for id, (structure, title, note) in READINGS.items():
@@ -198,11 +198,12 @@ def add_readings(table: Table, theta: Fraction, settings: dict[str, Settings], r
         def compute(structure: str = structure) -> pd.DataFrame:
             import pandas as pd
 
-            rows = {}
-            for row, simulated in settings.items():
-                shown = rules.get(row, simulated)
-                rows[row] = [shown.Kp, shown.Ti, shown.Td, *performance(theta, structure, simulated).values()]
-            return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS))
+            columns = {}
+            for name, simulated in settings.items():
+                shown = rules.get(name, simulated)
+                found = performance(theta, structure, simulated)
+                columns[name] = [shown.Kp, shown.Ti, shown.Td, *found.values()]
+            return pd.DataFrame(columns, index=list(QUANTITIES))
 
         table.reading(id, title, note)(compute)
 

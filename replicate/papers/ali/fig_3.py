@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "fig-3",
     "Control signals for the set-point step, Example 1",
     caption="Unit step of the set point; structures as in Figure 1. The derivative of the step makes the "
-    r"control signal start at ten \$K_p\$ in the form (2), at eleven in the parallel form: narrow panels on "
+    "control signal start at ten $K_p$ in the form (2), at eleven in the parallel form: narrow panels on "
     "the left. The wide panels are cut off and show the rest.",
     alt="Four panels. On the left the initial kick of the control signals, decaying within a tenth of a time "
     "unit; on the right the control signals over 30 time units, where Padma Sree's oscillates to the end and "

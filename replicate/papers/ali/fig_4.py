@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "fig-4",
     "Control signals for the load step, Example 1",
     caption="Unit step of a load at the plant input; structures as in Figure 1. A load step makes no kick; "
-    r"the control signal ends at \$-1\$, where it cancels the load.",
+    "the control signal ends at $-1$, where it cancels the load.",
     alt="Two panels of control signals over 30 time units. The proposed signal dips to about minus 3.3 and "
     "returns smoothly to minus 1; Padma Sree's dips deeper and oscillates to the end.",
     size=(7.4, 3.4),

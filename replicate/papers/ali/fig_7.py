@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     "fig-7",
     "Control signals for the set-point step, Example 2",
     caption="Unit step of the set point; Visioli's set-point setting, structures as in Figure 5. Narrow "
-    r"panels: the initial kick of ten \$K_p\$ in the form (2), eleven in the parallel form. The wide panels "
+    "panels: the initial kick of ten $K_p$ in the form (2), eleven in the parallel form. The wide panels "
     "are cut off and show the rest.",
     alt="Four panels. On the left the initial kick of the control signals; on the right the control signals "
     "over 6 time units, where Visioli's oscillates with a large amplitude before it settles.",

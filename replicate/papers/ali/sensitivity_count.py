@@ -43,7 +43,7 @@ def _hypotheses() -> dict[str, tuple[str, Structure, Peak, Callable[[str, str], 
     for order in ORDERS:
         norm = partial(pade_sensitivity_norm, order=order)
         found[f"d-filter-pade-{order}-norm"] = (
-            f"Filter on D only, Padé {order}, norm at 1 %",
+            f"Filter on D only, Padé {order}, norm at 1 %",
             d_filter,
             norm,
             tabulated,
@@ -51,7 +51,7 @@ def _hypotheses() -> dict[str, tuple[str, Structure, Peak, Callable[[str, str], 
     for name, structure in (("series", series), ("ideal", ideal)):
         title = "(2)" if name == "series" else "Parallel form"
         norm = partial(pade_sensitivity_norm, order=3)
-        found[f"{name}-pade-3-norm"] = (f"{title}, Padé 3, norm at 1 %", structure, norm, tabulated)
+        found[f"{name}-pade-3-norm"] = (f"{title}, Padé 3, norm at 1 %", structure, norm, tabulated)
     return found
 
 

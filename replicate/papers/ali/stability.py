@@ -41,26 +41,24 @@ stability = paper.table(
     "Stability of every design",
     printed=False,
     rows=tuple(DESIGNS),
-    columns=("pole_re", "pole_im", "KKp_min", "KKp", "KKp_max", "gain_down", "gain_up", "delay_margin"),
-    caption="Exact dead time, $T = 1$, unrounded settings. Rightmost closed-loop pole; the interval of "
-    "$KK_p$ in which the loop is stable, all else fixed; by how many per cent the gain may fall and rise, "
-    "and the dead time grow.",
+    columns=("pole_re", "pole_im", "KKp_min", "KKp", "KKp_max", "gain_up", "delay_margin"),
+    caption="Exact dead time, $T = 1$, unrounded settings. Rightmost closed-loop pole $p$; the interval of $KK_p$ "
+    "in which the loop is stable, all else fixed; by how many per cent the gain and the dead time may grow.",
     labels={
         **{id: f"Table {id[6]}, {id[8:]}" for id in DESIGNS if id.startswith("table")},
         **{id: f"(11), {id[6:]}" for id in DESIGNS if id.startswith("eq")},
         "pole_re": "Re $p$",
         "pole_im": "Im $p$",
-        "KKp_min": "lowest $KK_p$",
+        "KKp_min": "min $KK_p$",
         "KKp": "$KK_p$",
-        "KKp_max": "highest $KK_p$",
-        "gain_down": "gain, down (%)",
-        "gain_up": "gain, up (%)",
-        "delay_margin": "dead time, up (%)",
+        "KKp_max": "max $KK_p$",
+        "gain_up": "gain (%)",
+        "delay_margin": "delay (%)",
     },
 )
 
 
-def robustness(x: Fraction, settings: Settings, structure: Structure) -> list[float]:
+def robustness(x: Fraction, settings: Settings, structure: Structure) -> dict[str, float]:
     """Return the columns of the exhibit for one design.
 
     Raises
@@ -70,16 +68,15 @@ def robustness(x: Fraction, settings: Settings, structure: Structure) -> list[fl
     """
     loop = Loop(plant(float(x)), structure(settings))
     pole, margins = loop.rightmost_pole(), loop.margins()
-    return [
-        pole.real,
-        pole.imag,
-        settings.Kp * margins.gain_reduction,
-        settings.Kp,
-        settings.Kp * margins.gain,
-        100.0 * (1.0 - margins.gain_reduction),
-        100.0 * (margins.gain - 1.0),
-        100.0 * margins.delay / float(x),
-    ]
+    return {
+        "pole_re": pole.real,
+        "pole_im": pole.imag,
+        "KKp_min": settings.Kp * margins.gain_reduction,
+        "KKp": settings.Kp,
+        "KKp_max": settings.Kp * margins.gain,
+        "gain_up": 100.0 * (margins.gain - 1.0),
+        "delay_margin": 100.0 * margins.delay / float(x),
+    }
 
 
 def _compute(structure: Structure) -> pd.DataFrame:

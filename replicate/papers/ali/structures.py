@@ -100,7 +100,7 @@ def printed_texts(exhibit: str) -> dict[tuple[str, str], str]:
     }
 
 
-def printed_settings(exhibit: str, row: str) -> Settings:
-    """Return the settings (Kp, Ti, Td) that the paper prints in one row of an exhibit."""
+def printed_settings(exhibit: str, name: str) -> Settings:
+    """Return the settings (Kp, Ti, Td) that the paper prints for one controller, in a row or a column of an exhibit."""
     texts = printed_texts(exhibit)
-    return Settings(*(float(texts[row, name]) for name in ("Kp", "Ti", "Td")))
+    return Settings(*(float(texts.get((name, key)) or texts[key, name]) for key in ("Kp", "Ti", "Td")))

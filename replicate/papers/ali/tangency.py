@@ -54,18 +54,18 @@ tangency = paper.table(
         "Ms_tangency",
         "w_tangency",
     ),
-    caption="Rows: $\\theta/T$, with $KK_p = \\sqrt{2T/\\theta}$. $M_s^*$ is what the user specifies. Left: "
-    "the printed $T_i$ ($q > 0$) and the maximum sensitivity that it gives in the design loop (3) and, with "
-    "the controller (2) and the exact dead time, in truth. Right: the same for the $T_i$ of the true "
-    "tangency ($q < 0$), with the frequency at which the design loop touches the circle.",
+    caption="Rows: $\\theta/T$, with $KK_p = \\sqrt{2T/\\theta}$. $M_s^*$ is what the user specifies. Left: the "
+    "printed $T_i$ ($q > 0$) and the maximum of $|S|$ that it gives in the design loop (3) and, with the "
+    "controller (2) and the exact dead time, in truth. Right: the same for the $T_i$ of the true tangency ($q < "
+    "0$), with the frequency at which the design loop touches the circle.",
     labels={
         "Ms_star": "$M_s^*$",
-        "Ti": "$T_i$, printed",
-        "Ms_design": "max $|S|$ of (3)",
-        "Ms": "true $M_s$",
-        "Ti_tangency": "$T_i$, tangency",
-        "Ms_design_tangency": "max $|S|$ of (3)",
-        "Ms_tangency": "true $M_s$",
+        "Ti": "$T_i$",
+        "Ms_design": "in (3)",
+        "Ms": "true",
+        "Ti_tangency": "$T_i$, $q<0$",
+        "Ms_design_tangency": "in (3)",
+        "Ms_tangency": "true",
         "w_tangency": "$\\omega T$",
     },
 )

@@ -1,0 +1,159 @@
+"""The checkable sentences about Example 1, section 3, and what both examples take from the design."""
+# ruff: noqa: D103  -- the text of a claim documents its check
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from replicate.exhibits import Finding
+from replicate.loops import Signal
+from replicate.papers.ali.claims import claims, number
+from replicate.papers.ali.examples import (
+    EXAMPLE_1,
+    EXAMPLE_2,
+    example_1,
+    example_2,
+    load_response,
+    loop,
+    setpoint_response,
+)
+from replicate.papers.ali.structures import NAMES, STRUCTURES
+
+FORMS = {"series": "both in the form (2)", "ideal": "Padma Sree in the parallel form"}
+KINDS = {"setpoint": "set point", "load": "load"}
+ENOUGH = 60.0  # the largest peak comes in the first oscillations, long before
+
+
+class Pair(NamedTuple):
+    """A number for the proposed controller and for its competitor."""
+
+    proposed: float
+    competitor: float
+
+    def __str__(self) -> str:
+        """Write both for an evidence text."""
+        return f"{number(self.proposed)} against {number(self.competitor)}"
+
+
+def _example_1(kind: str, structure: str) -> tuple[Signal, Signal]:
+    """Return the outputs of the proposed controller, in (2), and of Padma Sree's in the given structure."""
+    response = setpoint_response if kind == "setpoint" else load_response
+    settings = example_1()
+    return (
+        response(EXAMPLE_1, "series", settings["proposed"]).output,
+        response(EXAMPLE_1, structure, settings["padma-sree"]).output,
+    )
+
+
+def _peak(structure: str, settings: str) -> float:
+    """Return the peak of a set-point response of Example 1."""
+    controlled = loop(EXAMPLE_1, structure, example_1()[settings])
+    return controlled.respond(until=ENOUGH).output.peak().value
+
+
+@claims.claim(
+    "ti-from-11",
+    "The design takes $T_i$ from (11).",
+    where="section 2, step 4; section 3",
+)
+def ti_from_11() -> Finding:
+    found = {}
+    for name, theta, settings in (("1", EXAMPLE_1, example_1()), ("2", EXAMPLE_2, example_2())):
+        used, by_rule = (
+            setpoint_response(theta, "series", settings[row]).output for row in ("proposed", "proposed-eq-11")
+        )
+        change = 100.0 * (by_rule.peak().value / used.peak().value - 1.0)
+        found[name] = (settings["proposed"].Ti, settings["proposed-eq-11"].Ti, change)
+    return Finding(
+        "holds" if all(used == rule for used, rule, _ in found.values()) else "fails",
+        found["2"][1],
+        "The examples take it from the tables: "
+        + "; ".join(
+            f"Example {name}, {used:g} where (11) gives {number(rule)} (the set-point peak would change by "
+            f"{change:+.1f} %)"
+            for name, (used, rule, change) in found.items()
+        )
+        + ".",
+    )
+
+
+@claims.claim(
+    "larger-overshoot-setpoint",
+    "Example 1: the overshoot of the proposed method is larger than Padma Sree's for the set point.",
+    where="section 3, Example 1",
+)
+def larger_overshoot_setpoint() -> Finding:
+    proposed = {structure: _peak(structure, "proposed") for structure in STRUCTURES}
+    competitor = {structure: _peak(structure, "padma-sree") for structure in STRUCTURES}
+    same = {s: Pair(proposed[s], competitor[s]) for s in STRUCTURES}
+    larger = [s for s, pair in same.items() if pair.proposed > pair.competitor]
+    mixed = [(a, b) for a in STRUCTURES for b in STRUCTURES if a != b and proposed[a] > competitor[b]]
+    partners = " or ".join(sorted({NAMES[b] for _, b in mixed}))
+    return Finding(
+        "holds" if len(larger) == len(same) else "holds-partly" if larger else "fails",
+        same["series"].proposed - same["series"].competitor,
+        "The peak of the proposed response is the smaller one: "
+        + ", ".join(f"{pair} ({NAMES[s]})" for s, pair in same.items())
+        + f". Of the {len(STRUCTURES) * (len(STRUCTURES) - 1)} combinations of two different structures, "
+        f"{len(mixed)} would make the sentence true, with Padma Sree's controller in: {partners}. The paper "
+        "does not mention such a difference.",
+    )
+
+
+@claims.claim(
+    "larger-overshoot-load",
+    "Example 1: the overshoot of the proposed method is larger than Padma Sree's for the load.",
+    where="section 3, Example 1",
+)
+def larger_overshoot_load() -> Finding:
+    pairs = {s: Pair(*(signal.peak().value for signal in _example_1("load", s))) for s in FORMS}
+    return Finding(
+        "holds" if all(p.proposed > p.competitor for p in pairs.values()) else "fails",
+        pairs["series"].proposed - pairs["series"].competitor,
+        "Peak of the load response: "
+        + "; ".join(f"{p} ({FORMS[s]})" for s, p in pairs.items())
+        + ".",
+    )
+
+
+@claims.claim(
+    "shorter-settling",
+    "Example 1: the proposed method settles faster than Padma Sree's, for set point and load.",
+    where="section 3, Example 1",
+)
+def shorter_settling() -> Finding:
+    pairs = {
+        (kind, s): Pair(*(signal.settling_time() for signal in _example_1(kind, s)))
+        for kind in ("setpoint", "load")
+        for s in FORMS
+    }
+    return Finding(
+        "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
+        pairs["setpoint", "series"].competitor / pairs["setpoint", "series"].proposed,
+        "Settling to 2 %: "
+        + "; ".join(
+            f"{KINDS[kind]}, {p} ({FORMS[s]})" for (kind, s), p in pairs.items()
+        )
+        + ".",
+    )
+
+
+@claims.claim(
+    "padma-sree-oscillates",
+    "Example 1: Padma Sree's controller gives an oscillatory response.",
+    where="section 3, Example 1",
+)
+def padma_sree_oscillates() -> Finding:
+    settings = example_1()["padma-sree"]
+    found = {}
+    for structure in ("series", "d-filter", "ideal"):
+        controlled = loop(EXAMPLE_1, structure, settings)
+        pole = controlled.rightmost_pole()
+        found[structure] = (-pole.real / abs(pole), controlled.sensitivity_peak().value)
+    return Finding(
+        "holds" if max(ratio for ratio, _ in found.values()) < 0.1 else "fails",
+        found["series"][0],
+        "Damping ratio of its dominant poles and $M_s$: "
+        + "; ".join(f"{number(ratio)} and {number(peak)} ({NAMES[s]})" for s, (ratio, peak) in found.items())
+        + ". The loop is close to instability in every structure.",
+    )
