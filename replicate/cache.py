@@ -28,6 +28,7 @@ from replicate.exhibits import Paper
 _CORE = (
     "loops",
     "rules.py",
+    "classical_rules.toml",
     "cache.py",
     "capture.py",
     "exhibits.py",

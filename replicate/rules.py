@@ -4,6 +4,7 @@ A rule says how the controller gains follow from the parameters of a process mod
 arithmetic expressions, kept as text in a TOML file next to the paper that prints them, so that they can be
 proofread against the page; a formula too long for one line may be a Python function instead. A rule may exist
 in several *variants*: as the paper prints it, with a printing error mended, as the authors evidently used it.
+Rules of the literature that several papers use stand once, in ``classical_rules.toml``; a paper's file refers to them.
 
 ```toml
 [[rule]]
@@ -19,16 +20,23 @@ Kp_tex = '...'        # the formula as displayed
 Ti = "..."
 why = "what is wrong in print, and how one knows"
 ```
+
+In place of ``Ti`` a form may give ``Ki``, the integral gain of the parallel form ``Kp + Ki/s``. In place of formulas it
+may say ``same_as = "cohen-coon"``, or ``same_as = "cohen-coon/decimals-033"`` for a variant. A rule that is one case of
+a pair says for which processes it was made: ``holds = { quantity = "p*h", low = 0.01, high = 0.2 }``.
 """
 
 from __future__ import annotations
 
 import ast
+import importlib.resources
+import math
 import operator
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
 from importlib.resources.abc import Traversable
 from typing import Any
 
@@ -38,6 +46,7 @@ Number = float | Fraction
 Formula = Callable[[Mapping[str, Number]], Number]
 
 PRINTED = "printed"
+CLASSICAL = "classical_rules.toml"
 
 _OPERATIONS: dict[type[ast.operator], Callable[[Any, Any], Number]] = {
     ast.Add: operator.add,
@@ -115,6 +124,24 @@ class Gains:
         """The integral gain ``kp/ti`` of the parallel form ``kp + ki/s``."""
         return self.kp / self.ti
 
+    @classmethod
+    def parallel(cls, kp: Number, ki: Number) -> Gains:
+        """Return the gains of the parallel form ``kp + ki/s``; without integral action ``ti`` is infinite."""
+        return cls(kp, kp / ki if ki else math.inf)
+
+
+@dataclass(frozen=True)
+class Range:
+    """The processes for which one of several cases of a rule was made: those with low <= quantity <= high."""
+
+    quantity: Formula
+    low: float
+    high: float
+
+    def contains(self, **symbols: Number) -> bool:
+        """Whether the case was made for a process with these parameters."""
+        return self.low <= self.quantity(symbols) <= self.high
+
 
 @dataclass(frozen=True)
 class TuningRule:
@@ -126,6 +153,8 @@ class TuningRule:
         Short key and full name.
     gain, integral_time
         The formulas; symbols are those of the paper.
+    integral_gain
+        The formula of ``ki`` where the rule gives that in place of an integral time.
     source
         Where the paper takes the rule from.
     range
@@ -134,16 +163,20 @@ class TuningRule:
         The formulas as displayed, by quantity (``Kp``, ``Ti``), LaTeX without ``$``.
     why
         For a variant other than the printed one: what differs and how one knows.
+    holds
+        For one case of several: where it applies.
     """
 
     id: str
     name: str
     gain: Formula
-    integral_time: Formula
+    integral_time: Formula | None
     source: str = ""
     range: str = ""
     tex: Mapping[str, str] = field(default_factory=dict)
     why: str = ""
+    integral_gain: Formula | None = None
+    holds: Range | None = None
 
     def evaluate(self, **symbols: Number) -> Gains:
         """Return the gains for the given parameters, exactly if parameters and formulas are exact.
@@ -154,6 +187,9 @@ class TuningRule:
             If the formulas need a parameter that is not given.
         """
         try:
+            if self.integral_gain is not None:
+                return Gains.parallel(self.gain(symbols), self.integral_gain(symbols))
+            assert self.integral_time is not None  # noqa: S101  -- `load_rules` demands one of the two
             return Gains(self.gain(symbols), self.integral_time(symbols))
         except KeyError as error:
             msg = f"rule {self.id} needs {error.args[0]}; given are {', '.join(sorted(symbols))}"
@@ -185,21 +221,63 @@ def load_rules(source: Traversable, variant: str = PRINTED) -> dict[str, TuningR
         if key in rules:
             msg = f"{where} is given twice"
             raise PaperDefinitionError(msg)
-        form = record.get(PRINTED, {}) | (record.get(variant, {}) if variant != PRINTED else {})
-        missing = [name for name in ("Kp", "Ti") if name not in form] + [
-            n for n in ("id", "name") if n not in record
-        ]
-        if missing:
-            msg = f"{where} lacks {', '.join(missing)}"
-            raise PaperDefinitionError(msg)
         try:
-            gain, integral_time = formula(form["Kp"]), formula(form["Ti"])
+            form = _form(record, variant)
+            second = "Ki" if "Ki" in form and "Ti" not in form else "Ti"
+            gain, integral = (formula(_required(form | record, name)) for name in ("Kp", second))
+            name = _required(record, "name")
+            holds = _range(record["holds"]) if "holds" in record else None
         except PaperDefinitionError as error:
             msg = f"{where}: {error}"
             raise PaperDefinitionError(msg) from error
-        tex = {name: form[f"{name}_tex"] for name in ("Kp", "Ti") if f"{name}_tex" in form}
+        tex = {name: form[f"{name}_tex"] for name in ("Kp", "Ti", "Ki") if f"{name}_tex" in form}
         rules[key] = TuningRule(
-            key, record["name"], gain, integral_time,
+            key, name, gain, integral if second == "Ti" else None,
             record.get("source", ""), record.get("range", ""), tex, form.get("why", ""),
+            integral_gain=integral if second == "Ki" else None, holds=holds,
         )  # fmt: skip
     return rules
+
+
+def _form(record: Mapping[str, Any], variant: str) -> dict[str, Any]:
+    """Return the strings of one variant, with what a reference to a classical rule stands for."""
+    form: dict[str, Any] = {}
+    for part in (PRINTED, variant):
+        own = record.get(part, {})
+        if "same_as" in own:
+            id, _, other = own["same_as"].partition("/")
+            classical = _classical_forms()
+            if id not in classical:
+                msg = f"same_as = '{own['same_as']}' is not known; allowed: {', '.join(sorted(classical))}"
+                raise PaperDefinitionError(msg)
+            if other and other not in classical[id]:
+                variants = ", ".join(key for key, value in classical[id].items() if isinstance(value, dict))
+                msg = f"same_as = '{own['same_as']}': {id} has no variant '{other}'; allowed: {variants}"
+                raise PaperDefinitionError(msg)
+            own = classical[id][PRINTED] | (classical[id][other] if other else {}) | own
+        form |= own
+    return form
+
+
+@cache
+def _classical_forms() -> dict[str, dict[str, Any]]:
+    file = importlib.resources.files("replicate") / CLASSICAL
+    return {record["id"]: record for record in tomllib.loads(file.read_text(encoding="utf-8"))["rule"]}
+
+
+def _range(record: Mapping[str, Any]) -> Range:
+    quantity, low, high = (_required(record, name) for name in ("quantity", "low", "high"))
+    return Range(formula(quantity), float(low), float(high))
+
+
+def _required(record: Mapping[str, Any], name: str) -> Any:
+    if name not in record:
+        msg = f"{name} is missing"
+        raise PaperDefinitionError(msg)
+    return record[name]
+
+
+@cache
+def classical_rules(variant: str = PRINTED) -> Mapping[str, TuningRule]:
+    """Return the rules of the literature that more than one paper uses; symbols ``K``, ``tau``, ``L``."""
+    return load_rules(importlib.resources.files("replicate") / CLASSICAL, variant)
