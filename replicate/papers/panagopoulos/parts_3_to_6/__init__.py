@@ -7,6 +7,7 @@ MODULES: tuple[str, ...] = (
     "iii_eq_5_14",
     "iii_table_1",
     "iii_claims",
+    "iv_steam_generator",
 )
 NUMBERED: tuple[str, ...] = (
     *(f"III-fig-{n}" for n in range(1, 7)),

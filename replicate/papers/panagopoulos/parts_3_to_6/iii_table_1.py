@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import csv
-from functools import cache
 from typing import TYPE_CHECKING
 
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import gamma_of_m, m_of_gamma
+from replicate.papers.panagopoulos.parts_3_to_6.printed_values import printed_values
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,12 +25,10 @@ table_1 = paper.table(
 )
 
 
-@cache
 def printed_pairs() -> dict[str, tuple[float, float]]:
     """Return (M, gamma) as printed, by column."""
-    text = (paper.folder() / "printed" / "III-table-1.csv").read_text(encoding="utf-8")
-    m, gamma = csv.DictReader(text.splitlines())
-    return {column: (float(m[column]), float(gamma[column])) for column in COLUMNS}
+    printed = printed_values("III-table-1")
+    return {column: (printed["M", column], printed["gamma", column]) for column in COLUMNS}
 
 
 @table_1.reading(
