@@ -79,6 +79,31 @@ def basis(x: Array, degree: int) -> Array:
     return table
 
 
+def evaluate(series: Array, x: Array) -> Array:
+    """Evaluate the k-th Chebyshev series, a row of ``series``, at the k-th point, by Clenshaw's recurrence."""
+    ahead, after = np.zeros_like(x), np.zeros_like(x)
+    for column in series[:, :0:-1].T:
+        ahead, after = column + 2.0 * x * ahead - after, ahead
+    return np.asarray(series[:, 0] + x * ahead - after)
+
+
+def bracketed_roots(series: Array, left: Array, right: Array) -> Array:
+    """Return one root of each series (rows) between points of opposite sign: bisection, then Newton's method."""
+    low, high = np.array(left), np.array(right)
+    sign = np.sign(evaluate(series, low))
+    for _ in range(8):
+        middle = 0.5 * (low + high)
+        below = np.sign(evaluate(series, middle)) == sign
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    slopes = np.asarray(cheb.chebder(series, axis=1), dtype=float)
+    root = 0.5 * (low + high)
+    for _ in range(4):
+        slope = evaluate(slopes, root)
+        step = np.divide(evaluate(series, root), slope, out=np.zeros_like(root), where=slope != 0.0)
+        root = np.clip(root - step, low, high)
+    return root
+
+
 def real_roots(coefficients: Array) -> Array:
     """Return the sorted roots of a Chebyshev series in [-1, 1], from the colleague matrix, polished by Newton.
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev as cheb
@@ -446,16 +445,50 @@ class Signal:
         signed = (samples.min(axis=1) - MARGIN * np.ptp(samples, axis=1) < 0.0) & (
             samples.max(axis=1) + MARGIN * np.ptp(samples, axis=1) > 0.0
         )
-        points, weights = chebyshev.gauss_legendre(self.degree + 2)
-        values = self._error @ chebyshev.basis(points, self.degree)
-        times = self.breaks[:-1, None] + 0.5 * self._lengths[:, None] * (points + 1.0)
-        whole = np.abs((values * times**power) @ weights) * (0.5 * self._lengths)
-        total = float(np.sum(whole[~signed]))
-        for piece in np.nonzero(signed & ~negligible)[0]:
-            ends = np.concatenate([[-1.0], chebyshev.real_roots(self._error[piece]), [1.0]])
-            for left, right in pairwise(ends):
-                x = 0.5 * (left + right) + 0.5 * (right - left) * points
-                part = cheb.chebval(x, self._error[piece])
-                t = self.breaks[piece] + 0.5 * self._lengths[piece] * (x + 1.0)
-                total += abs(float(np.sum(part * t**power * weights))) * 0.25 * (right - left) * self._lengths[piece]
-        return total
+        half = 0.5 * self._lengths
+        weighted = self._error
+        for _ in range(power):
+            weighted = _times_argument(weighted, self.breaks[:-1] + half, half)
+        total = float(np.sum(np.abs(self._piece_integrals(weighted))[~signed]))
+        pieces = np.nonzero(signed & ~negligible)[0]
+        owners, roots = self._zeros_of_error(pieces, samples)
+        # between neighbouring zeros the integral is a difference of the antiderivative
+        owners = np.concatenate([pieces, owners, pieces])
+        points = np.concatenate([np.full(pieces.size, -1.0), roots, np.full(pieces.size, 1.0)])
+        order = np.lexsort((points, owners))
+        owners, points = owners[order], points[order]
+        running = np.asarray(cheb.chebint(weighted, axis=1), dtype=float)
+        values = chebyshev.evaluate(running[owners], points) * half[owners]
+        same = owners[1:] == owners[:-1]
+        return total + float(np.sum(np.abs(np.diff(values))[same]))
+
+    def _zeros_of_error(self, pieces: NDArray[np.intp], samples: Array) -> tuple[NDArray[np.intp], Array]:
+        """Return the zeros of the error in some pieces, as piece numbers and local coordinates.
+
+        Zeros between samples of opposite sign are found all at once; pieces with an extremum so close to zero that it
+        may hide two zeros between samples go through the companion matrix.
+        """
+        part = samples[pieces]
+        slopes = np.diff(part, axis=1)
+        turns = slopes[:, 1:] * slopes[:, :-1] <= 0.0
+        hidden = np.any(turns & (np.abs(part[:, 1:-1]) < MARGIN * np.ptp(part, axis=1)[:, None]), axis=1)
+        rows, columns = np.nonzero((part[:, :-1] < 0.0) != (part[:, 1:] < 0.0))
+        clear = ~hidden[rows]
+        rows, columns = rows[clear], columns[clear]
+        nodes = chebyshev.nodes(SAMPLES - 1)
+        owners = pieces[rows]
+        found = chebyshev.bracketed_roots(self._error[owners], nodes[columns], nodes[columns + 1])
+        slow = [(piece, chebyshev.real_roots(self._error[piece])) for piece in pieces[hidden]]
+        owners = np.concatenate([owners, *(np.full(roots.size, piece, dtype=np.intp) for piece, roots in slow)])
+        return owners, np.concatenate([found, *(roots for _, roots in slow)])
+
+
+def _times_argument(series: Array, middle: Array, half: Array) -> Array:
+    """Multiply Chebyshev series (rows) by their argument t = middle + half x."""
+    product = np.zeros((series.shape[0], series.shape[1] + 1))
+    product[:, :-1] += series * middle[:, None]
+    # x T_k = (T_(k+1) + T_(k-1)) / 2, x T_0 = T_1
+    product[:, 1] += half * series[:, 0]
+    product[:, 2:] += 0.5 * half[:, None] * series[:, 1:]
+    product[:, :-2] += 0.5 * half[:, None] * series[:, 1:]
+    return product
