@@ -1,4 +1,17 @@
 """Paper I: design of PI controllers by non-convex optimisation, with its errata."""
 
-MODULES: tuple[str, ...] = ()
-NUMBERED: tuple[str, ...] = ()
+MODULES: tuple[str, ...] = (
+    "errata",
+    "theorem_1",
+    "table_1",
+    "table_2",
+    "table_3",
+    "table_4",
+    "table_5",
+    "settling_evidence",
+)
+NUMBERED: tuple[str, ...] = (
+    *(f"I-fig-{number}" for number in range(1, 10)),
+    *(f"I-table-{number}" for number in range(1, 6)),
+    *(f"I-example-{number}" for number in range(1, 9)),
+)

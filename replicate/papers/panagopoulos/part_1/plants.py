@@ -1,0 +1,84 @@
+"""The plants of paper I, as named objects; paper II gives the same letters to other plants.
+
+``G12`` and ``G14`` have a parameter a, which is part of the name: ``G12 a=0.2``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import MappingProxyType
+
+import numpy as np
+
+from replicate.loops import Plant
+
+
+def _product(*factors: Sequence[float]) -> np.ndarray:
+    product = np.array([1.0])
+    for factor in factors:
+        product = np.polymul(product, factor)
+    return product
+
+
+def resonant(a: float) -> Plant:
+    """Return G12, a lag with two oscillatory poles of relative damping a/6 (example 5)."""
+    return Plant([9.0], _product([1.0, 1.0], [1.0, a, 9.0]))
+
+
+def unstable(a: float) -> Plant:
+    """Return G14, an unstable pole at 1 and a stable one at -a (example 7)."""
+    return Plant([a], _product([1.0, a], [1.0, -1.0]))
+
+
+def filtered_dead_time(time_constant: float) -> Plant:
+    """Return G7 behind the noise filter (2), ``e^{-s} / (1 + s Tf)`` (example 8)."""
+    return Plant([1.0], [time_constant, 1.0], dead_time=1.0)
+
+
+_LAGS = _product([1.0, 1.0], [1.0, 1.0], [1.0, 1.0])
+_SLOW_MODE = 0.05
+
+PLANTS = MappingProxyType(
+    {
+        "G1": Plant([1.0], _LAGS),
+        "G2": Plant([1.0], _product([1.0, 1.0], [0.2, 1.0], [0.04, 1.0], [0.008, 1.0])),
+        "G3": Plant([1.0], _LAGS, dead_time=15.0),
+        "G4": Plant([1.0], _product([1.0, 0.0], [1.0, 1.0], [1.0, 1.0])),
+        "G5": Plant([-2.0, 1.0], _LAGS),
+        "G6": resonant(2.0),
+        "G7": Plant([1.0], [1.0], dead_time=1.0),
+        "G8": Plant([1.0], [1.0, 0.0], dead_time=1.0),
+        "G9": Plant.from_function(lambda s: np.exp(-np.sqrt(s))),
+        "G10": Plant(  # (27), over one denominator
+            100.0 * np.polyadd([1.0, _SLOW_MODE], [0.5, 0.5]),
+            _product([1.0, 10.0], [1.0, 10.0], [1.0, 1.0], [1.0, _SLOW_MODE]),
+        ),
+        "G11": Plant([150.0], _product([1.0, 10.0], [1.0, 10.0], [1.0, 1.0])),  # (28)
+        **{f"G12 a={a}": resonant(a) for a in (0.0, 0.1, 0.2, 0.5, 1.0, 2.0)},
+        "G13": Plant(_product([1.0, 6.0], [1.0, 6.0]), _product([1.0, 0.0], [1.0, 1.0], [1.0, 1.0], [1.0, 36.0])),
+        **{f"G14 a={a:g}": unstable(a) for a in (4.0, 8.0)},
+    }
+)
+
+TEX = MappingProxyType(
+    {
+        "G1": r"\dfrac{1}{(s+1)^3}",
+        "G2": r"\dfrac{1}{(s+1)(1+0.2s)(1+0.04s)(1+0.008s)}",
+        "G3": r"\dfrac{e^{-15s}}{(s+1)^3}",
+        "G4": r"\dfrac{1}{s(s+1)^2}",
+        "G5": r"\dfrac{1-2s}{(s+1)^3}",
+        "G6": r"\dfrac{9}{(s+1)(s^2+2s+9)}",
+        "G7": r"e^{-s}",
+        "G8": r"\dfrac{e^{-s}}{s}",
+        "G9": r"e^{-\sqrt{s}}",
+        "G10": r"\dfrac{100}{(s+10)^2}\left(\dfrac{1}{s+1}+\dfrac{0.5}{s+0.05}\right)",
+        "G11": r"\dfrac{150}{(s+10)^2(s+1)}",
+        "G13": r"\dfrac{(s+6)^2}{s(s+1)^2(s+36)}",
+    }
+)
+
+
+def label(name: str) -> str:
+    """Return a plant's name as the paper sets it, ``G12 a=0.2`` as $G_{12}$, $a = 0.2$."""
+    letter, _, parameter = name.partition(" a=")
+    return f"$G_{{{letter[1:]}}}$" + (f", $a = {parameter}$" if parameter else "")

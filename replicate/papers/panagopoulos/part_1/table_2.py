@@ -1,0 +1,48 @@
+"""Table 2: the controllers for G7 to G11."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
+from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ROWS = {f"{plant} Ms={ms}": (plant, ms) for plant in ("G7", "G8", "G9", "G10", "G11") for ms in (1.4, 2.0)}
+
+table_2 = paper.table(
+    "I-table-2",
+    "Controllers for $G_7$ to $G_{11}$",
+    rows=tuple(ROWS),
+    columns=("k", "ki", "b", "w0", "Mp"),
+    caption="A pure dead time, an integrator with dead time, the heat equation, and a plant with and without a slow mode "
+    "(examples 1 to 4).",
+    labels={**COLUMNS, **design_rows(ROWS)},
+)
+
+
+def _table(rule: WeightRule) -> pd.DataFrame:
+    import pandas as pd
+
+    rows = {}
+    for row, key in ROWS.items():
+        found = design(*key)
+        rows[row] = [found.k, found.ki, weight(*key, rule), found.frequency, complementary_peak(*key).value]
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table_2.columns))
+
+
+@table_2.reading("as-written", "As the text says", note="$b$ by (25) at the peak of $|L/(1+L)|$, as (24) says.")
+def as_written() -> pd.DataFrame:
+    """Compute the table by the definitions of the text."""
+    return _table("w_mp")
+
+
+@table_2.reading(
+    "authors", "$b$ at $\\omega_0$", note="As written, but with (25) evaluated at $\\omega_0$, the peak of the sensitivity."
+)
+def authors() -> pd.DataFrame:
+    """Compute the table with the set-point weight's other frequency."""
+    return _table("w_0")
