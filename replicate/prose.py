@@ -21,6 +21,7 @@ empty. Comments are written ``<!--# ... #-->``, since ``{#`` begins an identifie
 
 from __future__ import annotations
 
+import re
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     import jinja2
 
 _SHOWN_KEYS = 12
+_LINE_MARK = re.compile("\ue010(\\d+)\ue011")
 
 
 class _MissingResultError(Exception):
@@ -115,6 +117,45 @@ class Prose:
             line = first_line + _template_line(error) - 1
             msg = f"{source}:{line}: {error}"
             raise TemplateError(msg) from error
+
+    def render_lines(self, text: str, source: str) -> list[tuple[str, int]]:
+        """Fill in a text and keep, for every line that comes out, the line of the template it stems from.
+
+        Later stages can then say where in the source something is wrong.
+
+        Raises
+        ------
+        TemplateError
+            As `render`.
+        """
+        rendered = self.render(self._marked(text), source)
+        lines, waiting, number = list[tuple[str, int]](), list[str](), 1
+        for line in rendered.split("\n"):
+            found = _LINE_MARK.findall(line)
+            waiting.append(_LINE_MARK.sub("", line))
+            if found:  # a value of several lines is marked on its last one only
+                number = int(found[-1])
+                lines += [(part, number) for part in waiting]
+                waiting.clear()
+        return lines + [(part, number) for part in waiting]
+
+    def _marked(self, text: str) -> str:
+        """Return the template with its line number at the end of every line of plain text."""
+        import jinja2
+
+        try:
+            tokens = list(self._environment.lex(text))
+        except jinja2.TemplateSyntaxError:
+            return text  # rendering it says what is wrong
+        out = []
+        for first, kind, value in tokens:
+            if kind == "data":
+                parts = value.split("\n")
+                marks = [f"\ue010{first + i}\ue011\n" for i in range(len(parts) - 1)]
+                out += [part for pair in zip(parts, [*marks, ""], strict=True) for part in pair]
+            else:
+                out.append(value)
+        return "".join(out)
 
     def _number(self, exhibit: str, row: str, column: str, reading: str = AS_WRITTEN) -> float:
         where = f"value('{exhibit}', '{row}', '{column}', '{reading}')"

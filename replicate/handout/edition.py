@@ -1,0 +1,179 @@
+"""From a paper's ``handout.md`` to one document: numbers filled in, one edition chosen, exhibits in place."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import pypandoc
+
+from replicate.errors import TemplateError
+from replicate.exhibits import Paper
+from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, located
+from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
+from replicate.handout.programs import run_programs
+from replicate.handout.tree import Blocks, Element, classes, div, elements, plain, string, text_of, transform
+from replicate.judgement import VerdictRow
+from replicate.locations import display_name
+from replicate.prose import Prose
+from replicate.records import Results
+
+FILE = "handout.md"
+
+# "(5) and (6) give ..." is a sentence about equations, not item 5 of a list, and "<" is a less-than sign.
+_FORMAT = (
+    "markdown-auto_identifiers-implicit_figures-yaml_metadata_block-fancy_lists-example_lists-citations"
+    "-raw_html-raw_tex-raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
+)
+_MARK = re.compile(f"{OPEN}(\\d+){CLOSE}")
+
+
+@dataclass(frozen=True)
+class Document:
+    """One edition of a handout, ready to be written in any format.
+
+    Attributes
+    ----------
+    title
+        Plain text.
+    blocks
+        Pandoc's tree. A figure is a Div of class ``drawing`` with its name, a table one of class ``exhibit``;
+        both hold the caption in a Div of class ``caption``.
+    formulas, drawings
+        What the formulas and the names of drawings in the tree stand for.
+    """
+
+    paper: Paper
+    solutions: bool
+    title: str
+    blocks: Blocks
+    formulas: dict[Formula, Converted]
+    drawings: dict[str, Drawing]
+
+
+def edition(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], *, solutions: bool) -> Document:
+    """Make one edition of a paper's handout.
+
+    Parameters
+    ----------
+    results, verdicts
+        Of this paper, perhaps among others.
+    solutions
+        Whether the solutions are in it.
+
+    Raises
+    ------
+    TemplateError
+        If there is no handout, the text asks for something that does not exist, a program in it fails, or a
+        formula cannot be converted. The message names file, line and what is wrong.
+    """
+    file = paper.folder() / FILE
+    source = display_name(file)
+    if not file.is_file():
+        msg = f"{source}: the paper has no handout"
+        raise TemplateError(msg)
+    placing = Placing(paper, results, verdicts)
+    prose = Prose(paper, results, verdicts, placing.functions())
+    lines = prose.render_lines(file.read_text(encoding="utf-8"), source)
+    blocks = _read(lines, source)
+    if not solutions:
+        blocks = transform(blocks, lambda element: [] if "solution" in classes(element) else None)
+    title, blocks = _title(blocks, source)
+    blocks = run_programs(_placed(_numbered(blocks, source), placing), lines, source)
+    try:
+        formulas = convert(formulas_in(blocks))
+    except FormulaError as error:
+        raise located(error, lines, source) from error
+    drawings = {thing.name: thing for thing in placing.things if isinstance(thing, Drawing)}
+    return Document(paper, solutions, title, blocks, formulas, drawings)
+
+
+def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
+    """Read Markdown into pandoc's tree."""
+    text = "\n".join(line for line, _ in lines)
+    try:
+        tree = json.loads(
+            pypandoc.convert_text(
+                text, "json", format=_FORMAT, extra_args=["--fail-if-warnings", "--columns=10000"]
+            )
+        )
+    except RuntimeError as error:
+        words = " ".join(str(error).split())
+        found = re.search(r"\[WARNING\] (.*?)(?: Failing because|$)", words)
+        at = re.search(r"line (\d+)", words)
+        line = lines[min(int(at[1]), len(lines)) - 1][1] if at else 1
+        msg = f"{source}:{line}: pandoc cannot read the text: {found[1] if found else words}"
+        raise TemplateError(msg) from error
+    blocks: Blocks = tree["blocks"]
+    return blocks
+
+
+def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:
+    """Split off the heading of level 1 that every handout begins with; the others move up one level."""
+    if not blocks or blocks[0]["t"] != "Header" or blocks[0]["c"][0] != 1:
+        msg = f"{source}:1: a handout begins with its title, a heading of level 1"
+        raise TemplateError(msg)
+
+    def raised(element: Element) -> list[Element] | None:
+        if element["t"] != "Header":
+            return None
+        level, attributes, content = element["c"]
+        return [{"t": "Header", "c": [level - 1, attributes, content]}]
+
+    return text_of(blocks[0]["c"][2]), transform(blocks[1:], raised)
+
+
+def _numbered(blocks: Blocks, source: str) -> Blocks:
+    """Number the exercises in their headings, and say with what each is to be solved."""
+    number = 0
+    for element in elements(blocks):
+        if "exercise" not in classes(element):
+            continue
+        number += 1
+        heading = element["c"][1][0] if element["c"][1] else None
+        if heading is None or heading["t"] != "Header":
+            msg = f"{source}: exercise {number} does not begin with a heading"
+            raise TemplateError(msg)
+        _, attributes, title = heading["c"]
+        tool = dict(attributes[2]).get("tool", "")
+        head: list[Any] = [
+            {"t": "Span", "c": [["", ["number"], []], [string(f"Exercise {number}")]]},
+            {"t": "Space"},
+            *title,
+        ]
+        if tool:
+            head += [{"t": "Space"}, {"t": "Span", "c": [["", ["tool"], []], [string(tool)]]}]
+        heading["c"] = [heading["c"][0], ["", [], []], head]
+    return blocks
+
+
+def _placed(blocks: Blocks, placing: Placing) -> Blocks:
+    """Put tables and figures where their marks are; the rest of the paragraph is the caption."""
+
+    def changed(element: Element) -> list[Element] | None:
+        if element["t"] != "Para" or not element["c"] or element["c"][0]["t"] != "Str":
+            return None
+        found = _MARK.match(element["c"][0]["c"])
+        if found is None:
+            return None
+        thing = placing.things[int(found[1])]
+        words = [string(element["c"][0]["c"][found.end() :]), *element["c"][1:]]
+        while words and (words[0]["t"] in {"Space", "SoftBreak"} or words[0]["c"] == ""):
+            words.pop(0)
+        if isinstance(thing, Drawing):
+            caption = [div([plain(words)], "caption")] if words else []
+            return [div(caption, "drawing", name=thing.name)]
+        caption = [div([plain(_with_legend(words, thing))], "caption")] if words or thing.legend else []
+        return [div([thing.table, *caption], "exhibit")]
+
+    placed: Blocks = transform(blocks, changed)
+    return placed
+
+
+def _with_legend(words: list[Element], thing: Placed) -> list[Element]:
+    if not thing.legend:
+        return words
+    return [*words, *([{"t": "Space"}] if words else []), *thing.legend, string(".")]

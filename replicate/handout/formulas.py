@@ -1,0 +1,106 @@
+"""LaTeX formulas to Typst and MathML, each with its words, or a message that says which one is wrong and where."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import pypandoc
+
+from replicate.errors import TemplateError
+from replicate.handout.spoken_math import spoken
+from replicate.handout.tree import Blocks, elements
+
+Formula = tuple[bool, str]  # whether it is displayed on a line of its own, and its LaTeX
+
+
+@dataclass(frozen=True)
+class Converted:
+    """One formula: Typst markup between dollar signs, a MathML element, and both in words."""
+
+    typst: str
+    mathml: str
+    words: str
+
+
+class FormulaError(Exception):
+    """A formula that pandoc does not understand; the message says why."""
+
+    def __init__(self, tex: str, reason: str) -> None:
+        super().__init__(reason)
+        self.tex = tex
+
+
+def formulas_in(document: Blocks) -> list[Formula]:
+    """Return the different formulas of a document in the order of the text."""
+    found = (element["c"] for element in elements(document) if element["t"] == "Math")
+    return list(dict.fromkeys((kind["t"] == "DisplayMath", tex) for kind, tex in found))
+
+
+def convert(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
+    """Convert formulas, all in one call of pandoc per format.
+
+    Raises
+    ------
+    FormulaError
+        For the first formula that pandoc cannot convert.
+    """
+    if not formulas:
+        return {}
+    try:
+        typst, mathml = (_written(formulas, format) for format in ("typst", "html"))
+    except RuntimeError:
+        for formula in formulas:  # which one is it?
+            try:
+                _written([formula], "typst")
+            except RuntimeError as error:
+                raise FormulaError(formula[1], _reason(str(error))) from error
+        raise
+    return {
+        formula: Converted(one, other, spoken(other))
+        for formula, one, other in zip(formulas, typst, mathml, strict=True)
+    }
+
+
+def _written(formulas: Sequence[Formula], format: str) -> list[str]:
+    """Write each formula in a paragraph of its own, and cut the result at the marks between them."""
+    document = "\n\n".join(
+        f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas
+    )
+    options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if format == "html" else [])]
+    text = pypandoc.convert_text(document, format, format="markdown", extra_args=options)
+    parts = [part.strip() for part in text.replace("\r\n", "\n").split("\ue004")[1:]]
+    if format == "typst":
+        return parts
+    found = [re.search(r"<math\b.*</math>", part, re.DOTALL) for part in parts]
+    for formula, match in zip(formulas, found, strict=True):
+        if match is None:  # not taken for math at all, say for a space after the dollar sign
+            raise FormulaError(formula[1], "is not a formula")
+    return [match[0] for match in found if match]
+
+
+def _reason(message: str) -> str:
+    """Return pandoc's explanation without the formula, which it repeats, on one line."""
+    words = " ".join(message.split())
+    found = re.search(r"rendering as TeX:.*?((?:unexpected|expecting) .*?)(?:Failing because|$)", words)
+    return (found[1] if found else words).strip()
+
+
+def located(error: FormulaError, lines: Sequence[tuple[str, int]], source: str) -> TemplateError:
+    """Return an error that names file, line and formula.
+
+    Parameters
+    ----------
+    lines
+        The text that was converted, with the line of the source that each line stems from.
+    """
+    return TemplateError(f"{source}:{line_of(error.tex, lines)}: pandoc cannot convert ${error.tex}$: {error}")
+
+
+def line_of(text: str, lines: Sequence[tuple[str, int]]) -> int:
+    """Return the line of the source in which a text begins, however its blanks are spread; 1 if nowhere."""
+    whole = "\n".join(line for line, _ in lines)
+    words = r"\s+".join(re.escape(word) for word in text.split())
+    found = re.search(words, whole) if words else None
+    return lines[whole.count("\n", 0, found.start())][1] if found else 1

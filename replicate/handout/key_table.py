@@ -1,0 +1,154 @@
+"""A table of a paper for the handout: each printed value beside what chosen readings compute for it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from replicate.errors import TemplateError
+from replicate.exhibits import Table
+from replicate.handout.tree import Element, inlines, plain, span, string
+from replicate.judgement import VerdictRow
+from replicate.records import TableResult
+from replicate.report.tables import Cell, TableView, Value, table_view
+from replicate.report.words import MATCHES, VERDICTS
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What of a table the handout shows; nothing given means everything.
+
+    Attributes
+    ----------
+    readings
+        Reading ids with the heading of their columns.
+    printed
+        Whether the printed values are shown. (A table of the project's own has none.)
+    """
+
+    columns: Sequence[str] = ()
+    rows: Sequence[str] = ()
+    readings: Mapping[str, str] | None = None
+    labels: Mapping[str, str] | None = None
+    printed: bool = True
+
+
+def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow], choice: Choice) -> Element:
+    """Return the table as an element of pandoc's document tree, without its caption.
+
+    Raises
+    ------
+    TemplateError
+        If a row, column or reading does not exist.
+    """
+    view = table_view(table, result, verdicts)
+    columns = _chosen("column", choice.columns, view.columns)
+    rows = _chosen("row", choice.rows, [row for row, _ in view.rows])
+    titles = {reading.id: reading.id for reading in view.readings}
+    readings = _chosen("reading", list(choice.readings or ()), list(titles))
+    titles |= dict(choice.readings or {})
+    printed = bool(choice.printed and view.verdicts)
+    labels = {**table.labels, **(choice.labels or {})}
+
+    def label(key: str) -> list[Element]:
+        return inlines(labels.get(key, key.replace("_", " ")))
+
+    groups = len(readings) + printed
+    by_row = dict(view.rows)
+    heads = _heads(table, columns, [titles[id] for id in readings], printed, label)
+    body = []
+    for row in rows:
+        cells = [_cell(label(row), "AlignLeft")]
+        for found in (cell for cell in by_row[row] if cell.column in columns):
+            cells += ([_printed_cell(found)] if printed else []) + [
+                _computed_cell(found, value) for value in found.values if value.reading.id in readings
+            ]
+        body.append(_row(cells))
+    aligned = [["AlignLeft"], *([["AlignRight"]] * (groups * len(columns)))]
+    widths = [[{"t": align[0]}, {"t": "ColWidthDefault"}] for align in aligned]
+    no_attr = ["", [], []]
+    return {
+        "t": "Table",
+        "c": [
+            ["", ["key"], []],
+            [None, []],
+            widths,
+            [no_attr, heads],
+            [[no_attr, 1, [], body]],
+            [no_attr, []],
+        ],
+    }
+
+
+def legend(view: TableView, choice: Choice) -> list[Element]:
+    """Return what the signs in the shown cells mean, as inline content."""
+    columns, rows = choice.columns or view.columns, choice.rows or [row for row, _ in view.rows]
+    shown = [cell for row, cells in view.rows if row in rows for cell in cells if cell.column in columns]
+    found = {cell.verdict.verdict for cell in shown if cell.verdict}
+    out: list[Element] = []
+    for word in VERDICTS.values():
+        if word.id in found:
+            out += [
+                *([string(","), {"t": "Space"}] if out else []),
+                span([string(word.symbol)], "mark", word.id),
+                string(f"\N{NO-BREAK SPACE}{word.name.replace(' ', chr(0xA0))}"),
+            ]
+    return out
+
+
+def _heads(
+    table: Table,
+    columns: Sequence[str],
+    titles: Sequence[str],
+    printed: bool,
+    label: Callable[[str], list[Element]],
+) -> list[Any]:
+    under = ([inlines("printed")] if printed else []) + [inlines(title) for title in titles]
+    groups = [
+        _cell([*label(key), *_unit(table, key)], "AlignCenter" if len(under) > 1 else "AlignRight", len(under))
+        for key in columns
+    ]
+    first = _row([_cell([], "AlignLeft"), *groups])
+    if len(under) < 2:
+        return [first]
+    return [
+        first,
+        _row([_cell([], "AlignLeft"), *(_cell(text, "AlignRight") for _ in columns for text in under)]),
+    ]
+
+
+def _unit(table: Table, key: str) -> list[Element]:
+    return [string(","), {"t": "Space"}, *inlines(table.units[key])] if key in table.units else []
+
+
+def _printed_cell(cell: Cell) -> Any:
+    if cell.verdict is None:
+        return _cell([], "AlignRight")
+    word = VERDICTS[cell.verdict.verdict]
+    mark = span([string(word.symbol)], "mark", word.id)
+    return _cell([span([string(cell.padded(cell.printed))], "printed"), mark], "AlignRight")
+
+
+def _computed_cell(cell: Cell, value: Value) -> Any:
+    sign = MATCHES[value.match.kind][0]
+    text = [string(cell.padded(value.text))] if value.text else []
+    return _cell([span(text, "computed"), span([string(sign)], "sign", value.match.kind)], "AlignRight")
+
+
+def _cell(content: Sequence[Element], align: str, width: int = 1) -> Any:
+    """Return a cell of a table; like rows, cells are bare lists in pandoc's tree."""
+    blocks = [plain(content)] if content else []
+    return [["", [], []], {"t": align}, 1, width, blocks]
+
+
+def _row(cells: Sequence[Any]) -> Any:
+    return [["", [], []], list(cells)]
+
+
+def _chosen(what: str, wanted: Sequence[str], known: Sequence[str]) -> list[str]:
+    for key in wanted:
+        if key not in known:
+            msg = f"there is no {what} '{key}'; allowed: {', '.join(known) or 'none'}"
+            raise TemplateError(msg)
+    return list(wanted or known)

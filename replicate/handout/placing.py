@@ -1,0 +1,190 @@
+"""The functions that only a handout's text can call: they place tables and figures and ask for answers.
+
+``table(exhibit, columns=[...], rows=[...], readings={id: heading}, labels={key: text}, printed=True)``
+    a table of the paper, each printed value beside what the readings compute;
+``figure(name, width=1.0)``
+    a figure of the paper or of the handout's own, as a vector drawing;
+``answer(name)``
+    what a function in the paper's ``handout.py`` computes for an exercise, by the names of its values;
+``tex(number, digits=3)``, ``fixed(number, decimals)``, ``percent(number, digits=2)``
+    a number for use in a formula, say ``4.2 \\cdot 10^{-5}``; with fixed decimals; times 100.
+
+A table or figure leaves a mark in the text, a paragraph of its own; what follows the call in the same
+paragraph is the caption.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from replicate import capture
+from replicate.errors import PaperDefinitionError, TemplateError
+from replicate.exercises import Answer, Exercises
+from replicate.exhibits import Figure, Paper, Table
+from replicate.handout.key_table import Choice, key_table, legend
+from replicate.handout.tree import Element
+from replicate.judgement import VerdictRow
+from replicate.records import FigureResult, Results, TableResult
+from replicate.report.figures import description
+from replicate.report.tables import table_view
+
+OPEN, CLOSE = "\ue002", "\ue003"
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure to be placed: its SVG, its words and its width as a fraction of the text's."""
+
+    name: str
+    svg: str
+    alt: str
+    width: float
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A table to be placed, with the meaning of its signs."""
+
+    table: Element
+    legend: list[Element]
+
+
+@dataclass
+class Placing:
+    """Collects what the text places, by the number in its mark.
+
+    Parameters
+    ----------
+    paper, results, verdicts
+        What the handout is about.
+    """
+
+    paper: Paper
+    results: Results
+    verdicts: Sequence[VerdictRow]
+    things: list[Drawing | Placed] = field(default_factory=list)
+    _answers: dict[str, Answer] = field(default_factory=dict)
+
+    def functions(self) -> dict[str, Any]:
+        """Return the functions by the names that the text uses."""
+        return {
+            "table": self.table,
+            "figure": self.figure,
+            "answer": self.answer,
+            "tex": tex,
+            "fixed": fixed,
+            "percent": percent,
+        }
+
+    @cached_property
+    def exercises(self) -> Exercises:
+        """The answers and figures of the handout; empty if the paper's package has no module for them."""
+        if not (self.paper.folder() / "handout.py").is_file():
+            return Exercises()
+        found = getattr(importlib.import_module(f"{self.paper.package}.handout"), "exercises", None)
+        if not isinstance(found, Exercises):
+            msg = f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exercises.Exercises"
+            raise PaperDefinitionError(msg)
+        return found
+
+    def answer(self, name: str) -> Answer:
+        """Return the answer of that name; it is computed once."""
+        if name not in self.exercises.answers:
+            msg = f"answer('{name}'): no such answer; allowed: {_listed(self.exercises.answers)}"
+            raise TemplateError(msg)
+        if name not in self._answers:
+            self._answers[name] = self.exercises.answers[name]()
+        return self._answers[name]
+
+    def table(
+        self,
+        exhibit: str,
+        columns: Sequence[str] = (),
+        rows: Sequence[str] = (),
+        readings: Mapping[str, str] | None = None,
+        labels: Mapping[str, str] | None = None,
+        printed: bool = True,
+    ) -> str:
+        """Place a table of the paper."""
+        found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
+        if not isinstance(found, Table) or not isinstance(result, TableResult):
+            known = [id for id, other in self.paper.exhibits.items() if isinstance(other, Table)]
+            msg = f"table('{exhibit}'): no such table was computed; the paper has: {_listed(known)}"
+            raise TemplateError(msg)
+        if result.errors:
+            reading, why = next(iter(result.errors.items()))
+            msg = f"table('{exhibit}'): the reading '{reading}' failed: {why}"
+            raise TemplateError(msg)
+        verdicts = [row for row in self.verdicts if row.paper == self.paper.id and row.exhibit == exhibit]
+        choice = Choice(columns, rows, readings, labels, printed)
+        try:
+            placed = key_table(found, result, verdicts, choice)
+        except TemplateError as error:
+            msg = f"table('{exhibit}'): {error}"
+            raise TemplateError(msg) from error
+        signs = legend(table_view(found, result, verdicts), choice) if printed else []
+        return self._mark(Placed(placed, signs))
+
+    def figure(self, name: str, width: float = 1.0) -> str:
+        """Place a figure of the handout's own, or else one of the paper."""
+        own = self.exercises.figures.get(name)
+        if own is not None:
+            result = capture.capture(f"{self.paper.id}-handout", own)
+            return self._mark(Drawing(name, result.svg, own.alt, width))
+        found, known = self.paper.exhibits.get(name), self.results.get((self.paper.id, name))
+        if not isinstance(found, Figure) or not isinstance(known, FigureResult):
+            figures = [id for id, other in self.paper.exhibits.items() if isinstance(other, Figure)]
+            msg = f"figure('{name}'): no such figure; allowed: {_listed([*self.exercises.figures, *figures])}"
+            raise TemplateError(msg)
+        if known.error:
+            msg = f"figure('{name}'): could not be drawn: {known.error}"
+            raise TemplateError(msg)
+        return self._mark(Drawing(name, known.svg, description(found.alt, known.axes), width))
+
+    def _mark(self, thing: Drawing | Placed) -> str:
+        self.things.append(thing)
+        return f"{OPEN}{len(self.things) - 1}{CLOSE}"
+
+
+def tex(number: float, digits: int = 3) -> str:
+    r"""Return a number as LaTeX.
+
+    Examples
+    --------
+    >>> tex(0.0123456), tex(-1234567.0), tex(2.0)
+    ('0.0123', '-1.23 \\cdot 10^{6}', '2')
+    """
+    text = f"{float(number) + 0.0:.{digits}g}"
+    mantissa, _, exponent = text.partition("e")
+    return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else text
+
+
+def fixed(number: float, decimals: int) -> str:
+    """Return a number with so many decimals.
+
+    Examples
+    --------
+    >>> fixed(2.0, 2), fixed(-0.0001, 2)
+    ('2.00', '0.00')
+    """
+    text = f"{float(number):.{decimals}f}"
+    return text if float(text) else text.removeprefix("-")
+
+
+def percent(number: float, digits: int = 2) -> str:
+    """Return a fraction in per cent, without the sign.
+
+    Examples
+    --------
+    >>> percent(0.12345), percent(1.0, 3)
+    ('12', '100')
+    """
+    return tex(100.0 * float(number), digits)
+
+
+def _listed(names: Sequence[str] | Mapping[str, object]) -> str:
+    return ", ".join(f"'{name}'" for name in names) or "none"

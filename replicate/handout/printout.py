@@ -1,0 +1,146 @@
+"""A handout as PDF: pandoc writes Typst, the template `handout.typ` gives it its look, Typst sets it.
+
+The PDF is tagged and claims PDF/UA-1, the standard for accessible documents; Typst refuses to write one that
+lacks what the standard asks for (title, language, words for figures and formulas, an order of headings).
+Only fonts inside the typst package are used, and nothing tells the time: the same handout is the same bytes.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+from pathlib import Path
+
+import pypandoc
+import typst
+
+import replicate
+from replicate.errors import TemplateError
+from replicate.handout.edition import FILE, Document
+from replicate.handout.tree import Blocks, Element, attribute, classes, raw_block, raw_inline, transform
+from replicate.resources import templates_dir
+
+TEMPLATE = "handout.typ"
+
+# Functions of the template, by the class of a Div or Span.
+_BLOCKS = {"lead", "key", "exercise", "solution", "output"}
+_SPANS = {"number", "tool", "printed", "computed"}
+_SIGNS = {"mark", "sign"}  # these also say which verdict or match they stand for
+
+
+def pdf(document: Document) -> bytes:
+    """Return the PDF.
+
+    Raises
+    ------
+    TemplateError
+        If Typst cannot set the document, or sets it with a warning.
+    """
+    name = f"{document.paper.id}/{FILE}"
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        template = (templates_dir() / TEMPLATE).read_text(encoding="utf-8")
+        (root / TEMPLATE).write_text(template, encoding="utf-8")
+        for drawing in document.drawings.values():
+            (root / f"{drawing.name}.svg").write_text(drawing.svg, encoding="utf-8")
+        main = root / "main.typ"
+        text = markup(document)
+        main.write_text(text, encoding="utf-8")
+        try:
+            made, warnings = typst.compile_with_warnings(
+                str(main), root=str(root), ignore_system_fonts=True, format="pdf", pdf_standards=["ua-1"]
+            )
+        except typst.TypstError as error:
+            raise _failed(name, error, text) from error
+    if warnings:
+        raise _failed(name, warnings[0], text)
+    assert isinstance(made, bytes)  # noqa: S101  -- for the type checker: one PDF, not a list of pages
+    return made
+
+
+def markup(document: Document) -> str:
+    """Return the Typst source of a handout."""
+    paper = document.paper
+    blocks = transform(document.blocks, lambda element: _for_typst(element, document))
+    tree = {"pandoc-api-version": _api_version(), "meta": {}, "blocks": blocks}
+    body = pypandoc.convert_text(
+        json.dumps(tree), "typst", format="json", extra_args=["--wrap=none", "--fail-if-warnings"]
+    )
+    settings = {
+        "title": document.title,
+        "citation": paper.citation,
+        "authors": ", ".join(paper.authors),
+        "software": f"replicate {replicate.__version__}",
+    }
+    arguments = [f"{key}: {quoted(value)}" for key, value in settings.items()]
+    arguments.append(f"solutions: {'true' if document.solutions else 'false'}")
+    head = f'#import "{TEMPLATE}": *\n#show: handout.with({", ".join(arguments)})\n\n'
+    return head + body.replace("\r\n", "\n")
+
+
+def quoted(text: str) -> str:
+    r"""Return a text as a string of Typst.
+
+    Examples
+    --------
+    >>> print(quoted('a "b" \\ c'))
+    "a \"b\" \\ c"
+    """
+    escaped = " ".join(text.split()).replace("\\", "\\\\").replace('"', '\\"')
+    return f'"{escaped}"'
+
+
+def _for_typst(element: Element, document: Document) -> list[Element] | None:
+    """Replace what pandoc has no Typst for by calls of the template's functions."""
+    match element["t"]:
+        case "Math":
+            kind, tex = element["c"]
+            displayed = kind["t"] == "DisplayMath"
+            formula = document.formulas[displayed, tex]
+            call = f"#formula({quoted(formula.words)}, {formula.typst}{', block: true' if displayed else ''});"
+            return [raw_inline("typst", call)]
+        case "Span":
+            found = classes(element)
+            if found and found[0] in _SIGNS:
+                call = f"{found[0]}({quoted(found[-1])})"
+            elif found and found[0] in _SPANS:
+                call = found[0]
+            else:
+                return None
+            return [raw_inline("typst", f"#{call}["), *element["c"][1], raw_inline("typst", "];")]
+        case "Div":
+            return _block(element, document)
+    return None
+
+
+def _block(element: Element, document: Document) -> Blocks | None:
+    found, content = classes(element), element["c"][1]
+    if "drawing" in found:
+        drawing = document.drawings[attribute(element, "name")]
+        call = f"#drawing({quoted(f'{drawing.name}.svg')}, {quoted(drawing.alt)}, {drawing.width:g})["
+        return [raw_block("typst", call), *content, raw_block("typst", "]")]
+    if "exhibit" in found:
+        table, *caption = content
+        return [raw_block("typst", "#exhibit["), table, raw_block("typst", "]["), *caption, raw_block("typst", "]")]
+    if "caption" in found:
+        return list(content)
+    known = [name for name in found if name in _BLOCKS]
+    if not known:
+        msg = f"{document.paper.id}/{FILE}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
+        raise TemplateError(msg)
+    return [raw_block("typst", f"#{known[0]}["), *content, raw_block("typst", "]")]
+
+
+def _failed(name: str, error: typst.TypstError | typst.TypstWarning, text: str) -> TemplateError:
+    """Return an error with Typst's message and the line of its source that it is about."""
+    found = re.search(r"main\.typ:(\d+):", error.diagnostic)
+    about = f": '{text.splitlines()[int(found[1]) - 1].strip()[:80]}'" if found else ""
+    hints = f" ({'; '.join(error.hints)})" if error.hints else ""
+    return TemplateError(f"{name}: cannot be typeset: {error.message}{hints}{about}")
+
+
+def _api_version() -> list[int]:
+    """Return the version of the tree's format that this pandoc reads and writes."""
+    empty = json.loads(pypandoc.convert_text("", "json", format="markdown"))
+    return list(empty["pandoc-api-version"])

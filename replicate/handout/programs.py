@@ -1,0 +1,74 @@
+"""Programs in a handout are run, so that what is printed under them is what they print.
+
+A code block of the classes ``.python .run`` is executed when the handout is built; all programs of one
+handout share their names, as the cells of a notebook do. What a program writes is put below it.
+"""
+
+from __future__ import annotations
+
+import io
+import traceback
+from collections.abc import Sequence
+from contextlib import redirect_stdout
+from typing import Any
+
+from replicate.errors import TemplateError
+from replicate.handout.formulas import line_of
+from replicate.handout.tree import Blocks, Element, classes, div, transform
+
+LONGEST_LINE = 88  # characters; what fits between the margins
+
+
+def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str) -> Blocks:
+    """Return the document with the output of its programs.
+
+    Parameters
+    ----------
+    lines, source
+        For error messages: the text that the document was read from with the line of the source that each
+        line stems from, and the name of the source.
+
+    Raises
+    ------
+    TemplateError
+        If a program fails, or a line of it or of its output is too long for the page.
+    """
+    names: dict[str, Any] = {"__name__": "handout"}
+
+    def changed(element: Element) -> list[Element] | None:
+        if element["t"] != "CodeBlock":
+            return None
+        code = element["c"][1]
+        first = line_of(code, lines)
+        _check_width(code, f"{source}:{first}")
+        if "run" not in classes(element):
+            return None
+        written = _run(code, names, source, first)
+        _check_width(written, f"{source}:{first}: the output")
+        program = {"t": "CodeBlock", "c": [["", ["python"], []], code]}
+        if not written.strip():
+            return [program]
+        return [program, div([{"t": "CodeBlock", "c": [["", ["output"], []], written.rstrip()]}], "output")]
+
+    result: Blocks = transform(document, changed)
+    return result
+
+
+def _run(code: str, names: dict[str, Any], source: str, first: int) -> str:
+    written = io.StringIO()
+    try:
+        with redirect_stdout(written):
+            exec(compile(code, "<program>", "exec"), names)  # noqa: S102  -- the paper's own text
+    except Exception as error:
+        failed = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<program>"]
+        line = (failed[-1].lineno if failed else getattr(error, "lineno", 1)) or 1
+        msg = f"{source}:{first + line - 1}: the program fails: {type(error).__name__}: {error}"
+        raise TemplateError(msg) from error
+    return written.getvalue()
+
+
+def _check_width(text: str, place: str) -> None:
+    longest = max(text.splitlines(), key=len, default="")
+    if len(longest) > LONGEST_LINE:
+        msg = f"{place}: a line has {len(longest)} characters, allowed: {LONGEST_LINE}: '{longest[:40]}...'"
+        raise TemplateError(msg)

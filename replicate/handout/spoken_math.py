@@ -1,0 +1,110 @@
+"""Formulas in words, for readers who listen: a walk through the MathML that pandoc makes of LaTeX.
+
+Fractions and roots longer than one symbol are said with their end, so that nothing is ambiguous to the ear.
+"""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree as ET
+
+_WORDS = {
+    "+": "plus", "-": "minus", "−": "minus", "±": "plus or minus", "=": "equals", "≠": "is not equal to",
+    "<": "is less than", ">": "is greater than", "≤": "is at most", "≥": "is at least",
+    "≈": "is about", "≪": "is much less than", "≫": "is much greater than", "∼": "is like",
+    "·": "times", "⋅": "times", "×": "times", "∗": "times", "/": "over", "∞": "infinity",
+    "∫": "the integral", "∑": "the sum", "∏": "the product", "∂": "partial", "√": "root", "…": "and so on",
+    "⋯": "and so on", "→": "tends to", "∈": "in", "∠": "the angle of", "°": "degrees", "′": "prime",
+    "∣": "bar", "|": "bar", "‖": "double bar", "∥": "double bar", "(": "(", ")": ")", "[": "[", "]": "]",
+    "{": "{", "}": "}", ",": ",", ";": ";", ".": ".", ":": ":", "!": "factorial", "%": "per cent",
+    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ϵ": "epsilon", "ζ": "zeta",
+    "η": "eta", "θ": "theta", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu", "ξ": "xi", "π": "pi",
+    "ρ": "rho", "σ": "sigma", "τ": "tau", "φ": "phi", "ϕ": "phi", "χ": "chi", "ψ": "psi", "ω": "omega",
+    "Γ": "capital gamma", "Δ": "capital delta", "Θ": "capital theta", "Λ": "capital lambda",
+    "Σ": "capital sigma", "Φ": "capital phi", "Ψ": "capital psi", "Ω": "capital omega", "ℓ": "l",
+    "⟨": "(", "⟩": ")", "⇒": "implies", "⇔": "if and only if", "↦": "maps to", "⌊": "floor", "⌋": "",
+    "∀": "for all", "Ⅎ": "", "\u2061": "of", "\u2062": "", "\u2063": "", "\u200b": "", "&": "",
+}  # fmt: skip
+_ACCENTS = {"^": "hat", "ˆ": "hat", "¯": "bar", "‾": "bar", "―": "bar", "~": "tilde", "˜": "tilde", "˙": "dot"}
+_ACCENTS |= {"\u0307": "dot", "\u0308": "double dot", "\u0302": "hat", "\u0304": "bar", "\u0305": "bar"}
+_ACCENTS |= {"\u0303": "tilde", "\u203e": "bar"}
+_NAMES = {
+    "max": "the maximum", "min": "the minimum", "ln": "the natural logarithm of", "exp": "e to the",
+    "sin": "sine", "cos": "cosine", "tan": "tangent", "arg": "the argument of", "Re": "real part of",
+    "Im": "imaginary part of",
+}  # fmt: skip
+
+
+def spoken(mathml: str) -> str:
+    r"""Return a formula in words.
+
+    Parameters
+    ----------
+    mathml
+        A ``<math>`` element, as pandoc writes it.
+
+    Examples
+    --------
+    >>> spoken("<math><msub><mi>K</mi><mi>i</mi></msub><mo>=</mo>"
+    ...        "<mfrac><msub><mi>K</mi><mi>p</mi></msub><mi>T</mi></mfrac></math>")
+    'K sub i equals the fraction K sub p over T, end of fraction'
+    """
+    words = _say(ET.fromstring(mathml))  # noqa: S314  -- pandoc's own output
+    return re.sub(r"\s+([,.;)\]])", r"\1", re.sub(r"([(\[])\s+", r"\1", " ".join(words.split())))
+
+
+def _say(node: ET.Element) -> str:
+    tag = node.tag.rpartition("}")[2]
+    children = [child for child in node if child.tag.rpartition("}")[2] != "annotation"]
+    if not children:
+        return "" if tag == "mspace" else _token(node.text or "")
+    parts = [_say(child) for child in children]
+    match tag:
+        case "mfrac":
+            if all(_is_token(child) for child in children):
+                return f"{parts[0]} over {parts[1]}"
+            return f"the fraction {parts[0]} over {parts[1]}, end of fraction"
+        case "msup":
+            return _power(parts[0], parts[1])
+        case "msub" | "munder":
+            if parts[0].endswith(" of") or tag == "munder":  # the maximum over all frequencies
+                return f"{parts[0].removesuffix(' of')} over {parts[1]} of"
+            return f"{parts[0]} sub {parts[1]}"
+        case "msubsup" | "munderover":
+            if parts[0].startswith("the "):
+                return f"{parts[0]} from {parts[1]} to {parts[2]} of"
+            return _power(f"{parts[0]} sub {parts[1]}", parts[2])
+        case "mover":
+            accent = (children[1].text or "").strip()
+            return f"{parts[0]} {_ACCENTS.get(accent, parts[1])}"
+        case "msqrt":
+            inner = " ".join(parts)
+            return f"the square root of {inner}{'' if _is_token(children[0]) else ', end of root'}"
+        case "mroot":
+            return f"the root of order {parts[1]} of {parts[0]}, end of root"
+        case "mtr":
+            return ", ".join(part for part in parts if part.strip())
+        case "mtable":
+            return "; ".join(parts)
+        case _:
+            return " ".join(parts)
+
+
+def _is_token(node: ET.Element) -> bool:
+    """Whether a node is one symbol, perhaps inside rows of its own."""
+    return all(len(inner) <= 1 for inner in node.iter())
+
+
+def _power(base: str, exponent: str) -> str:
+    return {"2": f"{base} squared", "3": f"{base} cubed", "prime": f"{base} prime"}.get(
+        exponent.strip(), f"{base} to the power {exponent},"
+    )
+
+
+def _token(text: str) -> str:
+    text = text.strip()
+    if text in _NAMES:
+        return _NAMES[text]
+    if re.fullmatch(r"[\w.\s-]*", text, re.ASCII):
+        return text if text != "-" else "minus"
+    return " ".join(_WORDS.get(character, character) for character in text)
