@@ -113,6 +113,26 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Chart:
+    """A figure that a reader orders for parameters of his own choice (``replicate chart``).
+
+    Attributes
+    ----------
+    draw
+        Draws on an empty matplotlib figure: ``draw(fig, **values)``; raises `ValueError` with a sentence for a value
+        that makes no sense.
+    parameters
+        Name of every parameter and what it is, in the order in which they are told. All are numbers.
+    """
+
+    id: str
+    title: str
+    draw: Callable[..., None]
+    parameters: dict[str, str]
+    size: tuple[float, float] = (6.4, 4.0)
+
+
+@dataclass(frozen=True)
 class Finding:
     """What a claim's check found: the verdict, the number that decides it, and the evidence in one or two sentences."""
 
@@ -191,6 +211,9 @@ class Paper:
     numbered
         Ids of every numbered table, figure and example of the paper: `replicate check` demands that each is in the
         inventory.
+    charts
+        Figures for parameters of the reader's choice; the first is the one that ``replicate chart`` draws if none is
+        named.
     """
 
     id: str
@@ -203,6 +226,7 @@ class Paper:
     numbered: tuple[str, ...]
     summary: str = ""
     exhibits: dict[str, Exhibit] = field(default_factory=dict)
+    charts: dict[str, Chart] = field(default_factory=dict)
     _loaded: bool = False
 
     def load(self) -> Paper:
@@ -277,6 +301,31 @@ class Paper:
 
         def register(draw: Callable[[MatplotlibFigure], None]) -> Callable[[MatplotlibFigure], None]:
             self._add(Figure(id, kind, title, draw, caption, alt, size, stands_for))
+            return draw
+
+        return register
+
+    def chart(
+        self,
+        id: str,
+        title: str,
+        *,
+        parameters: dict[str, str],
+        size: tuple[float, float] = (6.4, 4.0),
+    ) -> Callable[[Callable[..., None]], Callable[..., None]]:
+        """Register the decorated function as a chart; it draws on an empty figure, given the parameters by name.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If there is a chart of that name, or no parameter.
+        """
+        if id in self.charts or not parameters:
+            msg = f"{self.id}: chart '{id}' " + ("is defined twice" if id in self.charts else "has no parameters")
+            raise PaperDefinitionError(msg)
+
+        def register(draw: Callable[..., None]) -> Callable[..., None]:
+            self.charts[id] = Chart(id, title, draw, parameters, size)
             return draw
 
         return register

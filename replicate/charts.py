@@ -1,0 +1,121 @@
+"""Charts for parameters of the reader's choice: ``replicate chart PAPER --NAME VALUE``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from replicate.errors import OutputError, ReplicateError, UnknownPaperError
+from replicate.exhibits import Chart, Figure, Paper
+
+FORMATS = (".svg", ".png")
+
+
+def find_chart(paper: Paper, id: str | None = None) -> Chart:
+    """Return a chart of a loaded paper, by default its first.
+
+    Raises
+    ------
+    UnknownPaperError
+        If the paper has no charts, or none of this name; the message lists those it has.
+    """
+    if not paper.charts:
+        msg = f"{paper.id} has no charts"
+        raise UnknownPaperError(msg)
+    if id is None:
+        return next(iter(paper.charts.values()))
+    if id not in paper.charts:
+        msg = f"{paper.id} has no chart '{id}'; known: {', '.join(paper.charts)}"
+        raise UnknownPaperError(msg)
+    return paper.charts[id]
+
+
+def read_parameters(chart: Chart, arguments: Sequence[str]) -> dict[str, float]:
+    """Read ``--name value`` and ``--name=value``, every parameter of the chart once.
+
+    Raises
+    ------
+    ReplicateError
+        If a parameter is missing, unknown, given twice or not a finite number.
+
+    Examples
+    --------
+    >>> chart = Chart("nyquist", "A diagram", lambda fig, gain: None, {"gain": "loop gain"})
+    >>> read_parameters(chart, ["--gain", "2.5"])
+    {'gain': 2.5}
+    """
+    found: dict[str, float] = {}
+    rest = list(arguments)
+    while rest:
+        name, is_joined, value = rest.pop(0).partition("=")
+        key = name.removeprefix("--")
+        if not name.startswith("--") or key not in chart.parameters:
+            msg = f"'{name}' is not a parameter of chart '{chart.id}'; needed: {_usage(chart)}"
+            raise ReplicateError(msg)
+        if key in found:
+            msg = f"--{key} is given twice"
+            raise ReplicateError(msg)
+        if not is_joined:
+            if not rest:
+                msg = f"--{key} needs a value: {chart.parameters[key]}"
+                raise ReplicateError(msg)
+            value = rest.pop(0)
+        found[key] = _number(key, value)
+    missing = [key for key in chart.parameters if key not in found]
+    if missing:
+        msg = f"chart '{chart.id}' needs --{missing[0]}: {chart.parameters[missing[0]]}"
+        raise ReplicateError(msg)
+    return found
+
+
+def _usage(chart: Chart) -> str:
+    return ", ".join(f"--{key} ({meaning})" for key, meaning in chart.parameters.items())
+
+
+def _number(key: str, text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        msg = f"--{key}: '{text}' is not a number"
+        raise ReplicateError(msg)
+    return value
+
+
+def file_name(paper: Paper, chart: Chart, values: Mapping[str, float]) -> str:
+    """Return a name that tells paper, chart and parameters, for example ``lab-nyquist-gain-2.5.svg``."""
+    told = "".join(f"-{key}-{values[key]:g}" for key in chart.parameters)
+    return f"{paper.id}-{chart.id}{told}.svg"
+
+
+def write_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Path) -> None:
+    """Draw a chart and write it, as SVG or PNG after the name of the file.
+
+    Raises
+    ------
+    ReplicateError
+        If a value makes no sense to the chart.
+    OutputError
+        If the file cannot be written or its name does not tell one of the two formats.
+    """
+    from replicate.capture import capture
+
+    if path.suffix.lower() not in FORMATS:
+        msg = f"{path}: the name must end in {' or '.join(FORMATS)}"
+        raise OutputError(msg)
+    try:
+        drawn = capture(
+            paper.id, Figure(chart.id, "figure", chart.title, lambda fig: chart.draw(fig, **values), size=chart.size)
+        )
+    except ValueError as error:
+        msg = f"chart '{chart.id}': {error}"
+        raise ReplicateError(msg) from error
+    content = drawn.png if path.suffix.lower() == ".png" else drawn.svg.encode()
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    except OSError as error:
+        msg = f"{path}: cannot be written: {error.strerror or error}"
+        raise OutputError(msg) from error
