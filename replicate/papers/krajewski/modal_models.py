@@ -1,0 +1,80 @@
+"""How well few modes describe a step response: the comparisons that section 8 makes in words."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from replicate.papers.krajewski.normalised_loop import loop
+from replicate.papers.krajewski.points import TAU, response
+
+Array = NDArray[np.float64]
+
+UNTIL = 12.0  # the time axis of the figures
+
+
+def modes(a: float, b: float, count: int) -> list[tuple[complex, complex]]:
+    """Return (pole, residue) of the modes of the step response, the poles closest to the imaginary axis first.
+
+    The response's transform is N/(sD) with N = (a + bs)exp(-τs) and D = s(1 + s) + N, so its residue at a
+    zero p of D is N/(pD'): zero for a pole that a zero of the controller cancels. Of a complex pair the pole
+    with the positive imaginary part stands for both, with twice its residue.
+
+    Parameters
+    ----------
+    count
+        How many poles, a complex pair counting as two; one more is taken where that would split a pair.
+    """
+    found: list[tuple[complex, complex]] = []
+    for p in loop(a, b, TAU).poles(count + 2):
+        if sum(2 if pole.imag else 1 for pole, _ in found) >= count:
+            break
+        exponential = np.exp(-TAU * p)
+        slope = 1.0 + 2.0 * p + (b - TAU * (a + b * p)) * exponential
+        residue = (a + b * p) * exponential / (p * slope)
+        found.append((complex(p), complex(2.0 * residue if p.imag else residue)))
+    return found
+
+
+def three_mode_error(a: float, b: float, start: float) -> float:
+    """Return the largest error of the three slowest modes from ``start`` to the end of the figures' time axis."""
+    t = np.linspace(start, UNTIL, 2001)
+    modal = 1.0 + sum((residue * np.exp(pole * t)).real for pole, residue in modes(a, b, 3))
+    return float(np.max(np.abs(modal - response(a, b)(t))))
+
+
+@cache
+def second_order_error(a: float, b: float) -> float:
+    """Return the largest error of the best second-order response with a zero, after the dead time.
+
+    With t' = t - τ the model is 1 - exp(-σt')(cos ωt' + c sin ωt'/ω), ω² of either sign, fitted by least squares to the
+    figures' time axis; c enters linearly and is solved for.
+    """
+    t = np.linspace(0.0, UNTIL - TAU, 1201)
+    error = 1.0 - response(a, b)(t + TAU)
+
+    def residual(parameters: Array) -> Array:
+        sigma, square = parameters
+        root = np.sqrt(complex(square))
+        decay = np.exp(-sigma * t)
+        cosine = decay * np.cos(root * t).real
+        sine = decay * (t * np.sinc(root * t / np.pi)).real
+        c = float(sine @ (error - cosine) / (sine @ sine))
+        return np.asarray(error - cosine - c * sine)
+
+    def cost(parameters: Array) -> float:
+        # Modes must decay: σ > 0, and for a real pair σ² > -ω².
+        if parameters[0] <= 0.0 or parameters[0] ** 2 + parameters[1] <= 0.0:
+            return 1e6
+        return float(np.sum(residual(parameters) ** 2))
+
+    starts = [(0.3, -0.05), (0.7, 0.2), (0.7, 2.0), (1.0, 6.0)]
+    fits = [
+        minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-14, "maxiter": 2000})
+        for start in starts
+    ]
+    best = min(fits, key=lambda fit: float(fit.fun))
+    return float(np.max(np.abs(residual(best.x))))
