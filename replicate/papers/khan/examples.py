@@ -1,0 +1,153 @@
+"""The worked examples 2.1, 2.2, 2.3 and 3.1: every number printed in them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from replicate.loops import PI, Loop
+from replicate.papers.khan import paper
+from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
+from replicate.papers.khan.processes import plant
+from replicate.papers.khan.sweep import stability_limit, sweep
+
+ROWS_21 = ("ph", "A1", "B1", "overshoot_estimate", "overshoot_actual", "overshoot_error", "A2", "B2", "C2", "D2",
+           "tr_estimate", "tr_actual")  # fmt: skip
+ROWS_31 = ("L_IB", "L_PB", "Bryant_tr", "Bryant_ts", "L_IH", "L_PH", "Haalman_overshoot", "Haalman_tr", "Haalman_ts",
+           "overshoot_K0.28", "L_P")  # fmt: skip
+
+H = 1.82  # dead time of examples 2.1 and 3.1
+
+example_2_1 = paper.table(
+    "example-2-1",
+    "Estimates and true values for $p = 1.6667$, $K = 1$, $h = 1.82$",
+    kind="example",
+    rows=ROWS_21,
+    columns=("value",),
+    caption="Overshoot in per cent of $y_{ss}$, its error in percentage points; rise time in seconds.",
+    labels={
+        "ph": "$ph$", "A1": "$A_1$", "B1": "$B_1$", "A2": "$A_2$", "B2": "$B_2$", "C2": "$C_2$", "D2": "$D_2$",
+        "overshoot_estimate": "overshoot, estimate (%)", "overshoot_actual": "overshoot, exact (%)",
+        "overshoot_error": "error (points)", "tr_estimate": "$t_r$, estimate", "tr_actual": "$t_r$, exact",
+    },
+)  # fmt: skip
+
+
+def _example_2_1(p: float) -> pd.DataFrame:
+    ph = p * H
+    exact = sweep(ph, np.array([H]))
+    a1, b1 = case_4_parts(ph)
+    estimate = overshoot_fit(ph, H)
+    parts = [float(part) for part in rise_time_parts(ph)]
+    values = [ph, a1, b1, estimate, float(exact.overshoot[0]), float(exact.overshoot[0]) - estimate, *parts,
+              H * float(rise_time_fit(ph, H)), H * float(exact.rise_time[0])]  # fmt: skip
+    return pd.DataFrame({"value": values}, index=list(ROWS_21))
+
+
+@example_2_1.reading("as-written", "$p = 1.6667$, as the example says")
+def example_2_1_as_written() -> pd.DataFrame:
+    """Evaluate with the printed p."""
+    return _example_2_1(1.6667)
+
+
+@example_2_1.reading(
+    "p-1.667", "$p = 1.667$", "The printed $ph = 3.03394$ is $1.667 \\times 1.82$: one digit of $p$ fewer."
+)
+def example_2_1_three_digits() -> pd.DataFrame:
+    """Evaluate with p rounded once more."""
+    return _example_2_1(1.667)
+
+
+@example_2_1.reading("p-5/3", "$p = 5/3$", "The time constant 0.6 of Example 3.1 gives $p = 5/3$.")
+def example_2_1_fraction() -> pd.DataFrame:
+    """Evaluate with p = 1/0.6."""
+    return _example_2_1(5.0 / 3.0)
+
+
+example_2_2 = paper.table(
+    "example-2-2",
+    "Stability limit for $p = h = 1$",
+    kind="example",
+    rows=("K_max",),
+    columns=("value",),
+    labels={"K_max": "$K_{max}$"},
+)
+
+
+@example_2_2.reading("as-written", "$\\cos wh = -p/K$, $\\sin wh = w/K$")
+def example_2_2_as_written() -> pd.DataFrame:
+    """Solve the two equations."""
+    return pd.DataFrame({"value": [stability_limit(1.0)]}, index=["K_max"])
+
+
+example_2_3 = paper.table(
+    "example-2-3",
+    "A gain for a rise time of one second, $p = h = 1$",
+    kind="example",
+    rows=("Kh", "tr", "overshoot"),
+    columns=("value",),
+    caption="The gain for which $t_r$ is exactly one second; rise time and overshoot of the printed gain 0.375. The paper "
+    "reads all three off its figures, as approximate values.",
+    labels={"Kh": "$Kh$ for $t_r = 1$", "tr": "$t_r$ at $Kh = 0.375$", "overshoot": "overshoot at $Kh = 0.375$ (%)"},
+)
+
+
+@example_2_3.reading("as-written", "exact")
+def example_2_3_exact() -> pd.DataFrame:
+    """Compute with the exact response."""
+    from scipy.optimize import brentq
+
+    gain = brentq(lambda k: float(sweep(1.0, np.array([k])).rise_time[0]) - 1.0, 0.2, 0.6, xtol=1e-13)
+    at = sweep(1.0, np.array([0.375]))
+    values = [gain, float(at.rise_time[0]), float(at.overshoot[0])]
+    return pd.DataFrame({"value": values}, index=list(example_2_3.rows))
+
+
+@example_2_3.reading("formulas", "with the fits (2) and (3)", "The 'more precise estimates' that the text mentions.")
+def example_2_3_formulas() -> pd.DataFrame:
+    """Compute with the paper's fits."""
+    from scipy.optimize import brentq
+
+    gain = brentq(lambda k: float(rise_time_fit(1.0, k)) - 1.0, 0.2, 0.6, xtol=1e-13)
+    values = [gain, float(rise_time_fit(1.0, 0.375)), overshoot_fit(1.0, 0.375)]
+    return pd.DataFrame({"value": values}, index=list(example_2_3.rows))
+
+
+example_3_1 = paper.table(
+    "example-3-1",
+    "Bryant, Haalman and a gain for 5 % overshoot, $\\tau = 0.6$, $h = 1.82$",
+    kind="example",
+    rows=ROWS_31,
+    columns=("value",),
+    caption="Rise time from 10 % to 90 %, settling to 2 %, in seconds; overshoot in per cent.",
+    labels={
+        "L_IB": "$L_{IB}$", "L_PB": "$L_{PB}$", "L_IH": "$L_{IH}$", "L_PH": "$L_{PH}$", "L_P": "$L_P = 0.28\\,\\tau$",
+        "Bryant_tr": "Bryant $t_r$", "Bryant_ts": "Bryant $t_s$", "Haalman_overshoot": "Haalman overshoot (%)",
+        "Haalman_tr": "Haalman $t_r$", "Haalman_ts": "Haalman $t_s$", "overshoot_K0.28": "overshoot for $K = 0.28$ (%)",
+    },
+)  # fmt: skip
+
+
+def _example_3_1(overshoot: float) -> pd.DataFrame:
+    tau = 0.6
+    integral = 1.0 / tau
+    gain_bryant, gain_haalman = 0.368 * tau / H, 2.0 / 3.0 * tau / H
+    # L_P (1 + 1/(tau s)) e^{-hs}/(tau s + 1) = (L_P/tau) e^{-hs}/s: the zero cancels the pole (6)
+    bryant, haalman = (Loop(plant(0.0, H), PI(g / tau)).step() for g in (gain_bryant, gain_haalman))
+    values = [
+        integral, gain_bryant, bryant.rise_time(), bryant.settling_time(), integral, gain_haalman,
+        100.0 * haalman.overshoot(), haalman.rise_time(), haalman.settling_time(), overshoot, 0.28 * tau,
+    ]  # fmt: skip
+    return pd.DataFrame({"value": values}, index=list(ROWS_31))
+
+
+@example_3_1.reading("as-written", "exact")
+def example_3_1_exact() -> pd.DataFrame:
+    """Compute everything with the exact response."""
+    return _example_3_1(float(sweep(0.0, np.array([0.28 * H])).overshoot[0]))
+
+
+@example_3_1.reading("formulas", "overshoot for $K = 0.28$ by case I of (2)")
+def example_3_1_formulas() -> pd.DataFrame:
+    """Take the overshoot from the fit."""
+    return _example_3_1(overshoot_fit(0.0, 0.28 * H))

@@ -1,0 +1,103 @@
+"""Tables I and II: overshoot, settling times and sensitivity of the PI rules."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import pandas as pd
+
+from replicate.exhibits import Table
+from replicate.papers.khan import paper
+from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, loop, specifications
+
+QUANTITIES = ("Mp", "ts", "td", "Ms")
+RULES_1 = ("Proposed", "Haalman", "Bryant", "ZN", "ISE")
+RULES_2 = (*RULES_1, "CC", "ITAE")
+# When the load enters: 100 is named in the text for ph = 10; 25 and 5 are what the printed digits need.
+LOAD_AT = {10.0: 100.0, 1.0: 25.0, 0.1: 5.0}
+
+Specifications = Callable[[str, float], tuple[float, float, float, float]]
+
+table_1 = paper.table(
+    "table-1",
+    "Overshoot, settling times and $M_s$ for $ph = 10$",
+    rows=RULES_1,
+    columns=QUANTITIES,
+    caption="Process $e^{-hs}/(s+p)$ with $p = 1$, $h = 10$. $M_P$ in per cent of the set-point; $t_s$ and $t_d$ are "
+    "the last times outside $\\pm 0.02$ after the unit set-point step and after a unit load step at the plant input, "
+    "each counted from its own step.",
+    labels=NAMES | {"Mp": "$M_P$", "ts": "$t_s$", "td": "$t_d$", "Ms": "$M_s$"},
+    units={"Mp": "%", "ts": "s", "td": "s"},
+)
+table_2 = paper.table(
+    "table-2",
+    "Overshoot, settling times and $M_s$ for $ph = 1$ and $ph = 0.1$",
+    rows=RULES_2,
+    columns=tuple(f"ph{ph}_{quantity}" for ph in ("1", "0.1") for quantity in QUANTITIES),
+    caption="As Table I, with $p = 1$ and $h = 1$ (left) and $h = 0.1$ (right).",
+    labels=NAMES
+    | {
+        f"ph{ph}_{key}": f"{text}, $ph = {ph}$"
+        for ph in ("1", "0.1")
+        for key, text in (("Mp", "$M_P$"), ("ts", "$t_s$"), ("td", "$t_d$"), ("Ms", "$M_s$"))
+    },
+    units={f"ph{ph}_{key}": unit for ph in ("1", "0.1") for key, unit in (("Mp", "%"), ("ts", "s"), ("td", "s"))},
+)
+
+
+def as_written(rule: str, h: float) -> tuple[float, float, float, float]:
+    """Rules as printed; the load enters long after the set-point response has settled."""
+    return specifications(loop(rule, 1.0, h), None)
+
+
+def restored(rule: str, h: float) -> tuple[float, float, float, float]:
+    """Rule (7a) with its lost zeros; the load enters at the finite time of the simulation."""
+    return specifications(loop(rule, 1.0, h, RESTORED), LOAD_AT[h])
+
+
+def unrounded(rule: str, h: float) -> tuple[float, float, float, float]:
+    """As `restored`, with the unrounded coefficients of (7b)."""
+    return specifications(loop(rule, 1.0, h, RESTORED if h < 0.2 else UNROUNDED), LOAD_AT[h])
+
+
+READINGS: dict[str, tuple[str, str, Specifications]] = {
+    "as-written": (
+        "as printed, load after settling",
+        "Rules (7a), (7b) and those of the literature as printed, dead time exact. $t_s$ is the last exit from "
+        "$\\pm 2\\,\\%$ of the set-point. The load is a unit step at the plant input of Fig. 6, before the dead time; "
+        "$t_d$ counts from that step, with the same absolute band, and the load enters 'sufficiently' late. Ziegler-"
+        "Nichols is the reaction-curve rule with $T_i = 3h$.",
+        as_written,
+    ),
+    "restored": (
+        "lost zeros of (7a) restored, load at finite time",
+        "(7a) with three restored zeros. The load enters the running set-point response at $t_1 = 100$ for $ph = 10$, "
+        "as the text says, and at 25 and 5 for $ph = 1$ and $0.1$, which slow responses still feel.",
+        restored,
+    ),
+    "unrounded": (
+        "the same, (7b) unrounded",
+        "(7b) is half of $K_{Popt}$ and 0.85 of $K_{Iopt}$ of the Appendix, with rounded coefficients; here they are "
+        "not rounded.",
+        unrounded,
+    ),
+}
+
+
+def _table_1(compute: Specifications) -> pd.DataFrame:
+    return pd.DataFrame([compute(rule, 10.0) for rule in RULES_1], index=list(RULES_1), columns=list(QUANTITIES))
+
+
+def _table_2(compute: Specifications) -> pd.DataFrame:
+    rows = [(*compute(rule, 1.0), *compute(rule, 0.1)) for rule in RULES_2]
+    return pd.DataFrame(rows, index=list(RULES_2), columns=list(table_2.columns))
+
+
+def _register(table: Table, build: Callable[[Specifications], pd.DataFrame]) -> None:
+    for id, (title, note, compute) in READINGS.items():
+        table.reading(id, title, note)(partial(build, compute))
+
+
+_register(table_1, _table_1)
+_register(table_2, _table_2)
