@@ -124,6 +124,27 @@ def show(  # noqa: PLR0917  -- typer calls it by name
     _exit_if_broken(outcome)
 
 
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def chart(
+    context: typer.Context,
+    paper: Annotated[str, typer.Argument(metavar="PAPER")],
+    name: Annotated[str | None, typer.Option("--chart", help="Which chart; default: the paper's first.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File, .svg or .png; default: in build/charts.", dir_okay=False)
+    ] = None,
+) -> None:
+    """Draw a chart of a paper for parameters of your own, given as --NAME VALUE."""
+    from replicate.charts import file_name, find_chart, read_parameters, write_chart
+    from replicate.discovery import find_paper
+
+    owner = find_paper(paper)
+    found = find_chart(owner, name)
+    values = read_parameters(found, context.args)
+    path = out or BUILD / "charts" / file_name(owner, found, values)
+    write_chart(owner, found, values, path)
+    typer.echo(f"chart: {path}")
+
+
 @app.command()
 def report(papers: Papers = None, jobs: Jobs = None, out: Out = BUILD, no_cache: NoCache = False) -> None:
     """Recompute every exhibit and write the report."""
