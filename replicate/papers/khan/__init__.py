@@ -16,7 +16,7 @@ paper = Paper(
         "figs_4_5",
         "fit_quality",
         "refit",
-        "breakpoint",
+        "break_point",
         "examples",
         "eq_7",
         "tables",
@@ -43,7 +43,7 @@ paper = Paper(
         "example-2-2",
         "example-2-3",
         "example-3-1",
-    ),  # fmt: skip
+    ),
     summary="The tables, the tuning rule (7b) and the fits hold: nearly every printed number comes out with the dead "
     "time exact. The rule (7a) for small dead times lost three zeros in print, the closed-form ISE has a sign error, "
     "two load settling times of Table I stand in each other's rows, and a few digits are wrong. Use the restored (7a) "

@@ -20,7 +20,8 @@ appendix_j = paper.table(
     "The closed-form ISE against the integral",
     kind="formula",
     printed=False,
-    caption="$J = \\int_0^\\infty e^2\\,dt$ of the unit set-point step for $h = 1$: the Appendix' formula, and the integral of "
+    caption="$J = \\int_0^\\infty e^2\\,dt$ of the unit set-point step for $h = 1$: the Appendix' formula, and "
+    "the integral of "
     "the exact response.",
     labels={"formula": "formula", "integral": "integral", "ratio": "ratio"},
 )
@@ -29,7 +30,8 @@ appendix_fit = paper.table(
     "The ISE-optimal gains against the printed curve fits",
     kind="formula",
     printed=False,
-    caption="The true optimum for $h = 1$, the printed fits with their errors in per cent, the ISE lost by using them, and "
+    caption="The true optimum for $h = 1$, the printed fits with their errors in per cent, the ISE lost by "
+            "using them, and "
     "the estimate $J_{opt} = 1.577h + 0.025ph^2 - 0.209\\sqrt{ph^3}$.",
     labels={
         "KP_opt": "$K_P$, optimum", "KI_opt": "$K_I$, optimum", "KP_fit": "$K_P$, fit", "KI_fit": "$K_I$, fit",
@@ -102,7 +104,7 @@ def j_corrected() -> pd.DataFrame:
 
 def estimate(p: float) -> float:
     """Return the printed estimate of J_opt for h = 1."""
-    return 1.577 + 0.025 * p - 0.209 * np.sqrt(p)
+    return float(1.577 + 0.025 * p - 0.209 * np.sqrt(p))
 
 
 @appendix_fit.reading("as-written", "Optimum and printed fits")

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import lambertw
 
-from replicate.exhibits import Finding
+from replicate.exhibits import ClaimVerdict, Finding
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
-from replicate.papers.khan.breakpoint import double_pole, visible
+from replicate.papers.khan.break_point import double_pole, visible
 from replicate.papers.khan.fig_8 import robustness
 from replicate.papers.khan.fit_quality import overshoot_quality, rise_time_quality
 from replicate.papers.khan.processes import PRINTED, RESTORED, gains, loop, plant, settling_after_load
@@ -50,7 +50,8 @@ def delay_independent() -> Finding:
     return Finding(
         "holds-partly",
         margin,
-        f"Inside the range it holds: the limit of K/p tends to 1 from above (it is {margin:.5f} at ph = 200). The exact set "
+        f"Inside the range it holds: the limit of K/p tends to 1 from above (it is {margin:.5f} at ph = 200). "
+        f"The exact set "
         f"is -p < K <= p: K = p is stable for every delay ({'yes' if equal else 'no'}), K = -p is not "
         f"({'no' if any(negative) else 'a pole at s = 0'}), and K = 0 is.",
     )
@@ -62,7 +63,7 @@ def delay_independent() -> Finding:
 def limit() -> Finding:
     value = stability_limit(1.0)
     below, above = (Loop(plant(1.0, 1.0), PI(value * f)).is_stable() for f in (1.0 - 1e-6, 1.0 + 1e-6))
-    verdict = "holds" if below and not above else "fails"
+    verdict: ClaimVerdict = "holds" if below and not above else "fails"
     return Finding(verdict, value, f"The limit is {value:.10f}; the last printed digit is one too high.")
 
 
@@ -72,7 +73,7 @@ def monotone_overshoot() -> Finding:
         float(np.min(np.diff(sweep(ph, np.linspace(0.05, 0.99, 90) * stability_limit(ph)).overshoot)))
         for ph in (0.0, 0.5, 1.0, 3.0, 10.0)
     )
-    verdict = "holds" if worst >= -1e-9 else "fails"
+    verdict: ClaimVerdict = "holds" if worst >= -1e-9 else "fails"
     return Finding(verdict, worst, f"The smallest step between neighbouring gains is {worst:.2e} points.")
 
 
@@ -82,7 +83,7 @@ def monotone_rise() -> Finding:
         float(np.max(np.diff(sweep(ph, np.linspace(0.05, 0.99, 90) * stability_limit(ph)).rise_time)))
         for ph in (0.0, 0.5, 1.0, 3.0, 10.0)
     )
-    verdict = "holds" if worst <= 1e-9 else "fails"
+    verdict: ClaimVerdict = "holds" if worst <= 1e-9 else "fails"
     return Finding(verdict, worst, f"The largest step between neighbouring gains is {worst:.2e} dead times.")
 
 
@@ -92,12 +93,14 @@ def r2_overshoot() -> Finding:
     frame = overshoot_quality()
     cases = frame[frame.index.str.startswith("Case")]
     lowest = float(cases["r2"].min())
-    worst = cases["worst"].abs().idxmax()
+    worst = str(cases["worst"].abs().idxmax())
+    row = {name: float(cases[name].loc[worst]) for name in ("worst", "worst_ph", "worst_Kh")}
     return Finding(
         "holds" if lowest >= 0.99 else "fails",
         lowest,
-        f"The lowest r^2 of the four cases is {lowest:.5f}. The largest error is {cases.loc[worst, 'worst']:.2f} points, "
-        f"in {worst} at ph = {cases.loc[worst, 'worst_ph']:.2f}, Kh = {cases.loc[worst, 'worst_Kh']:.2f}.",
+        f"The lowest r^2 of the four cases is {lowest:.5f}. The largest error is "
+        f"{row['worst']:.2f} points, "
+        f"in {worst} at ph = {row['worst_ph']:.2f}, Kh = {row['worst_Kh']:.2f}.",
     )
 
 
@@ -109,7 +112,8 @@ def r2_rise_time() -> Finding:
     return Finding(
         "holds-partly",
         pooled,
-        f"Pooled over all ph it is {pooled:.5f}. For {frame.index[-1]} alone it is {single:.3f}, with an error of up to "
+        f"Pooled over all ph it is {pooled:.5f}. For {frame.index[-1]} alone it is {single:.3f}, with an error "
+        f"of up to "
         f"{abs(float(frame['worst'].iloc[-1])):.0f} %.",
     )
 
@@ -165,7 +169,8 @@ def small_overshoot() -> Finding:
     values = [100.0 * loop("Proposed", 1.0, float(x), RESTORED).step().overshoot() for x in ph]
     at = int(np.argmax(values))
     return Finding("holds" if max(values) < 1.0 else "fails", max(values),
-                   f"On 0.01..20 the largest overshoot is {max(values):.3f} % at ph = {ph[at]:.2f}: always, not almost.")  # fmt: skip
+                   f"On 0.01..20 the largest overshoot is {max(values):.3f} % at ph = {ph[at]:.2f}: always, not "
+                   f"almost.")  # fmt: skip
 
 
 @claims.claim("gain-margin", "For 0.01 <= ph <= 20 the gain margin of rule (7) is above 2.5.", where="Section III-C",
@@ -177,7 +182,7 @@ def gain_margin() -> Finding:
                    f"The smallest is {lowest:.4f}, at ph = 20 (with (7a) as printed: {printed:.4f}).")  # fmt: skip
 
 
-@claims.claim("phase-margin", "For 0.01 <= ph <= 20 the phase margin of rule (7) is above 60 degrees.", where="Section III-C",
+@claims.claim("phase-margin", "For 0.01 <= ph <= 20 its phase margin is above 60 degrees.", where="Section III-C",
               printed="60")  # fmt: skip
 def phase_margin() -> Finding:
     lowest = float(np.degrees(robustness(RESTORED)[2].min()))
@@ -200,7 +205,8 @@ def other_rules() -> Finding:
     return Finding(
         "holds-partly",
         gain,
-        f"The eleven rules are in another paper and not checked here. But Bryant's rule, in this paper's own tables, has a "
+        f"The eleven rules are in another paper and not checked here. But Bryant's rule, in this paper's own "
+        f"tables, has a "
         f"gain margin of {gain:.3f} and a phase margin of {phase:.1f} degrees for every ph.",
     )
 
@@ -215,16 +221,18 @@ def itae_integral() -> Finding:
     return Finding(
         "holds-partly",
         min(ki),
-        f"K_I of (7) is {min(ki):.3f} to {max(ki):.3f} of the ITAE value. What agrees is L_I = K_I/K_P: {min(li):.3f} to "
+        f"K_I of (7) is {min(ki):.3f} to {max(ki):.3f} of the ITAE value. What agrees is L_I = K_I/K_P: "
+        f"{min(li):.3f} to "
         f"{max(li):.3f}.",
     )
 
 
-@claims.claim("proportional-lower", "The proportional gains of (7) are usually lower than those of ITAE, more so for small ph.",
+@claims.claim("proportional-lower", "The proportional gains of (7) are usually lower than those of ITAE, more "
+                                    "so for small ph.",
               where="Section III-C")  # fmt: skip
 def proportional_lower() -> Finding:
     ratio = [gains("Proposed", 1.0, x, RESTORED)[0] / gains("ITAE", 1.0, x)[0] for x in (0.1, 0.3, 0.6, 1.0)]
-    verdict = "holds" if max(ratio) < 1.0 and ratio == sorted(ratio) else "fails"
+    verdict: ClaimVerdict = "holds" if max(ratio) < 1.0 and ratio == sorted(ratio) else "fails"
     return Finding(verdict, ratio[0], f"Ratios at ph = 0.1, 0.3, 0.6, 1: {', '.join(f'{r:.3f}' for r in ratio)}.")
 
 
@@ -256,7 +264,8 @@ def _superior(rules: tuple[str, ...], h: float) -> Finding:
     return Finding(
         "holds" if both else "holds-partly" if one else "fails",
         ts["Proposed"],
-        f"Set-point: {best_s} is fastest ({ts[best_s]:.4g}; (7): {ts['Proposed']:.4g}). Load: {best_d} ({td[best_d]:.4g}; (7): "
+        f"Set-point: {best_s} is fastest ({ts[best_s]:.4g}; (7): {ts['Proposed']:.4g}). Load: {best_d} "
+        f"({td[best_d]:.4g}; (7): "
         f"{td['Proposed']:.4g}).",
     )
 
@@ -277,5 +286,6 @@ def five_percent() -> Finding:
     return Finding(
         "holds-partly",
         value,
-        f"The overshoot is {value:.2f} %. The rise-time fit (3) is given for ph >= 0.5 only; the cancelled loop has p = 0.",
+        f"The overshoot is {value:.2f} %. The rise-time fit (3) is given for ph >= 0.5 only; the cancelled loop "
+        f"has p = 0.",
     )

@@ -23,6 +23,7 @@ definitions = paper.table(
     labels={"cells": "cells met", "of": "of"},
 )
 
+# of a loop with its dead time
 Measure = Callable[[Loop, float], float]
 
 
@@ -30,11 +31,11 @@ def _last_exit(y: Signal, width: float) -> float:
     return y.settling_time(width / (abs(y.final) or 1.0))
 
 
-def _load(closed: Loop, h: float, width: float) -> float:
+def _load(closed: Loop, width: float) -> float:
     return _last_exit(closed.load_step(), width)
 
 
-def _relative_to_peak(closed: Loop, h: float) -> float:
+def _relative_to_peak(closed: Loop, _: float) -> float:
     d = closed.load_step()
     return _last_exit(d, 0.02 * max(float(d.peak()), -float(d.trough())))
 
@@ -46,18 +47,18 @@ def _at_finite_time(closed: Loop, h: float) -> float:
 
 
 SETTLING: dict[str, Measure] = {
-    "ts: last exit from 2 % of the set-point": lambda c, h: _last_exit(c.step(), 0.02),
-    "ts: last exit from 1 %": lambda c, h: _last_exit(c.step(), 0.01),
-    "ts: last exit from 5 %": lambda c, h: _last_exit(c.step(), 0.05),
+    "ts: last exit from 2 % of the set-point": lambda c, _: _last_exit(c.step(), 0.02),
+    "ts: last exit from 1 %": lambda c, _: _last_exit(c.step(), 0.01),
+    "ts: last exit from 5 %": lambda c, _: _last_exit(c.step(), 0.05),
     "ts: 2 %, counted from the end of the dead time": lambda c, h: _last_exit(c.step(), 0.02) - h,
 }
 LOAD: dict[str, Measure] = {
     "td: load before the dead time at finite t1, band 0.02": _at_finite_time,
-    "td: the same, t1 infinite": lambda c, h: _load(c, h, 0.02),
-    "td: load after the dead time": lambda c, h: _load(c, h, 0.02) - h,
+    "td: the same, t1 infinite": lambda c, _: _load(c, 0.02),
+    "td: load after the dead time": lambda c, h: _load(c, 0.02) - h,
     "td: 2 % of the load response's peak": _relative_to_peak,
-    "td: band 0.01": lambda c, h: _load(c, h, 0.01),
-    "td: band 0.05": lambda c, h: _load(c, h, 0.05),
+    "td: band 0.01": lambda c, _: _load(c, 0.01),
+    "td: band 0.05": lambda c, _: _load(c, 0.05),
 }
 
 

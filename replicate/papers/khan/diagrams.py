@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     "Step response of a process and its three-parameter model",
     kind="diagram",
     caption="The bump test: the tangent at the steepest point cuts the time axis at $h$ and reaches the final value "
-    "$R_{ss}$ at $h + \\tau$. A lag of third order with dead time stands for the process, which the paper does not name.",
-    alt="An S-shaped step response with its steepest tangent, dashed lines at the final value, and the times h and h plus "
+    "$R_{ss}$ at $h + \\tau$. A lag of third order with dead time stands for the process, which the paper does "
+    "not name.",
+    alt="An S-shaped step response with its steepest tangent, dashed lines at the final value, and the times h "
+    "and h plus "
     "tau marked on the axis.",
     size=(6.0, 3.2),
 )
@@ -106,7 +108,8 @@ def parallel_form(fig: Figure) -> None:
     "The PI loop in the parameters $L_P$, $L_I$, $\\tau$",
     kind="diagram",
     caption="The same loop with $\\tau = 1/p$, $L_P = K_P\\tau$, $L_I = K_I/K_P$ (4).",
-    alt="Block diagram: summing junction, controller L_P (1 + L_I/s), load junction, process exp(-hs)/(tau s + 1), unit "
+    alt="Block diagram: summing junction, controller L_P (1 + L_I/s), load junction, process exp(-hs)/(tau s + "
+    "1), unit "
     "feedback.",
     size=(7.0, 2.3),
 )

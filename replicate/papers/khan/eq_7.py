@@ -18,7 +18,8 @@ eq_7 = paper.table(
     "The proposed gains over both cases",
     kind="formula",
     printed=False,
-    caption="$K_P h$ and $K_I h^2$ of (7a) and (7b). The two cases meet at $ph = 0.2$, where both are given; the jump is "
+    caption="$K_P h$ and $K_I h^2$ of (7a) and (7b). The two cases meet at $ph = 0.2$, where both are given; "
+    "the jump is "
     "the relative difference of (7a) from (7b).",
     labels={"KPh": "$K_P h$", "KIh2": "$K_I h^2$"},
 )

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     "fig-3",
     "A typical step response, $p = h = K = 1$",
     caption="Final value $y_{ss} = K/(K+p)$, peak $M_P$, and the rise time $t_r$ from 10 % to 90 % of the final value.",
-    alt="Step response that starts after one dead time, overshoots 0.5 once and settles there; peak, final value and the "
+    alt="Step response that starts after one dead time, overshoots 0.5 once and settles there; peak, final "
+    "value and the "
     "rise time are marked.",
 )
 def draw(fig: Figure) -> None:

@@ -82,7 +82,8 @@ def robustness(variant: str, points: int = 61) -> tuple[np.ndarray, ...]:
     "fig-8d",
     "Gain margin, phase margin and $M_s$ of the proposed rule",
     caption="The phase margin is in radians, as in the paper. (7a) with its zeros restored.",
-    alt="Three curves against ph from 0.01 to 20, logarithmic axis: gain margin falling from four to 2.6, M_s rising from 1.4 "
+    alt="Three curves against ph from 0.01 to 20, logarithmic axis: gain margin falling from four to 2.6, M_s "
+    "rising from 1.4 "
     "to 1.7, phase margin nearly constant above one radian.",
     size=(7.2, 3.8),
 )

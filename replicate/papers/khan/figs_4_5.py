@@ -22,7 +22,8 @@ PH_5 = (0.5, 1.0, 1.5, 2.5, 5.0, 7.0, 10.0)  # as the text lists them
     "Overshoot against $Kh$",
     caption="Solid: exact, up to 0.99 of the stability limit. Dashed: the fit (2) where it is given. The text does not "
     "say which $ph$ the figure shows.",
-    alt="Nine curves of percent overshoot against Kh, one for each ph from 0 to 10, each rising almost linearly from its "
+    alt="Nine curves of percent overshoot against Kh, one for each ph from 0 to 10, each rising almost linearly "
+    "from its "
     "break point, with the dashed fit on top of it.",
     size=(7.2, 4.6),
 )
@@ -45,7 +46,8 @@ def overshoot(fig: Figure) -> None:
     "fig-5",
     "Rise time against $Kh$",
     caption="Solid: exact, up to 0.99 of the stability limit. Dashed: the fit (3).",
-    alt="Seven falling curves of rise time over dead time against Kh, one for each ph from 0.5 to 10, with the dashed fit "
+    alt="Seven falling curves of rise time over dead time against Kh, one for each ph from 0.5 to 10, with the "
+    "dashed fit "
     "close to each.",
     size=(7.2, 4.2),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -76,7 +77,7 @@ def table_of(sweeps: Sequence[Sweep]) -> tuple[Array, Array, Array, Array]:
 
 def _bands() -> list[tuple[str, float, float]]:
     edges = [0.0, 0.25, 0.5, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0]
-    return [(f"ph {low:g}..{high:g}", low, high) for low, high in zip(edges[:-1], edges[1:], strict=True)]
+    return [(f"ph {low:g}..{high:g}", low, high) for low, high in pairwise(edges)]
 
 
 @eq_2.reading("as-written", "Case by case, Max[0, M]")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pandas as pd
@@ -24,7 +24,8 @@ refit = paper.table(
     caption="Least-squares fits on stable loops with $Kh$ up to 0.95 of the limit. $r^2$ and worst error of the "
     "overshoot cases in percentage points; of the rise time in per cent. Below, the coefficients one by one.",
     labels={
-        "r2_paper": "$r^2$, paper", "r2_refit": "$r^2$, refit", "worst_paper": "worst, paper", "worst_refit": "worst, refit",
+        "r2_paper": "$r^2$, paper", "r2_refit": "$r^2$, refit", "worst_paper": "worst, paper",
+        "worst_refit": "worst, refit",
         "paper": "paper", "refit": "refit",
     },
 )  # fmt: skip
@@ -33,7 +34,8 @@ better = paper.table(
     "One smooth formula for the overshoot, $0 \\le ph \\le 10$",
     printed=False,
     caption="$M = B r + q r^2$ with the soft ramp $r = w \\ln\\left(1 + e^{(Kh - k)/w}\\right)$, "
-    "$B = b_0 + b_1 e^{-ph/b_2} + b_3\\,ph$ and $k$, $w$, $q$ of the form $x_0 + x_1 e^{-ph/x_2}$: no cases, no complex "
+    "$B = b_0 + b_1 e^{-ph/b_2} + b_3\\,ph$ and $k$, $w$, $q$ of the form $x_0 + x_1 e^{-ph/x_2}$: no cases, no "
+    "complex "
     "values, no jumps. Errors in percentage points.",
     labels={"value": "value"},
 )
@@ -64,7 +66,11 @@ def data() -> tuple[Array, Array, Array, Array]:
 def fitted_better() -> tuple[Array, dict[str, float]]:
     """Return coefficients and quality of the smooth formula."""
     ph, kh, exact, _ = data()
-    found = least_squares(lambda x: better_formula(x, ph, kh) - exact, BETTER_START, x_scale="jac", max_nfev=4000)
+
+    def error(x: Array) -> Array:
+        return better_formula(x, ph, kh) - exact
+
+    found = least_squares(error, np.array(BETTER_START), x_scale="jac", max_nfev=4000)
     return found.x, summary(better_formula(found.x, ph, kh), exact, ph, kh)
 
 
@@ -95,12 +101,12 @@ def refitted() -> dict[str, tuple[Array, Array, dict[str, float], dict[str, floa
     for number, case in enumerate(CASES, 1):
         mask = cases == case
         result[f"case-{number}"] = _fit(
-            f"case-{number}", printed, lambda c, case=case, mask=mask: _clipped(case, ph[mask], kh[mask], c),
+            f"case-{number}", printed, partial(_clipped, case, ph[mask], kh[mask]),
             overshoot[mask], ph[mask], kh[mask], 1.0,
         )  # fmt: skip
     mask = ph >= 0.5
     result["rise-time"] = _fit(
-        "rise-time", printed, lambda c: rise_time_fit(ph[mask], kh[mask], c), rise[mask], ph[mask], kh[mask],
+        "rise-time", printed, partial(rise_time_fit, ph[mask], kh[mask]), rise[mask], ph[mask], kh[mask],
         rise[mask] / 100.0,
     )  # fmt: skip
     return result
