@@ -84,13 +84,14 @@ def label_locus(axes: Axes, locus: Locus, u: float, text: str, color: Any, **sty
     """Write a label on a locus at parameter u, along its tangent, on a patch of the page's colour."""
     import matplotlib as mpl
 
+    paper = mpl.rcParams["legend.facecolor"]  # the colour of the page in the project's style
     (point,), (slope,) = locus.curve(np.array([u]))
     angle = float(np.degrees(np.arctan2(slope[1], slope[0])))
     if not -90.0 < angle <= 90.0:
         angle -= 180.0 * np.sign(angle)
     box = {
         "boxstyle": "round,pad=0.12,rounding_size=0.3",
-        "facecolor": mpl.rcParams["legend.facecolor"],
+        "facecolor": "white" if paper == "inherit" else paper,
         "edgecolor": "none",
     }
     options: dict[str, Any] = {
