@@ -43,6 +43,15 @@ BETTER_START = (15.0, 60.0, 2.4, -0.6, -0.1, 0.6, 4.0, 0.1, -0.07, 0.5, 0.0, 14.
 BETTER_NAMES = ("b0", "b1", "b2", "b3", "k0", "k1", "k2", "w0", "w1", "w2", "q0", "q1", "q2")
 
 
+# The data determine the coefficients of case III, four exponentials in one another's way, to fewer digits.
+DETERMINED = {"case-3": 2}
+
+
+def significant(value: float, digits: int) -> float:
+    """Round to a number of significant digits: more would differ between machines."""
+    return float(f"{value:.{digits}g}")
+
+
 def better_formula(x: Array, ph: Array, kh: Array) -> Array:
     """Evaluate the smooth formula, in per cent."""
     slope = _decay(x[0:3], ph) + x[3] * ph
@@ -126,7 +135,7 @@ def _fit(
         with np.errstate(all="ignore"):
             return np.nan_to_num((evaluate(_with(printed, case, x)) - exact) / scale, nan=1e6, posinf=1e6, neginf=-1e6)
 
-    found = least_squares(residual, start, x_scale=np.maximum(np.abs(start), 1e-3), max_nfev=600)
+    found = least_squares(residual, start, x_scale="jac", max_nfev=3000, ftol=1e-15, xtol=1e-14, gtol=1e-15)
     return (
         start,
         found.x,
@@ -141,11 +150,13 @@ def compare() -> pd.DataFrame:
     rows: dict[str, dict[str, float]] = {}
     for case, (_, _, old, new) in refitted().items():
         rows[case] = {
-            "r2_paper": old["r2"], "r2_refit": new["r2"], "worst_paper": old["worst"], "worst_refit": new["worst"],
+            "r2_paper": old["r2"], "r2_refit": round(new["r2"], 8),
+            "worst_paper": old["worst"], "worst_refit": significant(new["worst"], 4),
         }  # fmt: skip
     for case, (start, found, _, _) in refitted().items():
         for index, (a, b) in enumerate(zip(start, found, strict=True), 1):
-            rows[f"{case} coefficient {index}"] = {"paper": float(a), "refit": float(b)}
+            digits = DETERMINED.get(case, 3)
+            rows[f"{case} coefficient {index}"] = {"paper": float(a), "refit": significant(float(b), digits)}
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
@@ -153,7 +164,7 @@ def compare() -> pd.DataFrame:
 def show_better() -> pd.DataFrame:
     """List coefficients and quality of the smooth formula."""
     x, quality = fitted_better()
-    rows = dict(zip(BETTER_NAMES, (float(v) for v in x), strict=True))
+    rows = dict(zip(BETTER_NAMES, (significant(float(v), 5) for v in x), strict=True))
     rows |= {"coefficients": float(x.size), "r2": quality["r2"], "rms": quality["rms"], "worst": quality["worst"],
              "worst_ph": quality["worst_ph"], "worst_Kh": quality["worst_Kh"]}  # fmt: skip
     return pd.DataFrame({"value": rows})
