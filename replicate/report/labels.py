@@ -26,8 +26,8 @@ def label(exhibit: str) -> str:
     --------
     >>> label("table-2"), label("I-fig-4b"), label("example-2-1"), label("eq-7a"), label("eq-21-24")
     ('Table 2', 'Figure 4b', 'Example 2.1', 'Equation (7a)', 'Equations (21) to (24)')
-    >>> label("claims"), label("toolchain")
-    ('Claims', '')
+    >>> label("claims"), label("toolchain"), label("fig-9-values")
+    ('Claims', '', 'Figure 9, values')
     """
     kind, *numbers = exhibit.removeprefix(f"{part_of(exhibit)}-").split("-")
     if kind == "claims" and not numbers:
@@ -37,7 +37,9 @@ def label(exhibit: str) -> str:
     if kind == "eq":
         ends = [f"({number})" for number in numbers]
         return f"Equations {ends[0]} to {ends[1]}" if len(ends) == 2 else f"Equation {'–'.join(ends)}"
-    return f"{_KINDS.get(kind, kind.capitalize())} {'.'.join(numbers)}"
+    words = [number for number in numbers if re.match(r"[a-z]{2}", number)]  # what belongs to a numbered exhibit
+    plain = ".".join(number for number in numbers if number not in words)
+    return f"{_KINDS.get(kind, kind.capitalize())} {', '.join([plain, *words])}"
 
 
 def heading(exhibit: str, title: str) -> tuple[str, str]:

@@ -39,7 +39,7 @@ def gain_chart(axes: Axes, tau: float) -> None:
         draw_locus(axes, segment, "phase crossover 2", edgecolor="C3", linestyle="--", linewidth=1.3)
         (tip,) = segment.curve(np.array([1.0]))[0]
         style: dict[str, Any] = {"color": "C3", "fontsize": 8, "va": "center"}
-        offset = (5, 6) if tip[1] > 0.8 * top else (5, -5)
+        offset = (5, 6) if tip[1] > 0.7 * top else (5, -5)
         axes.annotate("$\\omega_B = 2$", tip, xytext=offset, textcoords="offset points", **style)
 
 

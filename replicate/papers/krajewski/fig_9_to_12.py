@@ -127,7 +127,7 @@ def _register(figure: Responses) -> None:
     def draw(fig: Figure) -> None:
         draw_responses(fig.add_subplot(), figure)
 
-    point_table(figure.exhibit, f"{figure.title}: numbers")
+    point_table(figure.exhibit, figure.title)
 
 
 for _figure in FIGURES:

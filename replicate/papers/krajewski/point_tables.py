@@ -28,9 +28,12 @@ LABELS = {
 UNITS = {"m_phi": "degrees"}
 
 CAPTION = (
-    "Coordinates are recomputed from what defines the point, margins from the coordinates as printed, so "
-    "that each printed number is checked against the others. Overshoot is a fraction; rise time is from "
-    "10 to 90 %, settling time to 2 %, in units of $T$, from the step, dead time included."
+    "Coordinates are recomputed from what defines the point, margins from the coordinates as printed, so that "
+    "each printed number is checked against the others."
+)
+CAPTION_OF_METRICS = (
+    "Overshoot is a fraction; rise time is from 10 to 90 %, settling time to 2 %, in units of $T$, from the "
+    "step, dead time included."
 )
 
 NOTE = (
@@ -59,7 +62,7 @@ def point_table(exhibit: str, title: str, *, responses: bool = True, caption: st
         title,
         rows=tuple(points),
         columns=columns,
-        caption=f"{caption} {CAPTION}".strip(),
+        caption=" ".join(filter(None, (caption, CAPTION, CAPTION_OF_METRICS if responses else ""))),
         labels={key: LABELS[key] for key in columns if key in LABELS},
         units=UNITS,
     )
