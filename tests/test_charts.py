@@ -41,7 +41,7 @@ def test_the_first_chart_is_the_default_and_others_go_by_name(paper: Paper) -> N
     with pytest.raises(UnknownPaperError, match="no chart 'third'; known: decay, other"):
         find_chart(paper, "third")
     with pytest.raises(PaperDefinitionError, match="defined twice"):
-        paper.chart("decay", "Again", parameters={"x": ""})(lambda fig: None)
+        paper.chart("decay", "Again", parameters={"x": ""})
     with pytest.raises(PaperDefinitionError, match="no parameters"):
         paper.chart("plain", "Plain", parameters={})
 
@@ -78,7 +78,7 @@ def test_files(paper: Paper, tmp_path: Path) -> None:
     assert svg.read_text().startswith("<?xml")
     assert svg.read_bytes() == again.read_bytes()
     assert png.read_bytes().startswith(b"\x89PNG")
-    with pytest.raises(OutputError, match="must end in .svg or .png"):
+    with pytest.raises(OutputError, match=r"must end in \.svg or \.png"):
         write_chart(paper, chart, values, tmp_path / "a.txt")
     with pytest.raises(OutputError, match="cannot be written"):
         write_chart(paper, chart, values, svg / "a.svg")

@@ -29,7 +29,8 @@ UNITS = {"m_phi": "degrees"}
 
 CAPTION = (
     "Coordinates are recomputed from what defines the point, margins from the coordinates as printed, so that "
-    "each printed number is checked against the others."
+    "each printed number is checked against the others. Coordinates that the authors chose freely agree by "
+    "construction."
 )
 CAPTION_OF_METRICS = (
     "Overshoot is a fraction; rise time is from 10 to 90 %, settling time to 2 %, in units of $T$, from the "
