@@ -45,6 +45,7 @@ MESSAGES: dict[str, str] = {
 }
 
 DERIVATIVE_STARTS = (0.0, 0.3, 0.8, 1.8)  # kd of the starts, in units of k / (frequency of the PI design)
+CAUTIOUS = 0.1  # ki of the second round of starts, in units of that of the first
 FEASIBLE = 2e-9
 SAME_TOUCH = 0.06  # touches closer than this relative distance in frequency are one
 RUNAWAY = 1e5  # gains this many times the start's: the search has left the problem
@@ -151,18 +152,9 @@ def design_pid(
     asked = [Constraint("sensitivity")]
     asked += [_constraint(plant, pi.k, pi.ki, item) for item in (shape if constraints is None else constraints)]
     problem = _Problem(plant, circle, tuple(asked))
-    best: PIDDesign | None = None
-    for gains in _starts(plant, pi.k, pi.ki, pi.frequency, start):
-        point = problem.climb(np.array(gains))
-        if point is None:
-            continue
-        found = problem.finish(point)
-        if found is None:
-            continue
-        if best is not None and found.status == best.status == "optimal" and abs(found.ki / best.ki - 1.0) < 1e-8:
-            break  # two starts agree
-        if best is None or found.ki > best.ki:
-            best = found
+    starts = _starts(plant, pi.k, pi.ki, pi.frequency, start)
+    # severe constraints may leave room only far below the ki of the PI design, out of reach from its side
+    best = _best_from(problem, starts) or _best_from(problem, [(k, CAUTIOUS * ki, kd) for k, ki, kd in starts])
     nan = float("nan")
     return best or PIDDesign(nan, nan, nan, nan, nan, (), "no-controller")
 
@@ -226,7 +218,27 @@ def _starts(
         ki = 0.1 * k * frequency
     size = max(abs(k), 0.2 * ki / frequency)
     starts = [] if start is None else [start]
-    return starts + [(k, ki, share * size / frequency) for share in DERIVATIVE_STARTS]
+    first, *rest = [(k, ki, share * size / frequency) for share in DERIVATIVE_STARTS]
+    # a loop that lives on its derivative action is far from the PI design; severe constraints can push the optimum
+    # there
+    return [*starts, first, (0.1 * k, 0.3 * ki, 1.8 * size / frequency), *rest]
+
+
+def _best_from(problem: _Problem, starts: Sequence[tuple[float, float, float]]) -> PIDDesign | None:
+    """Return the best design that the starts lead to; two that agree settle it."""
+    best: PIDDesign | None = None
+    for gains in starts:
+        point = problem.climb(np.array(gains))
+        if point is None:
+            continue
+        found = problem.finish(point)
+        if found is None:
+            continue
+        if best is not None and found.status == best.status == "optimal" and abs(found.ki / best.ki - 1.0) < 1e-8:
+            break
+        if best is None or found.ki > best.ki:
+            best = found
+    return best
 
 
 class _Problem:
@@ -357,7 +369,7 @@ class _Problem:
             return None
         gains = solution.x[:3] * size
         frequencies = [part.frequency * float(np.exp(s)) for part, s in zip(active, solution.x[3:], strict=False)]
-        multipliers = solution.x[3 + len(active) :]
+        multipliers = solution.x[3 + len(active) :] * size[1] / gains[1]  # relative to the ki that was found
         if np.any(multipliers <= 0.0) or not 0.5 < gains[1] / x[1] < 2.0:
             return None
         parts = [
