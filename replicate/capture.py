@@ -56,7 +56,7 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
         return FigureResult(
             paper=paper,
             exhibit=exhibit.id,
-            svg=_svg(canvas, exhibit.title),
+            svg=svg_text(canvas, exhibit.title),
             png=_png(canvas),
             curves=frame.astype({"panel": object, "curve": object, "x": float, "y": float}),
             axes=described,
@@ -99,8 +99,8 @@ def _outside_the_axes(canvas: Canvas) -> dict[str, Any]:
     return found
 
 
-def _svg(canvas: Canvas, title: str) -> str:
-    """Return the SVG without date and versions."""
+def svg_text(canvas: Canvas, title: str) -> str:
+    """Return a drawn figure as a transparent SVG without date and versions."""
     buffer = io.StringIO()
     unknown = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     canvas.savefig(buffer, format="svg", transparent=True, metadata={**unknown, "Title": title})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import re
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from replicate.plotstyle import themed
@@ -12,6 +13,9 @@ _SVG_TAG = re.compile(r"<svg\b[^>]*>", re.DOTALL)
 _VIEW_BOX = re.compile(r'viewBox="([^"]+)"')
 # What an SVG file says about itself; in a page, the element's own title and description do.
 _FOR_FILES = re.compile(r"<(metadata|title)\b.*?</\1>\s*", re.DOTALL)
+# Nothing refers to groups by their ids, and every figure has the same ones.
+_GROUP_ID = re.compile(r'<g id="[^"]*"')
+_REFERENCE = re.compile(r'\bid="|href="#|url\(#')
 
 
 def inline_svg(svg: str, id: str, title: str, description: str) -> str:
@@ -20,9 +24,9 @@ def inline_svg(svg: str, id: str, title: str, description: str) -> str:
     Parameters
     ----------
     svg
-        The document as `replicate.capture` leaves it: its ids are unique already.
+        The document as `replicate.capture` leaves it.
     id
-        Id of the element, unique on the page.
+        Id of the element, unique on the page; all ids inside begin with it.
     title, description
         Plain text for `<title>` and `<desc>`, which say what the image shows to those who cannot see it.
 
@@ -43,6 +47,8 @@ def inline_svg(svg: str, id: str, title: str, description: str) -> str:
         raise ValueError(msg)
     body = svg[tag.end() : svg.rindex("</svg>")]
     body = _FOR_FILES.sub("", body)
+    body = _GROUP_ID.sub("<g", body)
+    body = _REFERENCE.sub(rf"\g<0>{id}-", body)
     # matplotlib's style sheet addresses every element; inside a page that would be every element of the page.
     body = body.replace('<style type="text/css">*{', f'<style type="text/css">#{id} *{{')
     width, height = (float(size) for size in view_box[1].split()[2:])
@@ -54,7 +60,7 @@ def inline_svg(svg: str, id: str, title: str, description: str) -> str:
     )
 
 
-def description(alt: str, axes: list[dict[str, Any]]) -> str:
+def description(alt: str, axes: Sequence[Mapping[str, Any]]) -> str:
     """Return the figure's alternative text; one without is described by what its axes hold.
 
     Examples

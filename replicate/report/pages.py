@@ -6,14 +6,9 @@ Every page stands alone: its style is inside it, nothing is fetched, no script i
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Any
-
-import jinja2
-from markupsafe import Markup
 
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Paper
@@ -21,11 +16,9 @@ from replicate.judgement import Judgement, VerdictRow
 from replicate.locations import display_name
 from replicate.prose import Prose
 from replicate.records import Results
-from replicate.report import environment, numbers, scores, words
-from replicate.report.errata import errata
 from replicate.report.labels import part_of
-from replicate.report.markdown import MarkdownBatch
 from replicate.report.notes import Piece, pieces, place
+from replicate.report.rendering import render
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
 
@@ -101,12 +94,12 @@ def build_report(
     site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
     methods = (templates_dir() / "methods.md").read_text(encoding="utf-8")
     texts = {
-        INDEX: _render("index.html", INDEX, site=site, papers=papers),
-        METHODS: _render("methods.html", METHODS, methods=methods),
+        INDEX: render("index.html", INDEX, site=site, papers=papers),
+        METHODS: render("methods.html", METHODS, methods=methods),
     }
     for pages in site.values():
         for page in pages:
-            texts[page.file] = _render("paper.html", page.file, page=page, pages=pages)
+            texts[page.file] = render("paper.html", page.file, page=page, pages=pages)
     written = []
     for name, text in texts.items():
         path = out_dir / name
@@ -179,34 +172,3 @@ def _title(text: str, default: str) -> tuple[str, str]:
     """Split off a first-level heading at the start."""
     match = re.match(r"\s*# (.+)\n", text)
     return (match[1].strip(), text[match.end() :]) if match else (default, text)
-
-
-def _render(template: str, name: str, **context: Any) -> str:
-    batch = MarkdownBatch(name)
-    loader = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir()),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    loader.filters |= {
-        "md": batch.block, "inline": batch.inline, "plain": batch.plain, "key": partial(_key, batch),
-    }  # fmt: skip
-    style = (templates_dir() / "style.css").read_text(encoding="utf-8")
-    text = loader.get_template(template).render(
-        context,
-        style=Markup(style),  # noqa: S704 -- the project's own style sheet
-        words=words,
-        scores=scores,
-        numbers=numbers,
-        errata=errata,
-        versions=environment.versions(),
-    )
-    return batch.substitute(text)
-
-
-def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:
-    """Return the display text of a row or column key: its label, or the key in words."""
-    return batch.inline(labels[key]) if key in labels else Markup.escape(key.replace("_", " "))

@@ -1,0 +1,62 @@
+"""Fill the templates: one way for every page, with the words, numbers and style sheet that they share."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import jinja2
+from markupsafe import Markup
+
+from replicate.report import environment, numbers, scores, words
+from replicate.report.errata import errata
+from replicate.report.markdown import MarkdownBatch
+from replicate.resources import templates_dir
+
+
+def render(template: str, name: str, **context: Any) -> str:
+    """Return a page.
+
+    Parameters
+    ----------
+    template
+        File name in the folder of the templates.
+    name
+        File name of the page, for error messages.
+    context
+        What the template shows, besides the words, numbers and scores that all pages use.
+
+    Raises
+    ------
+    TemplateError
+        If a text of the page cannot be converted.
+    """
+    batch = MarkdownBatch(name)
+    loader = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir()),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    loader.filters |= {
+        "md": batch.block, "inline": batch.inline, "plain": batch.plain, "key": partial(_key, batch),
+    }  # fmt: skip
+    style = (templates_dir() / "style.css").read_text(encoding="utf-8")
+    text = loader.get_template(template).render(
+        context,
+        style=Markup(style),  # noqa: S704 -- the project's own style sheet
+        words=words,
+        scores=scores,
+        numbers=numbers,
+        errata=errata,
+        versions=environment.versions(),
+    )
+    return batch.substitute(text)
+
+
+def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:
+    """Return the display text of a row or column key: its label, or the key in words."""
+    return batch.inline(labels[key]) if key in labels else Markup.escape(key.replace("_", " "))
