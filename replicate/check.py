@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from replicate.accepted import compare
-from replicate.changes import Change
+from replicate.diff.changes import Change
+from replicate.diff.comparison import compare
 from replicate.outcome import Outcome
 
 
@@ -25,14 +25,14 @@ def check(outcome: Outcome, accepted: Path) -> list[str]:
 
     Raises
     ------
-    OutputError
-        If an accepted file cannot be read.
+    AcceptedStateError
+        If an accepted file is damaged.
     """
     judgement = outcome.judgement
     problems = list(judgement.problems)
     if not any(row.match != "none" for row in judgement.results):
         problems.append("no printed value was compared with a computed one")
-    return problems + [str(change) for change in _news(compare(outcome, accepted))]
+    return problems + [str(change) for change in _news(compare(outcome, accepted).changes)]
 
 
 def _news(changes: Sequence[Change]) -> list[Change]:

@@ -94,7 +94,7 @@ def list_(
 
 
 @app.command()
-def show(  # noqa: PLR0917  -- typer calls it by name
+def show(
     paper: Annotated[str, typer.Argument(metavar="PAPER")],
     exhibit: Annotated[str, typer.Argument(metavar="EXHIBIT")],
     reading: Annotated[str | None, typer.Option("--reading", help="Show this reading only.")] = None,
@@ -188,7 +188,35 @@ def check(
 
 
 @app.command()
-def accept(  # noqa: PLR0917  -- typer calls it by name
+def diff(
+    names: Names = None,
+    jobs: Jobs = None,
+    out: Out = BUILD,
+    no_cache: NoCache = False,
+    accepted: Accepted = None,
+) -> None:
+    """Say what differs from the accepted state, in words, and in pictures in build/diff/index.html."""
+    from replicate.diff.comparison import compare
+    from replicate.diff.outputs import write_diff
+    from replicate.discovery import select
+    from replicate.staging import staged
+    from replicate.terminal.console import console
+    from replicate.terminal.differences import print_comparison
+
+    with staged(out) as fresh:
+        papers, selection = select(names or ())
+        outcome = _recompute(papers, selection, jobs, out, no_cache)
+        comparison = compare(outcome, _accepted(accepted))
+        write_diff(comparison, outcome, fresh)
+    print_comparison(comparison, console())
+    typer.echo(f"pictures: {out / 'diff' / 'index.html'}")
+    if comparison.failed or not comparison.compared:
+        raise typer.Exit(BROKEN)
+    raise typer.Exit(DIFFERS if comparison.changes else 0)
+
+
+@app.command()
+def accept(
     names: Names = None,
     reason: Annotated[str, typer.Option("--reason", help="Why the present state is right.")] = "",
     jobs: Jobs = None,
@@ -197,18 +225,30 @@ def accept(  # noqa: PLR0917  -- typer calls it by name
     accepted: Accepted = None,
 ) -> None:
     """Make the present state the accepted one."""
-    from replicate.accepted import write
+    from replicate.accept import accept as accept_state
+    from replicate.accept import require_reason
     from replicate.discovery import select
+    from replicate.terminal.console import console
+    from replicate.terminal.differences import print_changes
 
-    if not reason.strip():
-        msg = "accepting needs a reason: --reason 'why the present state is right'"
-        raise ReplicateError(msg)
+    require_reason(reason)
     papers, selection = select(names or ())
     outcome = _recompute(papers, selection, jobs, out, no_cache)
-    changes = write(outcome, _accepted(accepted), reason)
-    for change in changes:
-        typer.echo(str(change))
+    changes = accept_state(outcome, _accepted(accepted), reason)
+    print_changes(changes, console())
     typer.echo(f"changes accepted: {len(changes)}" if changes else "nothing differs from the accepted state")
+
+
+@app.command()
+def new(
+    paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
+) -> None:
+    """Make the package of a new paper in the current folder, ready to be filled in."""
+    from replicate.scaffold import new_paper
+    from replicate.terminal.console import console
+
+    folder = new_paper(paper, Path())
+    console().print(f"{folder}: made. Install it with `pip install -e {folder}`, then `replicate report {paper}`.")
 
 
 def _recompute(

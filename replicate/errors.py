@@ -5,6 +5,7 @@ ReplicateError                 shown to the user as one line, exit status 2
 ├── UnknownPaperError          no such paper or exhibit
 ├── PrintedFileError           a printed CSV is malformed (file, line, cell)
 ├── LedgerError                a ledger entry names nothing, or no longer applies
+├── AcceptedStateError         a file of the accepted state is damaged (file, line)
 ├── TemplateError              prose asks for a result that does not exist
 └── OutputError                a result cannot be written
 
@@ -32,6 +33,10 @@ class PrintedFileError(ReplicateError):
 
 class LedgerError(ReplicateError):
     """A ledger entry names no cell, or a cell that no longer differs."""
+
+
+class AcceptedStateError(ReplicateError):
+    """A file of the accepted state is damaged."""
 
 
 class TemplateError(ReplicateError):

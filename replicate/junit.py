@@ -32,14 +32,13 @@ def junit(papers: Sequence[str], results: Results, judgement: Judgement) -> str:
         for (owner, exhibit), result in results.items():
             if owner == paper:
                 for part, why in errors_of(result).items():
-                    _case(suite, f"{paper}.{exhibit}", f"computing {part or exhibit}", "error", why)
-        _count(suite)
+                    add_case(suite, f"{paper}.{exhibit}", f"computing {part or exhibit}", "error", why)
+        count_cases(suite)
     suite = ET.SubElement(root, "testsuite", name="check")
     for place, problem in enumerate(judgement.problems, start=1):
-        _case(suite, "check", f"problem {place}", "failure", problem)
-    _count(suite)
-    ET.indent(root)
-    return ET.tostring(root, encoding="unicode", xml_declaration=False) + "\n"
+        add_case(suite, "check", f"problem {place}", "failure", problem)
+    count_cases(suite)
+    return xml_text(root)
 
 
 def _value(suite: ET.Element, verdict: VerdictRow) -> None:
@@ -49,16 +48,24 @@ def _value(suite: ET.Element, verdict: VerdictRow) -> None:
         outcome = "skipped"
     elif verdict.verdict == "unexplained" and not verdict.cause:
         outcome = "failure"
-    _case(suite, f"{verdict.paper}.{verdict.exhibit}", f"{verdict.row} {verdict.column}", outcome, said)
+    add_case(suite, f"{verdict.paper}.{verdict.exhibit}", f"{verdict.row} {verdict.column}", outcome, said)
 
 
-def _case(suite: ET.Element, classname: str, name: str, outcome: str, message: str) -> None:
+def xml_text(root: ET.Element) -> str:
+    """Return an indented document."""
+    ET.indent(root)
+    return ET.tostring(root, encoding="unicode", xml_declaration=False) + "\n"
+
+
+def add_case(suite: ET.Element, classname: str, name: str, outcome: str, message: str) -> None:
+    """Add a test to a suite; `outcome` is the element that says how it ended, empty if it passed."""
     case = ET.SubElement(suite, "testcase", classname=classname, name=name)
     if outcome:
         ET.SubElement(case, outcome, message=message)
 
 
-def _count(suite: ET.Element) -> None:
+def count_cases(suite: ET.Element) -> None:
+    """Write the numbers of tests into the finished suite."""
     suite.set("tests", str(len(suite)))
     for plural, outcome in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped")):
         suite.set(plural, str(len(suite.findall(f"testcase/{outcome}"))))

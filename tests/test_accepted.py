@@ -13,10 +13,11 @@ import pytest
 import synthetic
 from PIL import Image
 
-from replicate.accepted import LOG, compare, write
-from replicate.changes import Change
+from replicate.accept import LOG, accept
 from replicate.check import check
-from replicate.errors import OutputError, ReplicateError
+from replicate.diff.changes import Change
+from replicate.diff.comparison import compare as compare_all
+from replicate.errors import AcceptedStateError, OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.outcome import Outcome
 from replicate.records import FigureResult, Results
@@ -67,6 +68,10 @@ def outcome(folder: Path, drawn: FigureResult | None = None, **changes: Any) -> 
     return Outcome([toy], results, {"toy": judge(toy, results, printed=synthetic.printed())})
 
 
+def compare(present: Outcome, folder: Path) -> list[Change]:
+    return compare_all(present, folder).changes
+
+
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
     return tmp_path / "data"
@@ -75,7 +80,7 @@ def data(tmp_path: Path) -> Path:
 @pytest.fixture
 def accepted(tmp_path: Path, data: Path) -> Path:
     folder = tmp_path / "figures"
-    write(outcome(data), folder, "first")
+    accept(outcome(data), folder, "first")
     return folder
 
 
@@ -104,7 +109,7 @@ def test_nothing_differs_from_itself(accepted: Path, data: Path) -> None:
     assert compare(outcome(data), accepted) == []
     assert check(outcome(data), accepted) == []
     before = (accepted / LOG).read_bytes()
-    assert write(outcome(data), accepted, "again") == []
+    assert accept(outcome(data), accepted, "again") == []
     assert (accepted / LOG).read_bytes() == before
 
 
@@ -130,16 +135,16 @@ def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"as_written": synthetic.frame(ax=1.001)}, "toy/table-1: A x (as-written) 1 -> 1.001"),
+        ({"as_written": synthetic.frame(ax=1.001)}, "toy/table-1: A x 1 -> 1.001 (+0.1 %); 7 values unchanged"),
         (
             {"as_written": synthetic.frame(ax=1.3)},
-            "toy/table-1: A x (as-written) 1 -> 1.3; verdict reproduced -> reconstructed",
+            "toy/table-1: A x 1 -> 1.3 (+30 %); verdict reproduced -> reconstructed; 7 values unchanged",
         ),
         (
             {"findings": {"big": Finding("holds", 3.1, "e"), "smooth": Finding("holds-partly", 0.2, "e")}},
-            "toy/claims: smooth verdict fails -> holds-partly",
+            "toy/claims: smooth verdict fails -> holds-partly; 1 claim unchanged",
         ),
-        ({"findings": {"big": Finding("holds", 3.1, "e")}}, "toy/claims: smooth is gone"),
+        ({"findings": {"big": Finding("holds", 3.1, "e")}}, "toy/claims: smooth is gone; 1 claim unchanged"),
         (
             {"errors": {"authors": "ValueError: no"}},
             "toy/table-1: authors: could not be computed: ValueError: no",
@@ -155,16 +160,19 @@ def test_changed_values_and_verdicts(accepted: Path, data: Path, changed: dict[s
     [
         (
             {"output": (T, OUTPUT[1] + 0.002), "input": INPUT},
-            "curve 'output' moved: at most 0.1 % of the axes at (",
+            "curve 'output' moved: at most 0.002 (0.1 % of the axis) at time = ",
         ),
         (
             {"output": OUTPUT, "input": (T, np.where(T < 3.05, 0.0, 1.0))},
-            "curve 'input' moved: at most 0.5 %",
+            "curve 'input' moved: at most 1 (50 % of the axis) at time = 3",
         ),
-        ({"output": OUTPUT, "input": (T[:-1], INPUT[1][:-1])}, "curve 'input' moved: at most 0.5 %"),
-        ({"output": INPUT, "input": OUTPUT}, "curve 'output' moved"),
-        ({"output": OUTPUT}, "curve 'input' is gone"),
-        ({"output": OUTPUT, "input": INPUT, "noise": INPUT}, "curve 'noise' is new"),
+        (
+            {"output": OUTPUT, "input": (T[:-1], INPUT[1][:-1])},
+            "curve 'input' now ends at time = 9.95 (was 10); 1 curve unchanged",
+        ),
+        ({"output": INPUT, "input": OUTPUT}, "the labels of curves 'output' and 'input' are swapped"),
+        ({"output": OUTPUT}, "curve 'input' is missing; 1 curve unchanged"),
+        ({"output": OUTPUT, "input": INPUT, "noise": (T, T)}, "curve 'noise' is new; 2 curves unchanged"),
     ],
 )
 def test_changed_curves(accepted: Path, data: Path, curves: dict[str, tuple[Any, Any]], said: str) -> None:
@@ -175,14 +183,10 @@ def test_changed_curves(accepted: Path, data: Path, curves: dict[str, tuple[Any,
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"xlim": [0.0, 9.0]}, "xlim of 'panel 1' is now [0, 9] (was [0, 10])"),
-        (
-            {"legend": ["input", "output"]},
-            "legend of 'panel 1' is now ['input', 'output'] (was ['output', 'input'])",
-        ),
-        ({"xlabel": "t"}, "xlabel of 'panel 1' is now 't' (was 'time')"),
-        ({"panel": "other"}, "panel 'panel 1' is gone"),
-        ({"texts": [{"text": "peak"}]}, "texts of 'panel 1' is now [{'text': 'peak'}] (was nothing)"),
+        ({"xlim": [0.0, 9.0]}, "x axis now ends at 9 (was 10)"),
+        ({"legend": ["input", "output"]}, "legend entries 'output' and 'input' are swapped"),
+        ({"xlabel": "t"}, "label of the x axis is now 't' (was 'time')"),
+        ({"texts": [{"text": "peak", "x": 1.0, "y": 2.0}]}, "text 'peak' at (1, 2) is new"),
     ],
 )
 def test_changed_axes(accepted: Path, data: Path, changed: dict[str, Any], said: str) -> None:
@@ -196,25 +200,25 @@ def test_missing_and_superfluous_files(accepted: Path, data: Path) -> None:
     (accepted / "toy/table-9.csv").write_text("row\n")
     present = outcome(data)
     assert words(compare(present, accepted)) == [
-        "toy/table-1: has no accepted state yet",
-        "toy/fig-1: the accepted fig-1.json is missing",
+        "toy/table-1: has no accepted state: toy/table-1.csv is missing",
+        "toy/fig-1: has no accepted state: toy/fig-1.json is missing",
         "toy/table-9: was accepted, but is not computed any more",
     ]
     assert len(compare(replace(present, complete=False), accepted)) == 2
-    assert write(present, accepted, "clean up")
+    assert accept(present, accepted, "clean up")
     assert compare(present, accepted) == []
     assert not (accepted / "toy/table-9.csv").exists()
 
 
 def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
     (accepted / "toy/fig-1.json").write_text("[{\n")
-    with pytest.raises(OutputError, match=r"^toy/fig-1.json:\d: is no JSON"):
+    with pytest.raises(AcceptedStateError, match=r"^toy/fig-1.json:\d: is no JSON"):
         compare(outcome(data), accepted)
 
 
 def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None:
     present = outcome(data, figure(png=OTHER_FONTS), as_written=synthetic.frame(ax=1.001))
-    (change,) = write(present, accepted, "a better\n solver")
+    (change,) = accept(present, accepted, "a better\n solver")
     assert change.exhibit == "table-1"
     with Image.open(accepted / "toy/fig-1.png") as kept:
         assert kept.size == (20, 10)
@@ -222,7 +226,7 @@ def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None
     assert (
         (accepted / LOG)
         .read_text()
-        .endswith("\n## a better solver\n\n- toy/table-1: A x (as-written) 1 -> 1.001\n")
+        .endswith("\n## a better solver\n\n- toy/table-1: A x 1 -> 1.001 (+0.1 %); 7 values unchanged\n")
     )
     assert "## first" in (accepted / LOG).read_text()
     assert compare(present, accepted) == []
@@ -230,9 +234,9 @@ def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None
 
 def test_accepting_needs_a_reason_and_whole_results(accepted: Path, data: Path) -> None:
     with pytest.raises(ReplicateError, match="needs a reason"):
-        write(outcome(data), accepted, "  ")
+        accept(outcome(data), accepted, "  ")
     with pytest.raises(ReplicateError, match=r"nothing is accepted.*toy/table-1 \(authors\)"):
-        write(outcome(data, errors={"authors": "ValueError: no"}), accepted, "why not")
+        accept(outcome(data, errors={"authors": "ValueError: no"}), accepted, "why not")
 
 
 def test_accepting_is_all_or_nothing(accepted: Path, data: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -247,7 +251,7 @@ def test_accepting_is_all_or_nothing(accepted: Path, data: Path, monkeypatch: py
     monkeypatch.setattr(Path, "write_bytes", full_disk)
     changed = outcome(data, figure({"output": INPUT}), as_written=synthetic.frame(ax=1.5))
     with pytest.raises(OutputError, match="No space left"):
-        write(changed, accepted, "half")
+        accept(changed, accepted, "half")
     assert {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()} == before
 
 
@@ -256,4 +260,4 @@ def test_check_wants_explanations_and_comparisons(accepted: Path, data: Path) ->
     problems = check(outcome(data, **both), accepted)
     assert any("has no ledger entry" in problem for problem in problems)
     assert any("verdict reproduced -> unexplained" in problem for problem in problems)
-    assert check(Outcome([], {}, {}), accepted) == ["no printed value was compared with a computed one"]
+    assert check(Outcome([], {}, {}), data / "nothing") == ["no printed value was compared with a computed one"]

@@ -169,7 +169,7 @@ def test_check(replicate: Run, folder: Path) -> None:
 def test_check_fails_without_accepted_state(replicate: Run, tmp_path: Path) -> None:
     status, out, _ = replicate("check", "lab", "-j1", "--accepted", str(tmp_path / "nothing"))
     assert status == 1
-    assert "lab/table-1: has no accepted state yet" in out
+    assert "lab/table-1: has no accepted state: lab/table-1.csv is missing" in out
 
 
 def test_an_exhibit_that_raises_breaks_check(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,168 @@
+"""Compare a whole run with the accepted state."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from replicate.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
+from replicate.diff.axes import compare_axes
+from replicate.diff.cells import CellChange, compare_cells, with_count
+from replicate.diff.changes import Change
+from replicate.diff.curves import Pair, compare_curves
+from replicate.discovery import known_papers
+from replicate.outcome import Outcome
+from replicate.records import ClaimsResult, FigureResult, Result
+from replicate.units import errors_of
+
+Kind = Literal["table", "claims", "figure", ""]
+
+REMOVED = "was accepted, but is not computed any more"
+
+
+@dataclass(frozen=True)
+class ExhibitDiff:
+    """One exhibit: what changed in it, and both states.
+
+    Attributes
+    ----------
+    kind
+        Empty for an exhibit that no longer exists.
+    unchanged
+        Number of values, claims or curves that did not change.
+    before
+        ``None`` if there is no accepted state.
+    after
+        ``None`` if it was not, or could not be, computed.
+    pairs
+        Of a figure: every curve that both states have.
+    cells
+        Of a table or of claims: what is not as accepted.
+    """
+
+    paper: str
+    exhibit: str
+    kind: Kind
+    changes: Sequence[Change] = ()
+    unchanged: int = 0
+    before: State | None = None
+    after: State | None = None
+    pairs: Sequence[Pair] = ()
+    cells: Sequence[CellChange] = ()
+
+    @property
+    def name(self) -> str:
+        """As on the command line."""
+        return f"{self.paper}/{self.exhibit}"
+
+    @property
+    def compared(self) -> bool:
+        """Whether there was something to compare, on both sides."""
+        return self.before is not None and self.after is not None
+
+    @property
+    def failed(self) -> bool:
+        """Whether it could not be computed."""
+        return any(change.kind == "failed" for change in self.changes)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All exhibits of a run, in the order of the papers."""
+
+    exhibits: list[ExhibitDiff] = field(default_factory=list)
+
+    @property
+    def changes(self) -> list[Change]:
+        """The changes of all exhibits."""
+        return [change for exhibit in self.exhibits for change in exhibit.changes]
+
+    @property
+    def changed(self) -> list[ExhibitDiff]:
+        """The exhibits in which something changed, or which failed."""
+        return [exhibit for exhibit in self.exhibits if exhibit.changes]
+
+    @property
+    def unchanged(self) -> list[ExhibitDiff]:
+        """The exhibits that are as accepted."""
+        return [exhibit for exhibit in self.exhibits if not exhibit.changes]
+
+    @property
+    def compared(self) -> int:
+        """Number of exhibits with something to compare."""
+        return sum(exhibit.compared for exhibit in self.exhibits)
+
+    @property
+    def failed(self) -> bool:
+        """Whether an exhibit could not be computed."""
+        return any(exhibit.failed for exhibit in self.exhibits)
+
+
+def compare(outcome: Outcome, folder: Path) -> Comparison:
+    """Compare what a run computed with the accepted state.
+
+    Parameters
+    ----------
+    folder
+        The accepted folder, one folder per paper in it. If the run was complete, an accepted exhibit that no
+        longer exists is a change, too.
+
+    Raises
+    ------
+    AcceptedStateError
+        If an accepted file is damaged.
+    """
+    exhibits = [_compare(outcome, result, folder) for result in outcome.results.values()]
+    if outcome.complete:
+        exhibits += _no_longer_computed(outcome, folder)
+    return Comparison(exhibits)
+
+
+def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
+    paper, exhibit = result.paper, result.exhibit
+    kind: Kind = "table"
+    if isinstance(result, FigureResult | ClaimsResult):
+        kind = "figure" if isinstance(result, FigureResult) else "claims"
+    errors = errors_of(result)
+    if errors:
+        failed = [
+            Change(paper, exhibit, "failed", f"{f'{part}: ' if part else ''}could not be computed: {why}", part)
+            for part, why in errors.items()
+        ]
+        return ExhibitDiff(paper, exhibit, kind, failed)
+    after = present_state(outcome, result)
+    before = read_state(folder, paper, exhibit, type(result))
+    if isinstance(before, str):
+        missing = Change(paper, exhibit, "new", f"has no accepted state: {paper}/{before} is missing")
+        return ExhibitDiff(paper, exhibit, kind, [missing], after=after)
+    if isinstance(before, FigureState) and isinstance(after, FigureState):
+        found = compare_curves(paper, exhibit, (before.curves, before.axes), (after.curves, after.axes))
+        changes = with_count(found.changes, found.unchanged, "curve")
+        changes = [*compare_axes(paper, exhibit, before.axes, after.axes), *changes]
+        return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs)
+    assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
+    assert isinstance(after, TableState)  # noqa: S101
+    cells, unchanged = compare_cells(before.cells, after.cells)
+    changes = [cell.change(paper, exhibit) for cell in cells]
+    changes = with_count(changes, unchanged, "claim" if kind == "claims" else "value")
+    return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells)
+
+
+def _no_longer_computed(outcome: Outcome, folder: Path) -> list[ExhibitDiff]:
+    """Return the accepted exhibits that the papers do not have any more, and those of papers that are gone."""
+    papers = [paper.id for paper in outcome.papers]
+    known = {*papers, *known_papers()}
+    gone = [path.name for path in sorted(folder.glob("*/")) if path.name not in known and path.name[0] != "."]
+    found = {
+        (paper, path.stem): None
+        for paper in (*papers, *gone)
+        for path in sorted((folder / paper).glob("*"))
+        if path.suffix in ENDINGS
+    }
+    return [
+        ExhibitDiff(paper, exhibit, "", [Change(paper, exhibit, "removed", REMOVED)])
+        for paper, exhibit in found
+        if (paper, exhibit) not in outcome.results
+    ]

@@ -1,0 +1,212 @@
+"""Compare the curves of a figure: which one moved, where and by how much, which was renamed, is gone or new.
+
+Curves are matched by panel and label. Functions of x are compared by value (`replicate.diff.values`), all
+others by distance (`replicate.diff.distance`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from replicate.diff.axes import Axes, matched_panels
+from replicate.diff.changes import Change
+from replicate.diff.distance import Distances, distances, point_distances
+from replicate.diff.scaling import TOLERANCE, finite, in_units, rounding
+from replicate.diff.values import WINDOW, Array, ValueDifference, compare_values, is_function
+from replicate.diff.wording import moved_words
+from replicate.readback import TOLERANCE as THINNING
+from replicate.simplify import Points
+
+#: By panel and name, in data coordinates.
+Curves = Mapping[tuple[str, str], Points]
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A curve in both states, and how they differ.
+
+    Attributes
+    ----------
+    before, after
+        In data coordinates.
+    values
+        For functions of x.
+    distance
+        Of the new curve from the accepted one, then the other way round; empty for functions of x that agree.
+    """
+
+    axes: Axes  # the accepted description of the panel: all fractions are of these axes
+    name: str
+    before: Points
+    after: Points
+    moved: bool
+    tolerance: float
+    values: ValueDifference | None = None
+    distance: tuple[Distances, ...] = ()
+
+
+@dataclass
+class CurveComparison:
+    """All curves of a figure."""
+
+    changes: list[Change] = field(default_factory=list)
+    pairs: list[Pair] = field(default_factory=list)
+
+    @property
+    def unchanged(self) -> int:
+        """Number of curves that are where they were."""
+        return sum(not pair.moved for pair in self.pairs)
+
+
+def compare_curves(
+    paper: str, exhibit: str, before: tuple[Curves, Sequence[Axes]], after: tuple[Curves, Sequence[Axes]]
+) -> CurveComparison:
+    """Compare the curves of a figure.
+
+    Parameters
+    ----------
+    before, after
+        Curves and descriptions of the axes; distances are fractions of the accepted axes.
+    """
+    found = CurveComparison()
+    several = len(before[1]) > 1
+    for old, new in matched_panels(before[1], after[1]):
+        if old is not None and new is not None:
+            panel = _Panel(paper, exhibit, old, new, f" in '{old['panel']}'" if several else "")
+            one, other = (
+                {name: points for (owner, name), points in curves.items() if owner == axes["panel"]}
+                for curves, axes in ((before[0], old), (after[0], new))
+            )
+            panel.compare(one, other, found)
+    return found
+
+
+class _Panel:
+    """One panel in both states."""
+
+    def __init__(self, paper: str, exhibit: str, old: Axes, new: Axes, suffix: str) -> None:
+        self.paper, self.exhibit = paper, exhibit
+        self.old, self.new = old, new
+        self.suffix = suffix
+        self.view = _view(old, new)
+
+    def compare(self, one: dict[str, Points], other: dict[str, Points], found: CurveComparison) -> None:
+        pairs = {name: self.pair(name, name, one[name], other[name]) for name in one if name in other}
+        found.pairs += pairs.values()
+        differ = [name for name, pair in pairs.items() if pair.moved]
+        gone = [name for name in one if name not in other]
+        fresh = [name for name in other if name not in one]
+        was = self.same_elsewhere(
+            {name: one[name] for name in (*differ, *gone)}, {name: other[name] for name in (*differ, *fresh)}
+        )  # new name -> the accepted name of the same curve
+        done: set[str] = set()
+        for name in (*differ, *fresh):
+            origin = was.get(name)
+            if origin is None or name in done:
+                continue
+            if was.get(origin) == name:
+                self.say(found, "curve", f"the labels of curves '{name}' and '{origin}' are swapped", name, origin)
+                done |= {name, origin}
+            elif origin in gone:
+                self.say(found, "curve", f"curve '{origin}' is now called '{name}'", name, origin)
+                done |= {name, origin}
+            else:
+                self.say(found, "curve", f"curve '{name}' now lies where '{origin}' lay", name, origin)
+                done.add(name)
+        for name in gone:
+            if name not in done:
+                self.say(found, "removed", f"curve '{name}' is missing", name)
+        for name in fresh:
+            if name not in done:
+                self.say(found, "new", f"curve '{name}' is new", name)
+        for name in differ:
+            if name not in done:
+                words, size = moved_words(pairs[name], self.view)
+                self.say(found, "curve", f"curve '{name}'{self.suffix} {words}", name, size=size, suffix="")
+
+    def say(
+        self,
+        found: CurveComparison,
+        kind: str,
+        text: str,
+        name: str,
+        before: str = "",
+        *,
+        size: float | None = None,
+        suffix: str | None = None,
+    ) -> None:
+        where = f"{self.old['panel']} / {name}"
+        text += self.suffix if suffix is None else suffix
+        after = name if before else ""
+        found.changes.append(Change(self.paper, self.exhibit, kind, text, where, before, after, size))  # type: ignore[arg-type]
+
+    def pair(self, old_name: str, new_name: str, one: Points, other: Points) -> Pair:
+        """Compare two curves, which need not have the same name."""
+        kinds = [
+            next((kind for kind in ("points", "areas") if name in axes.get(kind, ())), "line")
+            for name, axes in ((old_name, self.old), (new_name, self.new))
+        ]
+        coarse = sum(
+            max(0.0, axes.get("thinned", {}).get(name, 0.0) - THINNING)
+            for name, axes in ((old_name, self.old), (new_name, self.new))
+        )
+        tolerance = TOLERANCE + coarse + rounding(self.old, "y")
+        before, after = in_units(one, self.old), in_units(other, self.old)
+        same = before.shape == after.shape and bool(
+            np.allclose(before, after, rtol=0.0, atol=TOLERANCE / 100.0, equal_nan=True)
+        )
+        if same:
+            return Pair(self.old, new_name, one, other, moved=False, tolerance=tolerance)
+        if kinds == ["line", "line"] and is_function(before) and is_function(after):
+            window = WINDOW + coarse + rounding(self.old, "x")
+            values = compare_values(before, after, tolerance, window, self.view)
+            far = bool(values.alarm.any())
+            apart = self.apart(before, after, tolerance) if far else ()
+            return Pair(self.old, new_name, one, other, far, tolerance, values, apart)
+        if kinds == ["points", "points"]:
+            apart = (point_distances(after, before, self.view), point_distances(before, after, self.view))
+            far = len(after) != len(before) or max(part.largest for part in apart) > tolerance
+        else:
+            apart = self.apart(before, after, tolerance)
+            far = max(part.largest for part in apart) > tolerance
+        return Pair(self.old, new_name, one, other, far, tolerance, None, apart)
+
+    def apart(self, before: Points, after: Points, tolerance: float) -> tuple[Distances, Distances]:
+        return distances(after, before, tolerance, self.view), distances(before, after, tolerance, self.view)
+
+    def same_elsewhere(self, one: dict[str, Points], other: dict[str, Points]) -> dict[str, str]:
+        """Return, by new name, the accepted curve of another name that is the same, each at most once."""
+        was: dict[str, str] = {}
+        boxes = {name: _box(in_units(points, self.old)) for name, points in one.items()}
+        for name, points in other.items():
+            box = _box(in_units(points, self.old))
+            for origin, accepted in one.items():
+                near = bool(np.all(np.abs(boxes[origin] - box) <= 10.0 * TOLERANCE))
+                if (
+                    origin != name
+                    and origin not in was.values()
+                    and near
+                    and not self.pair(origin, name, accepted, points).moved
+                ):
+                    was[name] = origin
+                    break
+        return was
+
+
+def _box(points: Points) -> Points:
+    """Return the corners of the part of a curve that is in view; far away if it has none."""
+    there = points[finite(points)]
+    if not len(there):
+        return np.full((2, 2), 1e9)
+    return np.asarray(np.clip(np.vstack([there.min(axis=0), there.max(axis=0)]), 0.0, 1.0))
+
+
+def _view(old: Axes, new: Axes) -> Array:
+    """Return the part of the accepted axes that both states show, as ``[[left, right], [bottom, top]]``."""
+    limits = np.column_stack([np.asarray(new[f"{axis}lim"], dtype=float) for axis in "xy"])
+    low, high = np.sort(in_units(limits, old), axis=0)
+    view = np.column_stack([np.fmax(low, 0.0), np.fmin(high, 1.0)])
+    return view if np.all(view[:, 1] > view[:, 0]) else np.array([[0.0, 1.0], [0.0, 1.0]])

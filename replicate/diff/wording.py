@@ -1,0 +1,138 @@
+"""How a curve moved, in words: by how much, where, and whether it was a jump that moved."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from replicate.diff.axes import Axes, symbol
+from replicate.diff.scaling import finite, from_units, in_units
+from replicate.diff.values import Array, ValueDifference
+from replicate.simplify import Points
+
+if TYPE_CHECKING:
+    from replicate.diff.curves import Pair
+
+# Consecutive points no further apart along x than this, and further along y, are a jump.
+_JUMP_WIDTH, _JUMP_HEIGHT = 1e-6, 1e-3
+# A curve that moved sideways where it is steep: the change of value exaggerates by more than this factor.
+_STEEP = 5.0
+
+
+def moved_words(pair: Pair, view: Array) -> tuple[str, float]:
+    """Return what to say after the name of a curve that moved, and by which fraction of the axes it did.
+
+    Parameters
+    ----------
+    view
+        The part of the axes that was compared.
+    """
+    if pair.values is None:
+        return _distance_words(pair)
+    parts, sizes = [], []
+    for words, size in (*_ends(pair, pair.values, view), *_values(pair, pair.values)):
+        parts.append(words)
+        sizes.append(size)
+    if not parts:  # something smaller than all that has a name
+        return "changed", max(part.largest for part in pair.distance)
+    return "; ".join(parts), max(sizes)
+
+
+def _distance_words(pair: Pair) -> tuple[str, float]:
+    furthest = max(pair.distance, key=lambda part: part.largest)
+    counts = [int(finite(points).sum()) for points in (pair.before, pair.after)]
+    if pair.name in pair.axes.get("points", ()) and counts[0] != counts[1]:
+        return f"now has {counts[1]} points (was {counts[0]})", furthest.largest
+    if not np.isfinite(furthest.largest):
+        return "is now out of sight" if furthest is pair.distance[1] else "came into sight", furthest.largest
+    place = (from_units(float(value), pair.axes, axis) for value, axis in zip(furthest.place, "xy", strict=True))
+    names = (symbol(pair.axes, axis) for axis in "xy")
+    at = ", ".join(f"{name} = {_number(value)}" for name, value in zip(names, place, strict=True))
+    return f"moved: at most {percent(furthest.largest)} of the axes at {at}", furthest.largest
+
+
+def _ends(pair: Pair, found: ValueDifference, view: Array) -> list[tuple[str, float]]:
+    """Say where a curve now begins or ends, if that differs, and whether it has a new gap."""
+    if not (found.alarm & (np.isnan(found.before) != np.isnan(found.after))).any():
+        return []
+    x = symbol(pair.axes, "x")
+    parts = []
+    domains = []
+    for points in (pair.before, pair.after):
+        units = in_units(points, pair.axes)
+        along = np.clip(units[finite(units), 0], *view[0])
+        domains.append((along.min(), along.max()))
+    for verb, was, now in zip(("begins", "ends"), *domains, strict=True):
+        if abs(now - was) > pair.tolerance:
+            ends = [_number(from_units(float(value), pair.axes, "x")) for value in (now, was)]
+            parts.append((f"now {verb} at {x} = {ends[0]} (was {ends[1]})", abs(float(now - was))))
+    inside = (found.x > max(low for low, _ in domains)) & (found.x < min(high for _, high in domains))
+    for here, there, words in ((found.before, found.after, "has a gap"), (found.after, found.before, "goes on")):
+        gap = found.x[found.alarm & inside & ~np.isnan(here) & np.isnan(there)]
+        if len(gap):
+            ends = [_number(from_units(float(value), pair.axes, "x")) for value in (gap[0], gap[-1])]
+            parts.append((f"now {words} from {x} = {ends[0]} to {ends[1]}", float(gap[-1] - gap[0])))
+    return parts
+
+
+def _values(pair: Pair, found: ValueDifference) -> list[tuple[str, float]]:
+    """Say which jump moved, and by how much the value changed elsewhere."""
+    parts: list[tuple[str, float]] = []
+    alarm = found.alarm & ~np.isnan(found.before) & ~np.isnan(found.after)
+    x = symbol(pair.axes, "x")
+    old, new = (_jumps(in_units(points, pair.axes)) for points in (pair.before, pair.after))
+    if len(old) == len(new):
+        for was, now in zip(old, new, strict=True):
+            low, high = min(was, now), max(was, now)
+            between = (found.x >= low - pair.tolerance) & (found.x <= high + pair.tolerance)
+            if high - low > pair.tolerance and (alarm & between).any():
+                alarm &= ~between
+                ends = [_number(from_units(value, pair.axes, "x")) for value in (was, now)]
+                words = f"its jump at {x} = {ends[0]} is now at {ends[1]} ({percent(high - low)} of the axis)"
+                parts.append((f"{'moved: ' if not parts else ''}{words}", high - low))
+    size = np.where(alarm, np.abs(found.after - found.before), -1.0)
+    worst = int(np.argmax(size))
+    if size[worst] > 0.0:
+        parts.append((_at_most(pair, found, worst, first=not parts), float(size[worst])))
+    return parts
+
+
+def _at_most(pair: Pair, found: ValueDifference, worst: int, *, first: bool) -> str:
+    one, other = (from_units(float(values[worst]), pair.axes, "y") for values in (found.before, found.after))
+    size = float(abs(found.after[worst] - found.before[worst]))
+    how = f"a factor of {max(one, other) / min(one, other):.4g}" if _is_log(pair.axes) else f"{abs(other - one):.2g}"
+    at = _number(from_units(float(found.x[worst]), pair.axes, "x"))
+    words = f"{'moved: ' if first else 'elsewhere '}at most {how} ({percent(size)} of the axis)"
+    words += f" at {symbol(pair.axes, 'x')} = {at}"
+    apart = max(part.largest for part in pair.distance)
+    if first and size > _STEEP * apart:
+        words += f", where it is steep; the curves are {percent(apart)} of the axes apart"
+    return words
+
+
+def _is_log(axes: Axes) -> bool:
+    return bool(axes.get("yscale") == "log")
+
+
+def _jumps(points: Points) -> list[float]:
+    """Return where a curve jumps; in fractions of the axes."""
+    step = np.diff(points, axis=0)
+    with np.errstate(invalid="ignore"):
+        jump = (np.abs(step[:, 0]) <= _JUMP_WIDTH) & (np.abs(step[:, 1]) > _JUMP_HEIGHT)
+    return [float(x) for x in points[:-1][jump, 0]]
+
+
+def percent(size: float) -> str:
+    """Return a fraction in per cent, to two digits.
+
+    Examples
+    --------
+    >>> percent(0.0012), percent(0.5), percent(3.21)
+    ('0.12 %', '50 %', '321 %')
+    """
+    return f"{100.0 * size:.0f} %" if size >= 1.0 else f"{100.0 * size:.2g} %"
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"
