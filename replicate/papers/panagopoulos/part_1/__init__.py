@@ -9,6 +9,14 @@ MODULES: tuple[str, ...] = (
     "table_4",
     "table_5",
     "settling_evidence",
+    "example_1",
+    "example_2",
+    "example_3",
+    "example_4",
+    "example_5",
+    "example_6",
+    "example_7",
+    "example_8",
 )
 NUMBERED: tuple[str, ...] = (
     *(f"I-fig-{number}" for number in range(1, 10)),

@@ -1,7 +1,7 @@
 """The designs of paper I: one call of `design_pi` for each plant and Ms, and the set-point weight by two rules.
 
-The text evaluates the set-point weight (25) at the peak of the complementary sensitivity (24). The numbers it prints were
-evaluated at w0, the peak of the sensitivity, with the true Mp. Both rules are here, as ``w_mp`` and ``w_0``.
+The text evaluates the set-point weight (25) at the peak of the complementary sensitivity (24). The numbers it prints
+were evaluated at w0, the peak of the sensitivity, with the true Mp. Both rules are here, as ``w_mp`` and ``w_0``.
 """
 
 from __future__ import annotations

@@ -25,10 +25,10 @@ errata = paper.table(
     printed=False,
     rows=tuple(PAIRS),
     columns=("C", "R", "left", "right", "spare_Ms", "spare_Mp"),
-    caption="Center $-C$ and radius $R$ of the circle for both bounds, its two points on the real axis, and how much of it is "
-    "left around the $M_s$ and the $M_p$ circle, which must not be negative. The smallest circle on the real axis that "
-    "contains both runs from $-M_p/(M_p-1)$, the far end of the $M_p$ circle, to $-(M_s-1)/M_s$, the near end of the $M_s$ "
-    "circle. The last pair violates $M_s - 1 < M_p < M_s + 1$.",
+    caption="Center $-C$ and radius $R$ of the circle for both bounds, its two points on the real axis, and "
+    "how much of it is left around the $M_s$ and the $M_p$ circle, which must not be negative. The smallest "
+    "circle on the real axis that contains both runs from $-M_p/(M_p-1)$, the far end of the $M_p$ circle, to "
+    "$-(M_s-1)/M_s$, the near end of the $M_s$ circle. The last pair violates $M_s - 1 < M_p < M_s + 1$.",
     labels={
         **{row: f"${row.replace('Ms=', 'M_s = ').replace(' Mp=', '$, $M_p = ')}$" for row in PAIRS},
         "C": "$C$",
@@ -97,8 +97,8 @@ def _table(circle: Callable[[Fraction, Fraction], Circle]) -> pd.DataFrame:
 @errata.reading(
     "as-written",
     "Equation (7) of the article",
-    note="The article's $C$ is the coordinate of the center, where the text wants its distance: with the center at $-C$ the "
-    "circle lies on the wrong side of the origin.",
+    note="The article's $C$ is the coordinate of the center, where the text wants its distance: with the "
+    "center at $-C$ the circle lies on the wrong side of the origin.",
 )
 def as_printed() -> pd.DataFrame:
     """Evaluate the article's formula."""
@@ -111,7 +111,7 @@ def corrected() -> pd.DataFrame:
     return _table(corrected_circle)
 
 
-@errata.reading("geometry", "The smallest circle around both", note="From the end points of the two circles, no formula.")
+@errata.reading("geometry", "The smallest circle around both", note="From the end points of the circles, no formula.")
 def geometry() -> pd.DataFrame:
     """Enclose the two circles."""
     return _table(geometric_circle)

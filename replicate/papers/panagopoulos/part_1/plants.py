@@ -36,7 +36,9 @@ def filtered_dead_time(time_constant: float) -> Plant:
 
 
 _LAGS = _product([1.0, 1.0], [1.0, 1.0], [1.0, 1.0])
-_SLOW_MODE = 0.05
+FAST, MIDDLE, SLOW = 10.0, 1.0, 0.05  # the corner frequencies of G10
+_FILTERED_LAG = _product([1.0, FAST], [1.0, FAST], [1.0, MIDDLE])
+SLOW_TERM = Plant([0.5 * FAST**2], _product([1.0, FAST], [1.0, FAST], [1.0, SLOW]))  # the second term of (27)
 
 PLANTS = MappingProxyType(
     {
@@ -50,10 +52,10 @@ PLANTS = MappingProxyType(
         "G8": Plant([1.0], [1.0, 0.0], dead_time=1.0),
         "G9": Plant.from_function(lambda s: np.exp(-np.sqrt(s))),
         "G10": Plant(  # (27), over one denominator
-            100.0 * np.polyadd([1.0, _SLOW_MODE], [0.5, 0.5]),
-            _product([1.0, 10.0], [1.0, 10.0], [1.0, 1.0], [1.0, _SLOW_MODE]),
+            FAST**2 * np.polyadd([1.0, SLOW], np.multiply(0.5, [1.0, MIDDLE])),
+            np.polymul(_FILTERED_LAG, [1.0, SLOW]),
         ),
-        "G11": Plant([150.0], _product([1.0, 10.0], [1.0, 10.0], [1.0, 1.0])),  # (28)
+        "G11": Plant([150.0], _FILTERED_LAG),  # (28)
         **{f"G12 a={a}": resonant(a) for a in (0.0, 0.1, 0.2, 0.5, 1.0, 2.0)},
         "G13": Plant(_product([1.0, 6.0], [1.0, 6.0]), _product([1.0, 0.0], [1.0, 1.0], [1.0, 1.0], [1.0, 36.0])),
         **{f"G14 a={a:g}": unstable(a) for a in (4.0, 8.0)},

@@ -1,8 +1,8 @@
 """The settling time of a load response, in the two ways that matter here.
 
-The text speaks of "the settling time at load disturbances" and defines neither a band nor its sides. The printed numbers
-come closest to the last time at which the response to a unit load is *above* +5 %: what happens below zero does not count,
-and the time counts from the moment at which the load is felt, not from the load itself.
+The text speaks of "the settling time at load disturbances" and defines neither a band nor its sides. The printed
+numbers come closest to the last time at which the response to a unit load is *above* +5 %: what happens below zero does
+not count, and the time counts from the moment at which the load is felt, not from the load itself.
 """
 
 from __future__ import annotations
@@ -18,6 +18,6 @@ def two_sided(response: Signal, band: float = BAND) -> float:
 
 
 def one_sided(response: Signal, dead_time: float = 0.0, level: float = BAND) -> float:
-    """Return the last time at which a response that ends at zero is above a level, counted from the end of the dead time."""
+    """Return the last time at which a response that ends at zero is above a level, from the end of the dead time."""
     crossings = response.crossings(level)
     return float(crossings[-1]) - dead_time if crossings.size else 0.0

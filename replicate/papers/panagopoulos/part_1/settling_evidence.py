@@ -23,10 +23,11 @@ evidence = paper.table(
     printed=False,
     rows=(*table_1.ROWS, *TABLE_5),
     columns=("printed", "level", "above_5", "late", "above_3", "within_5", "within_2"),
-    caption="The printed $t_s$; the height of the response to a unit load at that time; the last time above $+5$ % and how "
-    "much later the print is, in percent; the last time above $+3$ %; the settling times to $\\pm 5$ % and $\\pm 2$ %. Times "
-    "count from the end of the dead time. In Table 1 the print is late throughout, as if read off a coarse time grid; "
-    "$G_4$ must have had a smaller load than 1, since its response is still far above 5 % then.",
+    caption="The printed $t_s$; the height of the response to a unit load at that time; the last time above "
+    "$+5$ % and how much later the print is, in percent; the last time above $+3$ %; the settling times to "
+    "$\\pm 5$ % and $\\pm 2$ %. Times count from the end of the dead time. In Table 1 the print is late "
+    "throughout, as if read off a coarse time grid; $G_4$ must have had a smaller load than 1, since its "
+    "response is still far above 5 % then.",
     labels={
         **{row: text for row, text in table_1.table_1.labels.items() if row in table_1.ROWS},
         **{row: f"Table 5, {table_5.table_5.labels[key]}" for row, key in TABLE_5.items()},

@@ -28,9 +28,10 @@ table_1 = paper.table(
     "Controllers for $G_1$ to $G_6$",
     rows=tuple(ROWS),
     columns=("k", "Ti", "b", "IE", "IE/IAE", "w0", "ts", "Mp"),
-    caption="Largest $k_i$ for a given $M_s$: gain, integral time, set-point weight, integrated error of a unit load step "
-    "and its ratio to the integrated absolute error, frequency at which the Nyquist curve touches the circle, settling "
-    "time of the load response, and resonance peak. The paper's caption says $G_1$ to $G_7$.",
+    caption="Largest $k_i$ for a given $M_s$: gain, integral time, set-point weight, integrated error of a "
+    "unit load step and its ratio to the integrated absolute error, frequency at which the Nyquist curve "
+    "touches the circle, settling time of the load response, and resonance peak. The paper's caption says "
+    "$G_1$ to $G_7$.",
     labels={**COLUMNS, **design_rows(ROWS)},
 )
 
@@ -59,9 +60,9 @@ def _rows(w0: dict[str, float], b: dict[str, float], ts: dict[str, float]) -> pd
 @table_1.reading(
     "as-written",
     "As the text says",
-    note="$\\omega_0$ is the root of (18); $b$ follows (25) at $\\omega_{mp}$, the peak of $|L/(1+L)|$, as (24) says; IE is "
-    "$1/k_i$. The text does not define $t_s$: here it is the last time at which the response to a unit load is outside "
-    "$\\pm 5$ %, dead time included.",
+    note="$\\omega_0$ is the root of (18); $b$ follows (25) at $\\omega_{mp}$, the peak of $|L/(1+L)|$, as "
+    "(24) says; IE is $1/k_i$. The text does not define $t_s$: here it is the last time at which the response "
+    "to a unit load is outside $\\pm 5$ %, dead time included.",
 )
 def as_written() -> pd.DataFrame:
     """Compute the table by the definitions of the text."""
@@ -75,10 +76,11 @@ def as_written() -> pd.DataFrame:
 @table_1.reading(
     "authors",
     "As the numbers were made: $b$ at $\\omega_0$, $\\omega_0$ on a grid, one-sided $t_s$",
-    note="The printed $\\omega_0$ is the point of a grid at which $|S|$ is largest: 200 logarithmic points over three decades, "
-    "0.01 to 10 for $G_1$ and $G_5$, 0.1 to 100 for $G_2$ and $G_6$, 0.001 to 1 for $G_4$ (for $G_3$ no such grid was found, "
-    "and the exact $\\omega_0$ fits). Equation (25) is evaluated there, not at $\\omega_{mp}$. $t_s$ is the last time at which "
-    "the response is above $+5$ %, whatever it does below zero, and for $G_3$ counts from the end of the dead time.",
+    note="The printed $\\omega_0$ is the point of a grid at which $|S|$ is largest: 200 logarithmic points "
+    "over three decades, 0.01 to 10 for $G_1$ and $G_5$, 0.1 to 100 for $G_2$ and $G_6$, 0.001 to 1 for $G_4$ "
+    "(for $G_3$ no such grid was found, and the exact $\\omega_0$ fits). Equation (25) is evaluated there, "
+    "not at $\\omega_{mp}$. $t_s$ is the last time at which the response is above $+5$ %, whatever it does "
+    "below zero, and for $G_3$ counts from the end of the dead time.",
 )
 def authors() -> pd.DataFrame:
     """Compute the table by the rules that its numbers follow."""

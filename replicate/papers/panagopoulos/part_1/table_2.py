@@ -18,8 +18,8 @@ table_2 = paper.table(
     "Controllers for $G_7$ to $G_{11}$",
     rows=tuple(ROWS),
     columns=("k", "ki", "b", "w0", "Mp"),
-    caption="A pure dead time, an integrator with dead time, the heat equation, and a plant with and without a slow mode "
-    "(examples 1 to 4).",
+    caption="A pure dead time, an integrator with dead time, the heat equation, and a plant with and without "
+    "a slow mode (examples 1 to 4).",
     labels={**COLUMNS, **design_rows(ROWS)},
 )
 
@@ -41,7 +41,9 @@ def as_written() -> pd.DataFrame:
 
 
 @table_2.reading(
-    "authors", "$b$ at $\\omega_0$", note="As written, but with (25) evaluated at $\\omega_0$, the peak of the sensitivity."
+    "authors",
+    "$b$ at $\\omega_0$",
+    note="As written, but with (25) evaluated at $\\omega_0$, the peak of the sensitivity.",
 )
 def authors() -> pd.DataFrame:
     """Compute the table with the set-point weight's other frequency."""

@@ -38,7 +38,7 @@ class Filtered:
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the control signal by the paper's formula, which replaces |S| by Ms; inf without filter."""
+        """Standard deviation of the control signal by the paper's formula, |S| replaced by Ms; inf without filter."""
         a, tf, k, ki = NOISE_CORNER, self.filter_time, self.found.k, self.found.ki
         if tf == 0.0:
             return math.inf
@@ -61,8 +61,9 @@ table_4 = paper.table(
     "Noise filtering for the pure dead time $G_7$, $M_s = 2$",
     rows=tuple(FACTORS),
     columns=("k", "ki", "w0", "IE", "sigma", "Ti/Tf"),
-    caption="The filter $1/(1+sT_f)$ has $T_f = 1/(m\\omega_0)$, and the design is repeated with it; $\\sigma$ is the standard "
-    "deviation of the control signal for white noise through $s/(s+2)$. Without filter ($m = \\infty$) $\\sigma$ is infinite.",
+    caption="The filter $1/(1+sT_f)$ has $T_f = 1/(m\\omega_0)$, and the design is repeated with it; "
+    "$\\sigma$ is the standard deviation of the control signal for white noise through $s/(s+2)$. Without "
+    "filter ($m = \\infty$) $\\sigma$ is infinite.",
     labels={**COLUMNS, **{key: f"${key.replace('=', ' = ').replace('inf', INFINITY)}$" for key in FACTORS}},
 )
 
@@ -94,8 +95,8 @@ def as_written() -> pd.DataFrame:
 @table_4.reading(
     "authors",
     "$T_i/T_f$ with $T_f$ from the new $\\omega_0$",
-    note="The last column divides by $1/(m\\omega_0)$ with the $\\omega_0$ of its own row; design and $\\sigma$ use the first "
-    "filter.",
+    note="The last column divides by $1/(m\\omega_0)$ with the $\\omega_0$ of its own row; design and "
+    "$\\sigma$ use the first filter.",
 )
 def authors() -> pd.DataFrame:
     """Compute the table with the last column's other filter."""

@@ -29,9 +29,9 @@ table_5 = paper.table(
     "Comparison with Ziegler–Nichols and lambda tuning",
     rows=tuple(ROWS),
     columns=("k", "Ti", "ki", "Ms", "IAE", "o", "ts", "Mp"),
-    caption="Gains, maximum sensitivity, IAE and settling time of a unit load step, overshoot of a set-point step, resonance "
-    "peak. Ziegler–Nichols is the frequency-response method, lambda tuning asks for three times the time constant, the new "
-    "design for $M_s = 1.6$.",
+    caption="Gains, maximum sensitivity, IAE and settling time of a unit load step, overshoot of a set-point "
+    "step, resonance peak. Ziegler–Nichols is the frequency-response method, lambda tuning asks for three "
+    "times the time constant, the new design for $M_s = 1.6$.",
     labels={**COLUMNS, **{row: f"{label(plant)}, {METHOD_NAMES[method]}" for row, (plant, method) in ROWS.items()}},
     units={"o": "%"},
 )
@@ -93,10 +93,10 @@ def _table(
 @table_5.reading(
     "as-written",
     "As the text says",
-    note="Ziegler–Nichols: $k = 0.45K_u$, $T_i = T_u/1.2$, the only one of the usual factors that gives the printed gains. "
-    "Lambda tuning: $k = T/(L+3T)$, $T_i = T$ with $T$ and $L$ from the area method (the text does not say how it finds "
-    "them). Both have $b = 1$, the new design $b$ by (24) and (25). Overshoot relative to the final value; $t_s$ outside "
-    "$\\pm 5$ %, dead time included.",
+    note="Ziegler–Nichols: $k = 0.45K_u$, $T_i = T_u/1.2$, the only one of the usual factors that gives the "
+    "printed gains. Lambda tuning: $k = T/(L+3T)$, $T_i = T$ with $T$ and $L$ from the area method (the text "
+    "does not say how it finds them). Both have $b = 1$, the new design $b$ by (24) and (25). Overshoot "
+    "relative to the final value; $t_s$ outside $\\pm 5$ %, dead time included.",
 )
 def as_written() -> pd.DataFrame:
     """Compute the table by the definitions of the text."""
@@ -112,9 +112,9 @@ def overshoot_of_peak(step: Signal) -> float:
 @table_5.reading(
     "authors",
     "As the numbers were made: overshoot relative to the peak, one-sided $t_s$, printed lambda gains",
-    note="The overshoot is divided by the peak instead of the final value; $b$ of the new design is that of Table 1; $t_s$ is "
-    "the last time above $+5$ %, from the end of the dead time. Lambda tuning is run with the printed $k$ and $k_i$, which "
-    "are inputs here and so are not compared.",
+    note="The overshoot is divided by the peak instead of the final value; $b$ of the new design is that of "
+    "Table 1; $t_s$ is the last time above $+5$ %, from the end of the dead time. Lambda tuning is run with "
+    "the printed $k$ and $k_i$, which are inputs here and so are not compared.",
 )
 def authors() -> pd.DataFrame:
     """Compute the table by the rules that its numbers follow."""
@@ -131,13 +131,13 @@ identification = paper.table(
     "I-lambda-models",
     "Models for lambda tuning",
     printed=False,
-    rows=tuple(f"{plant} {quantity}" for plant in ("G1", "G2", "G3") for quantity in ("T", "L")),
+    rows=tuple(f"{plant} {symbol}" for plant in ("G1", "G2", "G3") for symbol in ("T", "L")),
     columns=(*METHODS, "implied"),
-    caption="Time constant $T$ and dead time $L$ by four usual methods, and the values that the printed gains imply "
-    "($T = T_i$, $L = 1/k_i - 3T$). No method gives them; the area method is closest. $G_1$ and $G_3$ differ by a dead time "
-    "only, so any method would give both the same $T$; the print does not.",
+    caption="Time constant $T$ and dead time $L$ by four usual methods, and the values that the printed gains "
+    "imply ($T = T_i$, $L = 1/k_i - 3T$). No method gives them; the area method is closest. $G_1$ and $G_3$ "
+    "differ by a dead time only, so any method would give both the same $T$; the print does not.",
     labels={
-        **{f"{plant} {quantity}": f"{label(plant)}, ${quantity}$" for plant in ("G1", "G2", "G3") for quantity in ("T", "L")},
+        **{f"{plant} {symbol}": f"{label(plant)}, ${symbol}$" for plant in ("G1", "G2", "G3") for symbol in ("T", "L")},
         "area": "Area method",
         "two-points": "28 % and 63 %",
         "tangent": "Tangent",

@@ -27,9 +27,10 @@ theorem_1 = paper.table(
     printed=False,
     rows=tuple(ROWS),
     columns=("w90", "w0", "w_dagger", "slope", "h_low", "h_high", "inside", "roots", "positive", "stable"),
-    caption="The interval (21) and the design's $\\omega_0$ in it; the largest slope $d\\log|G|/d\\log\\omega$ in it, which (20) "
-    "wants below 1; the sign of $h$ at its ends; how many roots $h$ has in it; how many it has at all, up to a lag of two "
-    "turns; how many of these give $k_i > 0$; and how many of those a stable loop.",
+    caption="The interval (21) and the design's $\\omega_0$ in it; the largest slope "
+    "$d\\log|G|/d\\log\\omega$ in it, which (20) wants below 1; the sign of $h$ at its ends; how many roots "
+    "$h$ has in it; how many it has at all, up to a lag of two turns; how many of these give $k_i > 0$; and "
+    "how many of those a stable loop.",
     labels={
         **design_rows(ROWS),
         "w90": "$\\omega_{90}$",
@@ -78,7 +79,7 @@ def roots() -> pd.DataFrame:
     rows = {}
     for row, (plant, ms) in ROWS.items():
         low, high = interval(plant, ms)
-        ends = np.array([low if low else 1e-6 * high, high])  # for an integrator the interval begins at w = 0
+        ends = np.array([low or 1e-6 * high, high])  # for an integrator the interval begins at w = 0
         h = smooth_condition(PLANTS[plant], Circle.of(ms), ends)
         found = gains_at_roots(plant, ms)
         rows[row] = [
