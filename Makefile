@@ -43,8 +43,9 @@ accept: $(VENV)/.ready ## make the present state the accepted one: make accept R
 	$(BIN)/replicate accept $(ONLY) --reason "$$REASON"
 
 .PHONY: drift
-drift: build/drift/.ready ## the same comparison under an older matplotlib and other BLAS kernels
-	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/replicate diff $(ONLY)
+drift: build/drift/.ready ## the same comparison under an older matplotlib and other BLAS kernels: no alarm
+	@build/drift/bin/python -c 'import matplotlib; print("matplotlib", matplotlib.__version__, "and kernels for", "$(DRIFT_CORE)")'
+	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/replicate diff $(ONLY) --out build/drift/run
 
 .PHONY: bench
 bench: $(VENV)/.ready ## measure speed and accuracy against python-control
