@@ -2,9 +2,14 @@
 
 MODULES: tuple[str, ...] = (
     "errata",
+    "fig_1",
+    "fig_2",
     "theorem_1",
+    "fig_3",
+    "fig_4",
     "table_1",
     "table_2",
+    "fig_5",
     "table_3",
     "table_4",
     "table_5",
@@ -14,8 +19,12 @@ MODULES: tuple[str, ...] = (
     "example_3",
     "example_4",
     "example_5",
+    "fig_6",
+    "fig_7",
     "example_6",
+    "fig_8",
     "example_7",
+    "fig_9",
     "example_8",
 )
 NUMBERED: tuple[str, ...] = (
