@@ -22,7 +22,7 @@ def build_handouts(
     folder: Path,
     *,
     solutions: Sequence[bool] = (False, True),
-    format: Format = "pdf",
+    file_format: Format = "pdf",
 ) -> list[Path]:
     """Write handouts.
 
@@ -50,15 +50,15 @@ def build_handouts(
     ReplicateError
         If the format is unknown.
     """
-    if format not in get_args(Format):
-        msg = f"the format is '{format}', allowed: {', '.join(get_args(Format))}"
+    if file_format not in get_args(Format):
+        msg = f"the format is '{file_format}', allowed: {', '.join(get_args(Format))}"
         raise ReplicateError(msg)
     made: dict[str, bytes] = {}
     for paper in papers:
         for with_solutions in solutions:
             document = edition(paper, results, verdicts, solutions=with_solutions)
-            name = f"{paper.id}{'-solutions' if with_solutions else ''}.{format}"
-            if format == "pdf":
+            name = f"{paper.id}{'-solutions' if with_solutions else ''}.{file_format}"
+            if file_format == "pdf":
                 from replicate.handout.printout import pdf
 
                 made[name] = pdf(document)

@@ -127,7 +127,7 @@ def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:
 
 
 def _numbered(blocks: Blocks, source: str) -> Blocks:
-    """Number the exercises in their headings, and say with what each is to be solved."""
+    """Write into the heading of each exercise its number, and with what it is to be solved."""
     number = 0
     for element in elements(blocks):
         if "exercise" not in classes(element):

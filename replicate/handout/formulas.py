@@ -49,7 +49,7 @@ def convert(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
     if not formulas:
         return {}
     try:
-        typst, mathml = (_written(formulas, format) for format in ("typst", "html"))
+        typst, mathml = _written(formulas, "typst"), _written(formulas, "html")
     except RuntimeError:
         for formula in formulas:  # which one is it?
             try:
@@ -63,15 +63,15 @@ def convert(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
     }
 
 
-def _written(formulas: Sequence[Formula], format: str) -> list[str]:
+def _written(formulas: Sequence[Formula], target: str) -> list[str]:
     """Write each formula in a paragraph of its own, and cut the result at the marks between them."""
     document = "\n\n".join(
         f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas
     )
-    options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if format == "html" else [])]
-    text = pypandoc.convert_text(document, format, format="markdown", extra_args=options)
+    options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
+    text = str(pypandoc.convert_text(document, target, format="markdown", extra_args=options))
     parts = [part.strip() for part in text.replace("\r\n", "\n").split("\ue004")[1:]]
-    if format == "typst":
+    if target == "typst":
         return parts
     found = [re.search(r"<math\b.*</math>", part, re.DOTALL) for part in parts]
     for formula, match in zip(formulas, found, strict=True):
@@ -95,7 +95,9 @@ def located(error: FormulaError, lines: Sequence[tuple[str, int]], source: str) 
     lines
         The text that was converted, with the line of the source that each line stems from.
     """
-    return TemplateError(f"{source}:{line_of(error.tex, lines)}: pandoc cannot convert ${error.tex}$: {error}")
+    return TemplateError(
+        f"{source}:{line_of(error.tex, lines)}: pandoc cannot convert ${error.tex}$: {error}"
+    )
 
 
 def line_of(text: str, lines: Sequence[tuple[str, int]]) -> int:

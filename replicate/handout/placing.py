@@ -1,4 +1,4 @@
-"""The functions that only a handout's text can call: they place tables and figures and ask for answers.
+r"""The functions that only a handout's text can call: they place tables and figures and ask for answers.
 
 ``table(exhibit, columns=[...], rows=[...], readings={id: heading}, labels={key: text}, printed=True)``
     a table of the paper, each printed value beside what the readings compute;
@@ -7,7 +7,7 @@
 ``answer(name)``
     what a function in the paper's ``handout.py`` computes for an exercise, by the names of its values;
 ``tex(number, digits=3)``, ``fixed(number, decimals)``, ``percent(number, digits=2)``
-    a number for use in a formula, say ``4.2 \\cdot 10^{-5}``; with fixed decimals; times 100.
+    a number for use in a formula, say ``4.2 \cdot 10^{-5}``; with fixed decimals; times 100.
 
 A table or figure leaves a mark in the text, a paragraph of its own; what follows the call in the same
 paragraph is the caption.
@@ -16,7 +16,8 @@ paragraph is the caption.
 from __future__ import annotations
 
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -87,7 +88,9 @@ class Placing:
             return Exercises()
         found = getattr(importlib.import_module(f"{self.paper.package}.handout"), "exercises", None)
         if not isinstance(found, Exercises):
-            msg = f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exercises.Exercises"
+            msg = (
+                f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exercises.Exercises"
+            )
             raise PaperDefinitionError(msg)
         return found
 
@@ -97,7 +100,8 @@ class Placing:
             msg = f"answer('{name}'): no such answer; allowed: {_listed(self.exercises.answers)}"
             raise TemplateError(msg)
         if name not in self._answers:
-            self._answers[name] = self.exercises.answers[name]()
+            with _said_by(f"answer('{name}')"):
+                self._answers[name] = self.exercises.answers[name]()
         return self._answers[name]
 
     def table(
@@ -133,7 +137,8 @@ class Placing:
         """Place a figure of the handout's own, or else one of the paper."""
         own = self.exercises.figures.get(name)
         if own is not None:
-            result = capture.capture(f"{self.paper.id}-handout", own)
+            with _said_by(f"figure('{name}')"):
+                result = capture.capture(f"{self.paper.id}-handout", own)
             return self._mark(Drawing(name, result.svg, own.alt, width))
         found, known = self.paper.exhibits.get(name), self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
@@ -148,6 +153,16 @@ class Placing:
     def _mark(self, thing: Drawing | Placed) -> str:
         self.things.append(thing)
         return f"{OPEN}{len(self.things) - 1}{CLOSE}"
+
+
+@contextmanager
+def _said_by(call: str) -> Iterator[None]:
+    """Turn whatever a paper's own function raises into a message that the text's line is added to."""
+    try:
+        yield
+    except Exception as error:
+        msg = f"{call} failed: {type(error).__name__}: {error}"
+        raise TemplateError(msg) from error
 
 
 def tex(number: float, digits: int = 3) -> str:

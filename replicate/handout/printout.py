@@ -24,7 +24,7 @@ from replicate.resources import templates_dir
 TEMPLATE = "handout.typ"
 
 # Functions of the template, by the class of a Div or Span.
-_BLOCKS = {"lead", "key", "exercise", "solution", "output"}
+_BLOCKS = {"lead", "key", "exercise", "solution"}
 _SPANS = {"number", "tool", "printed", "computed"}
 _SIGNS = {"mark", "sign"}  # these also say which verdict or match they stand for
 
@@ -64,8 +64,10 @@ def markup(document: Document) -> str:
     paper = document.paper
     blocks = transform(document.blocks, lambda element: _for_typst(element, document))
     tree = {"pandoc-api-version": _api_version(), "meta": {}, "blocks": blocks}
-    body = pypandoc.convert_text(
-        json.dumps(tree), "typst", format="json", extra_args=["--wrap=none", "--fail-if-warnings"]
+    body = str(
+        pypandoc.convert_text(
+            json.dumps(tree), "typst", format="json", extra_args=["--wrap=none", "--fail-if-warnings"]
+        )
     )
     settings = {
         "title": document.title,
@@ -98,7 +100,9 @@ def _for_typst(element: Element, document: Document) -> list[Element] | None:
             kind, tex = element["c"]
             displayed = kind["t"] == "DisplayMath"
             formula = document.formulas[displayed, tex]
-            call = f"#formula({quoted(formula.words)}, {formula.typst}{', block: true' if displayed else ''});"
+            call = (
+                f"#formula({quoted(formula.words)}, {formula.typst}{', block: true' if displayed else ''});"
+            )
             return [raw_inline("typst", call)]
         case "Span":
             found = classes(element)
@@ -122,12 +126,20 @@ def _block(element: Element, document: Document) -> Blocks | None:
         return [raw_block("typst", call), *content, raw_block("typst", "]")]
     if "exhibit" in found:
         table, *caption = content
-        return [raw_block("typst", "#exhibit["), table, raw_block("typst", "]["), *caption, raw_block("typst", "]")]
+        return [
+            raw_block("typst", "#exhibit["),
+            table,
+            raw_block("typst", "]["),
+            *caption,
+            raw_block("typst", "]"),
+        ]
     if "caption" in found:
         return list(content)
     known = [name for name in found if name in _BLOCKS]
     if not known:
-        msg = f"{document.paper.id}/{FILE}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
+        msg = (
+            f"{document.paper.id}/{FILE}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
+        )
         raise TemplateError(msg)
     return [raw_block("typst", f"#{known[0]}["), *content, raw_block("typst", "]")]
 

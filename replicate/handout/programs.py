@@ -14,7 +14,7 @@ from typing import Any
 
 from replicate.errors import TemplateError
 from replicate.handout.formulas import line_of
-from replicate.handout.tree import Blocks, Element, classes, div, transform
+from replicate.handout.tree import Blocks, Element, classes, transform
 
 LONGEST_LINE = 88  # characters; what fits between the margins
 
@@ -40,15 +40,17 @@ def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str
             return None
         code = element["c"][1]
         first = line_of(code, lines)
-        _check_width(code, f"{source}:{first}")
+        for number, line in enumerate(code.splitlines(), start=first):
+            _check_width(line, f"{source}:{number}")
         if "run" not in classes(element):
             return None
         written = _run(code, names, source, first)
-        _check_width(written, f"{source}:{first}: the output")
+        for line in written.splitlines():
+            _check_width(line, f"{source}:{first}: the output")
         program = {"t": "CodeBlock", "c": [["", ["python"], []], code]}
         if not written.strip():
             return [program]
-        return [program, div([{"t": "CodeBlock", "c": [["", ["output"], []], written.rstrip()]}], "output")]
+        return [program, {"t": "CodeBlock", "c": [["", ["output"], []], written.rstrip()]}]
 
     result: Blocks = transform(document, changed)
     return result
@@ -67,8 +69,7 @@ def _run(code: str, names: dict[str, Any], source: str, first: int) -> str:
     return written.getvalue()
 
 
-def _check_width(text: str, place: str) -> None:
-    longest = max(text.splitlines(), key=len, default="")
-    if len(longest) > LONGEST_LINE:
-        msg = f"{place}: a line has {len(longest)} characters, allowed: {LONGEST_LINE}: '{longest[:40]}...'"
+def _check_width(line: str, place: str) -> None:
+    if len(line) > LONGEST_LINE:
+        msg = f"{place}: a line has {len(line)} characters, allowed: {LONGEST_LINE}: '{line.strip()[:40]}...'"
         raise TemplateError(msg)

@@ -6,6 +6,7 @@ Fractions and roots longer than one symbol are said with their end, so that noth
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from xml.etree import ElementTree as ET
 
 _WORDS = {
@@ -25,7 +26,16 @@ _WORDS = {
     "⟨": "(", "⟩": ")", "⇒": "implies", "⇔": "if and only if", "↦": "maps to", "⌊": "floor", "⌋": "",
     "∀": "for all", "Ⅎ": "", "\u2061": "of", "\u2062": "", "\u2063": "", "\u200b": "", "&": "",
 }  # fmt: skip
-_ACCENTS = {"^": "hat", "ˆ": "hat", "¯": "bar", "‾": "bar", "―": "bar", "~": "tilde", "˜": "tilde", "˙": "dot"}
+_ACCENTS = {
+    "^": "hat",
+    "ˆ": "hat",
+    "¯": "bar",
+    "‾": "bar",
+    "―": "bar",
+    "~": "tilde",
+    "˜": "tilde",
+    "˙": "dot",
+}
 _ACCENTS |= {"\u0307": "dot", "\u0308": "double dot", "\u0302": "hat", "\u0304": "bar", "\u0305": "bar"}
 _ACCENTS |= {"\u0303": "tilde", "\u203e": "bar"}
 _NAMES = {
@@ -54,40 +64,61 @@ def spoken(mathml: str) -> str:
 
 
 def _say(node: ET.Element) -> str:
-    tag = node.tag.rpartition("}")[2]
-    children = [child for child in node if child.tag.rpartition("}")[2] != "annotation"]
+    children = [child for child in node if _tag(child) != "annotation"]
     if not children:
-        return "" if tag == "mspace" else _token(node.text or "")
+        return "" if _tag(node) == "mspace" else _token(node.text or "")
     parts = [_say(child) for child in children]
-    match tag:
-        case "mfrac":
-            if all(_is_token(child) for child in children):
-                return f"{parts[0]} over {parts[1]}"
-            return f"the fraction {parts[0]} over {parts[1]}, end of fraction"
-        case "msup":
-            return _power(parts[0], parts[1])
-        case "msub" | "munder":
-            if parts[0].endswith(" of") or tag == "munder":  # the maximum over all frequencies
-                return f"{parts[0].removesuffix(' of')} over {parts[1]} of"
-            return f"{parts[0]} sub {parts[1]}"
-        case "msubsup" | "munderover":
-            if parts[0].startswith("the "):
-                return f"{parts[0]} from {parts[1]} to {parts[2]} of"
-            return _power(f"{parts[0]} sub {parts[1]}", parts[2])
-        case "mover":
-            accent = (children[1].text or "").strip()
-            return f"{parts[0]} {_ACCENTS.get(accent, parts[1])}"
-        case "msqrt":
-            inner = " ".join(parts)
-            return f"the square root of {inner}{'' if _is_token(children[0]) else ', end of root'}"
-        case "mroot":
-            return f"the root of order {parts[1]} of {parts[0]}, end of root"
-        case "mtr":
-            return ", ".join(part for part in parts if part.strip())
-        case "mtable":
-            return "; ".join(parts)
-        case _:
-            return " ".join(parts)
+    say = _STRUCTURES.get(_tag(node))
+    return say(parts, children) if say else " ".join(parts)
+
+
+def _tag(node: ET.Element) -> str:
+    return node.tag.rpartition("}")[2]
+
+
+def _fraction(parts: list[str], nodes: list[ET.Element]) -> str:
+    if all(_is_token(node) for node in nodes):
+        return f"{parts[0]} over {parts[1]}"
+    return f"the fraction {parts[0]} over {parts[1]}, end of fraction"
+
+
+def _sub(parts: list[str], _: list[ET.Element]) -> str:
+    return _under(parts, _) if parts[0].endswith(" of") else f"{parts[0]} sub {parts[1]}"
+
+
+def _under(parts: list[str], _: list[ET.Element]) -> str:
+    return f"{parts[0].removesuffix(' of')} over {parts[1]} of"  # the maximum over all frequencies of ...
+
+
+def _sub_and_super(parts: list[str], _: list[ET.Element]) -> str:
+    if parts[0].startswith("the "):
+        return f"{parts[0]} from {parts[1]} to {parts[2]} of"
+    return _power(f"{parts[0]} sub {parts[1]}", parts[2])
+
+
+def _over(parts: list[str], nodes: list[ET.Element]) -> str:
+    accent = (nodes[1].text or "").strip()
+    return f"{parts[0]} {_ACCENTS.get(accent, parts[1])}"
+
+
+def _root(parts: list[str], nodes: list[ET.Element]) -> str:
+    end = "" if len(nodes) == 1 and _is_token(nodes[0]) else ", end of root"
+    return f"the square root of {' '.join(parts)}{end}"
+
+
+_STRUCTURES: dict[str, Callable[[list[str], list[ET.Element]], str]] = {
+    "mfrac": _fraction,
+    "msup": lambda parts, _: _power(parts[0], parts[1]),
+    "msub": _sub,
+    "munder": _under,
+    "msubsup": _sub_and_super,
+    "munderover": _sub_and_super,
+    "mover": _over,
+    "msqrt": _root,
+    "mroot": lambda parts, _: f"the root of order {parts[1]} of {parts[0]}, end of root",
+    "mtr": lambda parts, _: ", ".join(part for part in parts if part.strip()),
+    "mtable": lambda parts, _: "; ".join(parts),
+}
 
 
 def _is_token(node: ET.Element) -> bool:

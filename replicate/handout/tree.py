@@ -76,14 +76,14 @@ def math(tex: str) -> Element:
     return {"t": "Math", "c": [{"t": "InlineMath"}, tex]}
 
 
-def raw_inline(format: str, text: str) -> Element:
+def raw_inline(target: str, text: str) -> Element:
     """Return text for one output format."""
-    return {"t": "RawInline", "c": [format, text]}
+    return {"t": "RawInline", "c": [target, text]}
 
 
-def raw_block(format: str, text: str) -> Element:
+def raw_block(target: str, text: str) -> Element:
     """Return a block for one output format."""
-    return {"t": "RawBlock", "c": [format, text]}
+    return {"t": "RawBlock", "c": [target, text]}
 
 
 def span(content: Sequence[Element], *names: str) -> Element:
