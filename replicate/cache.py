@@ -2,7 +2,7 @@
 
 The key of a result is a hash of the sources of the numerical core, of the exhibit vocabulary, of the paper's
 own package with its data, and of the versions of the libraries. What only judges or explains
-(``ledger.toml``, ``notes.md``, ``handout.md``) is left out, so that editing prose does not recompute
+(``ledger.toml``, ``notes.md``, ``handout.md``, ``handout.py``) is left out, so that editing prose does not recompute
 anything.
 """
 
@@ -39,7 +39,7 @@ _CORE = (
     "units.py",
 )
 _LIBRARIES = ("control", "matplotlib", "numpy", "pandas", "schemdraw", "scipy")
-_PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)")
+_PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)|handout\.py")
 # Settings that choose the numerical kernels, and with them the last bits of a result.
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 

@@ -240,6 +240,36 @@ def accept(
 
 
 @app.command()
+def handout(
+    papers: Papers = None,
+    solutions: Annotated[
+        bool | None, typer.Option("--solutions/--no-solutions", help="One edition only; default: both.")
+    ] = None,
+    format: Annotated[str, typer.Option("--format", help="pdf or html.")] = "pdf",  # noqa: A002
+    jobs: Jobs = None,
+    out: Out = BUILD,
+    no_cache: NoCache = False,
+) -> None:
+    """Build teaching handouts, without and with solutions."""
+    from replicate.discovery import find_papers
+    from replicate.handout import build_handouts, checked_format, with_handout
+    from replicate.staging import staged
+
+    chosen = with_handout(find_papers(papers or ()), all_needed=bool(papers))
+    file_format = checked_format(format)
+    editions = (False, True) if solutions is None else (solutions,)
+    with staged(out / "handouts") as fresh:
+        outcome = _recompute(chosen, None, jobs, out, no_cache)
+        verdicts = outcome.judgement.verdicts
+        written = build_handouts(
+            outcome.papers, outcome.results, verdicts, fresh, solutions=editions, file_format=file_format
+        )
+    for path in written:
+        typer.echo(f"handout: {out / 'handouts' / path.name}")
+    _exit_if_broken(outcome)
+
+
+@app.command()
 def new(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
 ) -> None:

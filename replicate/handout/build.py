@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Literal, get_args
 
-from replicate.errors import ReplicateError
+from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Paper
 from replicate.handout.edition import FILE, edition
 from replicate.judgement import VerdictRow
@@ -47,12 +47,7 @@ def build_handouts(
     ------
     TemplateError
         If a text asks for something that does not exist, or cannot be converted or set.
-    ReplicateError
-        If the format is unknown.
     """
-    if file_format not in get_args(Format):
-        msg = f"the format is '{file_format}', allowed: {', '.join(get_args(Format))}"
-        raise ReplicateError(msg)
     made: dict[str, bytes] = {}
     for paper in papers:
         for with_solutions in solutions:
@@ -72,6 +67,32 @@ def build_handouts(
     return [folder / name for name in made]
 
 
-def with_handout(papers: Sequence[Paper]) -> list[Paper]:
-    """Return the papers that have a handout."""
-    return [paper for paper in papers if (paper.folder() / FILE).is_file()]
+def with_handout(papers: Sequence[Paper], *, all_needed: bool = False) -> list[Paper]:
+    """Return the papers that have a handout.
+
+    Raises
+    ------
+    TemplateError
+        If none has one, or `all_needed` and one has none.
+    """
+    found = [paper for paper in papers if (paper.folder() / FILE).is_file()]
+    missing = [paper.id for paper in papers if paper not in found]
+    if missing and (all_needed or not found):
+        msg = f"{missing[0]}/{FILE}: the paper has no handout"
+        raise TemplateError(msg)
+    return found
+
+
+def checked_format(text: str) -> Format:
+    """Return a format if there is one of that name.
+
+    Raises
+    ------
+    ReplicateError
+        If there is not.
+    """
+    for known in get_args(Format):
+        if text == known:
+            return known  # type: ignore[no-any-return]
+    msg = f"the format is '{text}', allowed: {', '.join(get_args(Format))}"
+    raise ReplicateError(msg)
