@@ -14,7 +14,7 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +23,9 @@ from replicate.outcome import Outcome
 from replicate.outputs import csv_text, curves_text, number_text
 from replicate.records import ClaimsResult, FigureResult, Result, TableResult
 from replicate.simplify import Points
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DIGITS = 9
 ENDINGS = (".csv", ".json", ".png")
@@ -56,13 +59,18 @@ State = TableState | FigureState
 def present_state(outcome: Outcome, result: Result) -> State:
     """Return what a run computed, as it would be read back after accepting it."""
     if isinstance(result, FigureResult):
-        curves = {
-            (str(panel), str(curve)): points[["x", "y"]].to_numpy(dtype=float)
-            for (panel, curve), points in result.curves.groupby(["panel", "curve"], sort=False)
-        }
-        return FigureState(curves, result.axes)
+        return figure_state(result.curves, result.axes)
     columns, rows = _rows(outcome, result)
     return TableState(_cells([dict(zip(columns, row, strict=True)) for row in rows]))
+
+
+def figure_state(curves: pd.DataFrame, axes: Sequence[Mapping[str, Any]]) -> FigureState:
+    """Return the state of a figure whose curves are in a frame with the columns ``panel, curve, x, y``."""
+    points = {
+        (str(panel), str(curve)): rows[["x", "y"]].to_numpy(dtype=float)
+        for (panel, curve), rows in curves.groupby(["panel", "curve"], sort=False)
+    }
+    return FigureState(points, axes)
 
 
 def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> State | str:

@@ -47,20 +47,26 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     with plotstyle.style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = Canvas(figsize=exhibit.size)
         exhibit.draw(canvas)
-        panels = [read_panel(name, axes) for name, axes in _panels(canvas)]
-        curves = [row for rows, _ in panels for row in rows]
-        frame = pd.DataFrame(curves, columns=["panel", "curve", "x", "y"])
-        described = [description for _, description in panels]
-        if described:
-            described[0] |= _outside_the_axes(canvas)
+        curves, described = read_figure(canvas)
         return FigureResult(
             paper=paper,
             exhibit=exhibit.id,
             svg=svg_text(canvas, exhibit.title),
             png=_png(canvas),
-            curves=frame.astype({"panel": object, "curve": object, "x": float, "y": float}),
+            curves=curves,
             axes=described,
         )
+
+
+def read_figure(canvas: Canvas) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
+    """Return the curves of a drawn figure, and the description of its axes, as in `FigureResult`."""
+    panels = [read_panel(name, axes) for name, axes in _panels(canvas)]
+    rows = [row for rows, _ in panels for row in rows]
+    frame = pd.DataFrame(rows, columns=["panel", "curve", "x", "y"])
+    described = [description for _, description in panels]
+    if described:
+        described[0] |= _outside_the_axes(canvas)
+    return frame.astype({"panel": object, "curve": object, "x": float, "y": float}), described
 
 
 def no_figure(paper: str, exhibit: str, error: str) -> FigureResult:
@@ -111,7 +117,5 @@ def svg_text(canvas: Canvas, title: str) -> str:
 
 def _png(canvas: Canvas) -> bytes:
     buffer = io.BytesIO()
-    canvas.savefig(
-        buffer, format="png", dpi=plotstyle.PNG_DPI, facecolor="white", metadata={"Software": None}
-    )
+    canvas.savefig(buffer, format="png", dpi=plotstyle.PNG_DPI, facecolor="white", metadata={"Software": None})
     return buffer.getvalue()

@@ -102,3 +102,10 @@ def installed(site: Path) -> Iterator[Path]:
 def _forget() -> None:
     for name in [name for name in sys.modules if name.split(".")[0] == "lab_paper"]:
         del sys.modules[name]
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    """Return what a run left behind, without what it keeps for the next one."""
+    return {
+        path: path.read_bytes() for path in folder.rglob("*") if path.is_file() and "cache" not in path.parts
+    }

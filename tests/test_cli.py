@@ -4,44 +4,15 @@ from __future__ import annotations
 
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
-import installed_paper
 import pytest
+from installed_paper import contents
 
 from replicate import cli
 
 Run = Callable[..., tuple[int, str, str]]
-
-
-@pytest.fixture
-def folder(tmp_path: Path) -> Iterator[Path]:
-    with installed_paper.installed(tmp_path / "site") as folder:
-        yield folder
-
-
-@pytest.fixture
-def replicate(
-    folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Run:
-    """Run the command in an empty folder and return exit status, output and error output."""
-    assert folder.is_dir()
-    (tmp_path / "here").mkdir()
-    monkeypatch.chdir(tmp_path / "here")
-    monkeypatch.setenv("NO_COLOR", "1")
-    monkeypatch.delenv("COLUMNS", raising=False)
-
-    def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["replicate", *arguments])
-        capsys.readouterr()
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        code = exit_.value.code
-        assert isinstance(code, int)
-        return code, *capsys.readouterr()
-
-    return run
 
 
 def accepted(replicate: Run) -> str:
@@ -195,12 +166,6 @@ def test_report(replicate: Run) -> None:
     before = contents(Path("build"))
     assert replicate("report", "lab", "-j1", "--no-cache")[0] == 0
     assert contents(Path("build")) == before
-
-
-def contents(folder: Path) -> dict[Path, bytes]:
-    return {
-        path: path.read_bytes() for path in folder.rglob("*") if path.is_file() and "cache" not in path.parts
-    }
 
 
 def test_an_interrupted_report_leaves_the_earlier_one(

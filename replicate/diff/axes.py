@@ -186,7 +186,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 def _shown(value: object) -> str:
-    if value is None:
+    if value is None or value == "":
         return "nothing"
     if isinstance(value, list):
         return f"[{', '.join(map(_shown, value))}]"

@@ -1,0 +1,270 @@
+"""`replicate diff` as a user and a CI system see it: words, exit status, page, JSON, JUnit, summary."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from installed_paper import contents
+
+Run = Callable[..., tuple[int, str, str]]
+VOID = {"br", "hr", "img", "input", "link", "meta"}
+
+
+@pytest.fixture
+def diff(replicate: Run) -> Run:
+    """Accept the small paper's state, and return a function that compares with it."""
+    assert replicate("accept", "lab", "--reason", "first", "--accepted", "accepted", "-j1")[0] == 0
+    return lambda *names: replicate("diff", *(names or ("lab",)), "--accepted", "accepted", "-j1")
+
+
+def edit(name: str, change: Callable[[list[list[str]]], object]) -> None:
+    """Change an accepted CSV, as if the state that was accepted had been another one."""
+    path = Path("accepted/lab") / name
+    with path.open(newline="") as file:
+        rows = list(csv.reader(file))
+    change(rows)
+    path.write_text("".join(",".join(row) + "\n" for row in rows))
+
+
+def lift(rows: list[list[str]]) -> None:
+    for row in rows[1:]:
+        row[3] = str(float(row[3]) + 0.05)
+
+
+def other_value(rows: list[list[str]]) -> None:
+    assert rows[1][:3] == ["2", "root", "as-written"]
+    rows[1][3] = "1.5"
+
+
+def other_verdict(rows: list[list[str]]) -> None:
+    for row in rows[1:]:
+        if row[:2] == ["3", "root"]:
+            row[5] = "near"
+
+
+class Page(HTMLParser):
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.attributes: list[tuple[str, str, str]] = []
+        self.open: list[str] = []
+        self.unbalanced: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes += [(tag, name, value or "") for name, value in attrs]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.attributes += [(tag, name, value or "") for name, value in attrs]
+
+    def handle_endtag(self, tag: str) -> None:
+        if not self.open or self.open.pop() != tag:
+            self.unbalanced.append(tag)
+
+    def values(self, name: str) -> list[str]:
+        return [value for _, attribute, value in self.attributes if attribute == name]
+
+
+def junit() -> ET.Element:
+    return ET.parse("build/diff.junit.xml").getroot()  # noqa: S314  -- a file of our own
+
+
+def index() -> str:
+    return Path("build/diff/index.html").read_text(encoding="utf-8")
+
+
+def test_nothing_differs(diff: Run) -> None:
+    status, out, _ = diff()
+    assert status == 0
+    assert out == ("nothing differs from the accepted state; exhibits compared: 3\npictures: build/diff/index.html\n")
+    assert "<svg" not in index()
+    assert "3 exhibits unchanged" in index()
+    assert json.loads(Path("build/diff.json").read_text())["changes"] == []
+    assert [case.find("failure") for case in junit().iter("testcase")] == [None] * 3
+
+
+def test_the_terminal_alone_says_what_and_how_much(diff: Run) -> None:
+    edit("fig-1.csv", lift)
+    edit("table-1.csv", other_value)
+    status, out, _ = diff()
+    assert status == 1
+    value, curve, count, _ = out.splitlines()
+    assert value == "lab/table-1: 2 root 1.5 -> 1.41421 (-5.7 %); 7 values unchanged"
+    assert re.fullmatch(r"lab/fig-1: curve 'output' moved: at most 0.05 \(\d.\d % of the axis\) at time = .+", curve)
+    assert count == "2 changes in 2 of 3 exhibits"
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "said"),
+    [
+        ("table-1.csv", other_verdict, "lab/table-1: 3 root verdict near -> reproduced; 7 values unchanged"),
+        ("table-1.csv", lambda rows: rows.pop(1), "lab/table-1: 2 root is new; 7 values unchanged"),
+        (
+            "claims.csv",
+            lambda rows: rows.append(["square", "holds", "1"]),
+            "lab/claims: square is gone; 1 claim unchanged",
+        ),
+    ],
+)
+def test_cells(diff: Run, name: str, change: Callable[[list[list[str]]], object], said: str) -> None:
+    edit(name, change)
+    status, out, _ = diff()
+    assert (status, out.splitlines()[0]) == (1, said)
+
+
+@pytest.mark.parametrize("name", ["fig-1.csv", "fig-1.json", "table-1.csv", "claims.csv"])
+def test_a_deleted_baseline(diff: Run, name: str) -> None:
+    (Path("accepted/lab") / name).unlink()
+    status, out, _ = diff()
+    assert status == 1
+    assert f"lab/{name.partition('.')[0]}: has no accepted state: lab/{name} is missing" in out
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "said"),
+    [
+        ("fig-1.csv", "panel,curve,x,y\na,b,1,2\na,b,1,two\n", "lab/fig-1.csv:3: x and y are 1,two, needed: numbers"),
+        ("fig-1.csv", "panel,curve,x\n", "lab/fig-1.csv:1: the columns are panel,curve,x, needed: panel,curve,x,y"),
+        ("fig-1.json", '[{"panel": "a"}]', "lab/fig-1.json: needed: a list of objects, each with panel, xlim, ylim"),
+        ("table-1.csv", "row,column,reading,computed,printed,verdict\n1,2\n", "lab/table-1.csv:2: has 2 cells"),
+    ],
+)
+def test_a_damaged_baseline(diff: Run, name: str, text: str, said: str) -> None:
+    before = contents(Path("build"))
+    (Path("accepted/lab") / name).write_text(text)
+    status, out, err = diff()
+    assert (status, out) == (2, "")
+    assert f"replicate: {said}" in err
+    assert contents(Path("build")) == before
+
+
+def test_nothing_to_compare(diff: Run, replicate: Run) -> None:
+    status, out, _ = diff("lab/fig-2")  # a photograph
+    assert status == 2
+    assert out.startswith("nothing was compared")
+    status, out, _ = replicate("diff", "lab", "--accepted", "elsewhere", "-j1")
+    assert status == 2
+    assert "nothing was compared; 3 changes in 3 of 3 exhibits" in out
+
+
+def test_an_exhibit_that_raises(diff: Run, replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LAB_BREAKS", "1")
+    status, out, _ = replicate("diff", "lab", "--accepted", "accepted", "-j1", "--no-cache")
+    assert status == 2
+    assert "lab/table-1: as-written: could not be computed: ValueError: the kettle is empty" in out
+    assert diff("lab/fig-1")[0] == 0
+    assert junit().find("testsuite/testcase") is not None
+
+
+def test_one_exhibit_only(diff: Run) -> None:
+    edit("fig-1.csv", lift)
+    edit("table-1.csv", other_value)
+    assert "fig-1" not in diff("lab/table-1")[1]
+    assert "in 1 of 1 exhibit\n" in diff("lab/fig-1")[1]
+
+
+def test_exhibits_and_papers_that_are_gone(diff: Run, replicate: Run) -> None:
+    Path("accepted/lab/table-9.csv").write_text("row\n")
+    Path("accepted/barn").mkdir()
+    Path("accepted/barn/fig-1.csv").write_text("row\n")
+    _, out, _ = diff()
+    for name in ("lab/table-9", "barn/fig-1"):
+        assert f"{name}: was accepted, but is not computed any more" in out
+    assert replicate("accept", "lab", "--reason", "gone", "--accepted", "accepted", "-j1")[0] == 0
+    assert diff()[0] == 0
+
+
+def test_the_page(diff: Run) -> None:
+    edit("fig-1.csv", lift)
+    edit("table-1.csv", other_value)
+    diff()
+    text = index()
+    page = Page(text)
+    assert (page.unbalanced, page.open) == ([], [])
+    ids = page.values("id")
+    assert len(ids) == len(set(ids))
+    for address in page.values("href") + page.values("xlink:href"):
+        assert address.startswith("#")
+        assert address[1:] in ids
+    assert set(re.findall(r"url\(#([^)]*)\)", text)) <= set(ids)
+    # It stands alone: nothing is fetched, no address of another place but the names of the formats.
+    assert page.values("src") == []
+    assert set(re.findall(r"https?://[^\s\"'<)]+", text)) <= {
+        "http://www.w3.org/2000/svg",
+        "http://www.w3.org/1999/xlink",
+        "http://www.w3.org/1998/Math/MathML",
+    }
+    assert [value for tag, name, value in page.attributes if (tag, name) == ("section", "id")] == [
+        "lab-table-1",
+        "lab-fig-1",
+    ]
+    # Without the script both pictures stand there; what the script adds is not in the text.
+    assert text.count('<figure class="was">') == text.count('<figure class="now">') == 1
+    assert "<input" not in text.replace("document", "")
+    assert text.count("<svg id=") == 4
+    assert "1 exhibit unchanged" in text
+    assert "<del>1.5</del>" in text
+    assert "<b>1.41421356</b>" in text
+
+
+def test_same_comparison_same_bytes(diff: Run) -> None:
+    edit("fig-1.csv", lift)
+    diff()
+    before = contents(Path("build"))
+    assert Path("build/diff/index.html") in before
+    diff()
+    assert contents(Path("build")) == before
+
+
+def test_files_for_machines(diff: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    edit("fig-1.csv", lift)
+    summary = Path("summary.md")
+    summary.write_text("earlier\n")
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+    diff()
+    found = json.loads(Path("build/diff.json").read_text())
+    assert (found["compared"], found["unchanged"], found["changed"]) == (
+        3,
+        ["lab/table-1", "lab/claims"],
+        ["lab/fig-1"],
+    )
+    (change,) = found["changes"]
+    assert (change["paper"], change["exhibit"], change["kind"]) == ("lab", "fig-1", "curve")
+    limits = json.loads(Path("accepted/lab/fig-1.json").read_text())[0]["ylim"]
+    assert change["size"] == pytest.approx(0.05 / (limits[1] - limits[0]), rel=5e-3)
+    (failure,) = junit().iter("failure")
+    assert failure.get("message") == change["text"]
+    assert summary.read_text() == "earlier\n" + Path("build/diff.md").read_text()
+    assert "### lab/fig-1\n\n- curve 'output' moved" in summary.read_text()
+
+
+def test_a_flood_of_changes_is_cut_short(diff: Run) -> None:
+    def many(rows: list[list[str]]) -> None:
+        rows += [["row", f"column-{number}", "as-written", "1", "", ""] for number in range(50)]
+
+    edit("table-1.csv", many)
+    _, out, _ = diff()
+    lines = out.splitlines()
+    assert len(lines) < 20
+    assert "lab/table-1: 39 more changes not listed here, and" in lines
+    assert lines[-3].endswith("; 8 values unchanged")
+    assert len(json.loads(Path("build/diff.json").read_text())["changes"]) == 50
+
+
+def test_accepting_what_differs(diff: Run, replicate: Run) -> None:
+    edit("fig-1.csv", lift)
+    edit("table-1.csv", other_value)
+    status, out, _ = replicate("accept", "lab/fig-1", "--reason", "less\n offset", "--accepted", "accepted", "-j1")
+    assert status == 0
+    assert out.startswith("lab/fig-1: curve 'output' moved")
+    assert out.endswith("changes accepted: 1\n")
+    assert "## less offset\n\n- lab/fig-1: curve 'output' moved" in Path("accepted/CHANGES.md").read_text()
+    assert "in 1 of 3 exhibits" in diff()[1]
