@@ -8,6 +8,10 @@ MODULES: tuple[str, ...] = (
     "iii_table_1",
     "iii_claims",
     "iv_steam_generator",
+    "v_figures",
+    "v_starch",
+    "v_drying",
+    "v_claims",
 )
 NUMBERED: tuple[str, ...] = (
     *(f"III-fig-{n}" for n in range(1, 7)),

@@ -1,0 +1,168 @@
+"""Paper V: the two models of the paper mill, their controllers, and what the designs are compared with."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq, minimize_scalar, root
+
+from replicate.loops import PI, PID, Loop, PIDDesign, Plant, design_pi, design_pid, search_range
+from replicate.loops.circles import Circle
+from replicate.loops.nyquist_constraints import LoopJet
+
+Array = NDArray[np.float64]
+
+# section 3: starch boiler, times in seconds
+STARCH = Plant([1.34], [43.3**2, 2.0 * 43.3, 1.0], dead_time=12.9)
+STARCH_MS = 1.6
+STARCH_SETTINGS = (1.35, 40.0, 19.0)  # K, Ti, Td as printed
+N = 8.0  # the mill's filter on the derivative term
+STARCH_PI = PI.from_integral_time(0.80, 60.0)
+
+# section 4: drying section, P2(s) e^{-sL} = Kp (T2 s + 1) / (s (T1 s + 1)) e^{-sL}
+DRYING = Plant([0.008 * 30.0, 0.008], [5.0, 1.0, 0.0], dead_time=2.0)
+DRYING_MS = 1.4
+DRYING_SETTINGS = (5.21, 3.16, 1.02)
+FILTER = 5.32  # Tf as printed
+DRYING_PI = PI.from_integral_time(5.0, 5.0)
+
+
+def starch_pid(*, filtered: bool = True) -> PID:
+    """Return the printed starch controller, b = 1, with the mill's derivative filter or with an ideal derivative."""
+    gain, ti, td = STARCH_SETTINGS
+    return PID.ideal(gain, ti, td, derivative_filter=td / N if filtered else 0.0)
+
+
+def drying_pid(setpoint_filter: float = FILTER) -> PID:
+    """Return the printed drying controller, b = 1, with a set-point filter."""
+    return PID.ideal(*DRYING_SETTINGS, setpoint_filter=setpoint_filter)
+
+
+@cache
+def starch_design(constraints: tuple[Literal["curvature", "phase"], ...]) -> PIDDesign:
+    """Return the optimum for the starch boiler under the circle and the named constraints."""
+    return design_pid(STARCH, ms=STARCH_MS, constraints=constraints)
+
+
+@cache
+def drying_design() -> PIDDesign:
+    """Return the optimum for the drying section; the plant integrates, so there is no curvature constraint."""
+    return design_pid(DRYING, ms=DRYING_MS)
+
+
+def settings(design: PIDDesign) -> dict[str, float]:
+    """Return K, Ti, Td and ki of a design."""
+    return {"K": design.k, "Ti": design.integral_time, "Td": design.derivative_time, "ki": design.ki}
+
+
+@cache
+def starch_range() -> tuple[float, float]:
+    """Return the frequencies on which the shape of the Nyquist curve is constrained."""
+    start = design_pi(STARCH, ms=STARCH_MS)
+    return search_range(STARCH, start.k, start.ki)
+
+
+def shape(gains: tuple[float, float, float], kind: Literal["curvature", "phase"]) -> float:
+    """Return the largest signed curvature, or the largest slope of arg L over log w, on the starch search range.
+
+    ``gains`` are k, ki, kd; a positive value violates the constraint of the supplement's (5).
+    """
+    low, high = starch_range()
+
+    def value(log_w: float) -> float:
+        jet = LoopJet.of(STARCH, np.array([np.exp(log_w)]))
+        return -float(jet.values(kind, Circle.of(ms=STARCH_MS), np.array(gains))[0][0])
+
+    grid = np.linspace(np.log(low), np.log(high), 200)
+    values = np.array([value(x) for x in grid])
+    top = int(np.argmax(values))
+    if top in (0, grid.size - 1):
+        return float(values[top])
+    found = minimize_scalar(
+        lambda x: -value(x), bounds=(grid[top - 1], grid[top + 1]), method="bounded", options={"xatol": 1e-9}
+    )
+    return max(float(-found.fun), float(values[top]))
+
+
+def on_both_limits(gain: float) -> dict[str, float]:
+    """Return the starch controller of a given K for which both limits are reached: Ms = 1.6, and level phase somewhere.
+
+    Ti and Td follow from |1 + L| touching 1/Ms and from the largest phase slope on the search range being zero.
+    """
+    _, ti, td = STARCH_SETTINGS
+
+    def equations(scaled: Array) -> Array:
+        ki, kd = gain / (ti * scaled[0]), gain * td * scaled[1]
+        loop = Loop(STARCH, PID(gain, ki, kd))
+        return np.array([loop.sensitivity_peak().value / STARCH_MS - 1.0, shape((gain, ki, kd), "phase")])
+
+    guess = np.array([1.0, 1.0])
+    solution = root(equations, guess, method="hybr", options={"xtol": 1e-11})
+    found_ti, found_td = ti * solution.x[0], td * solution.x[1]
+    return {"Ti": float(found_ti), "Td": float(found_td), "ki": float(gain / found_ti)}
+
+
+class SetpointFilter(NamedTuple):
+    """Time constants of the set-point filter of the drying section by several formulas, for b = 1."""
+
+    printed_formula: float
+    corrected: float
+    eq_16: float
+    eq_16_mended: float
+    never_above_one: float
+
+
+def setpoint_filters(gains: tuple[float, float, float] | None = None) -> SetpointFilter:
+    """Evaluate the filter formulas of the supplement to paper II; ``gains`` (k, ki, kd) default to the printed ones.
+
+    With b = 1 the set-point response is |G_sp(i w)| = |ki + i w k| |T(i w)| / |ki + i w k - w^2 kd|, A the squared
+    denominator; the filter is to make it one where |T| has its peak Mp.
+    """
+    controller = drying_pid(0.0)
+    k, ki, kd = gains or (controller.k, controller.ki, controller.kd)
+    peak = Loop(DRYING, PID(k, ki, kd)).complementary_peak()
+    mp, w = peak.value, peak.frequency
+    a = k**2 * w**2 + (ki - w**2 * kd) ** 2
+    inside = (ki**2 - k**2 * w**2) * mp**2 - a  # the print has a minus sign in the first bracket ...
+    printed = float(np.sqrt(inside)) / (w * a**2) if inside > 0.0 else 0.0  # ... and A^2 in the denominator
+    corrected = float(np.sqrt((ki**2 + k**2 * w**2) * mp**2 - a)) / (w * float(np.sqrt(a)))
+    excess = float(np.sqrt(max(ki**2 * mp**2 / a - 1.0, 0.0)))
+    return SetpointFilter(printed, corrected, excess / w**2, excess / w, _never_above_one(k, ki, kd))
+
+
+def _never_above_one(k: float, ki: float, kd: float) -> float:
+    """Return the smallest filter time constant with |G_sp| <= 1 at all frequencies."""
+    loop = Loop(DRYING, PID(k, ki, kd))
+
+    def needed(log_w: float) -> float:
+        s = 1j * np.exp(log_w)
+        value = complex(loop(s))
+        gain = abs((ki + k * s) / (ki + k * s + kd * s**2) * value / (1.0 + value))
+        return float(np.sqrt(max(gain**2 - 1.0, 0.0)) / abs(s))
+
+    grid = np.linspace(np.log(1e-4), np.log(3.0), 800)
+    top = int(np.argmax([needed(x) for x in grid]))
+    low, high = grid[max(top - 1, 0)], grid[min(top + 1, grid.size - 1)]
+    found = minimize_scalar(lambda x: -needed(x), bounds=(low, high), method="bounded", options={"xatol": 1e-9})
+    return max(float(-found.fun), needed(grid[top]))
+
+
+def frequency_for_filter(time_constant: float) -> tuple[float, float]:
+    """Return the frequency at which the corrected formula gives a time constant, and how far |T| is below Mp there."""
+    controller = drying_pid(0.0)
+    k, ki, kd = controller.k, controller.ki, controller.kd
+    loop = Loop(DRYING, PID(k, ki, kd))
+    peak = loop.complementary_peak()
+
+    def excess(w: float) -> float:
+        value = complex(loop(1j * w))
+        size = abs(value / (1.0 + value))
+        a = k**2 * w**2 + (ki - w**2 * kd) ** 2
+        return float(np.sqrt((ki**2 + k**2 * w**2) * size**2 - a) / (w * np.sqrt(a))) - time_constant
+
+    w = brentq(excess, 0.8 * peak.frequency, peak.frequency, xtol=1e-14)
+    value = complex(loop(1j * w))
+    return float(w), float(1.0 - abs(value / (1.0 + value)) / peak.value)

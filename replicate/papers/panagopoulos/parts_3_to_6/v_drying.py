@@ -1,0 +1,174 @@
+"""V, section 4: the steam pressure control of a drying section."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import TYPE_CHECKING
+
+from replicate.loops import Loop
+from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.parts_3_to_6.industrial import (
+    DRYING,
+    DRYING_PI,
+    FILTER,
+    drying_design,
+    drying_pid,
+    frequency_for_filter,
+    setpoint_filters,
+    settings,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+drying = paper.table(
+    "V-drying",
+    "Drying section: the PID design for $M_s = 1.4$ and its set-point filter",
+    kind="example",
+    rows=(
+        "K", "Ti", "Td", "ki", "Tf", "ts_PI", "ts_PID", "ISE_PI", "ISE_PID", "Ms", "Ms_PI", "Mp", "omega_mp",
+        "ts_PI_model", "ts_PID_model", "overshoot_PI", "overshoot_PID", "overshoot_unfiltered", "IE_PI", "IE_PID",
+        "IAE_PI", "IAE_PID", "ISE_load_PI", "ISE_load_PID",
+    ),
+    columns=("value",),
+    labels={
+        "Ti": "$T_i$ (s)",
+        "Td": "$T_d$ (s)",
+        "ki": "$k_i = K/T_i$",
+        "Tf": "$T_f$ (s)",
+        "ts_PI": "measured $t_s$, PI (s)",
+        "ts_PID": "measured $t_s$, PID (s)",
+        "ISE_PI": "measured ISE, PI",
+        "ISE_PID": "measured ISE, PID",
+        "Ms": "$M_s$ of the printed PID",
+        "Ms_PI": "$M_s$ of the old PI",
+        "Mp": "$M_p$ of the printed PID",
+        "omega_mp": "at $\\omega_{mp}$",
+        "ts_PI_model": "$t_s$ of the model, PI (s)",
+        "ts_PID_model": "PID with filter (s)",
+        "overshoot_PI": "overshoot of the model, PI",
+        "overshoot_PID": "PID with filter",
+        "overshoot_unfiltered": "PID without filter",
+        "IE_PI": "IE of a load step, PI",
+        "IE_PID": "PID",
+        "IAE_PI": "IAE of a load step, PI",
+        "IAE_PID": "PID",
+        "ISE_load_PI": "ISE of a load step, PI",
+        "ISE_load_PID": "PID",
+    },
+    caption="$P_2(s)e^{-2s} = 0.008\\,(30s+1)/(s(5s+1))\\,e^{-2s}$. $K$, $T_i$, $T_d$ and $k_i$ are the "
+    "optimum; the rest evaluates the printed settings on the model.",
+)  # fmt: skip
+
+
+@cache
+def evaluation() -> dict[str, float]:
+    """Evaluate the printed settings on the model."""
+    new, plain, old = (Loop(DRYING, c) for c in (drying_pid(), drying_pid(0.0), DRYING_PI))
+    peak = new.complementary_peak()
+    steps = {"PI": old.step(), "PID": new.step()}
+    loads = {"PI": old.load_step(), "PID": new.load_step()}
+    return {
+        "ts_PI": math.nan,
+        "ts_PID": math.nan,
+        "ISE_PI": math.nan,
+        "ISE_PID": math.nan,
+        "Ms": new.sensitivity_peak().value,
+        "Ms_PI": old.sensitivity_peak().value,
+        "Mp": peak.value,
+        "omega_mp": peak.frequency,
+        **{f"ts_{name}_model": step.settling_time(0.02) for name, step in steps.items()},
+        **{f"overshoot_{name}": step.overshoot() for name, step in steps.items()},
+        "overshoot_unfiltered": plain.step().overshoot(),
+        **{f"IE_{name}": load.ie() for name, load in loads.items()},
+        **{f"IAE_{name}": load.iae() for name, load in loads.items()},
+        **{f"ISE_load_{name}": load.ise() for name, load in loads.items()},
+    }
+
+
+def _frame(setpoint_filter: float) -> pd.DataFrame:
+    import pandas as pd
+
+    values = {**settings(drying_design()), "Tf": setpoint_filter, **evaluation()}
+    return pd.DataFrame.from_dict({row: [values[row]] for row in drying.rows}, orient="index", columns=["value"])
+
+
+@drying.reading(
+    "as-written",
+    "The method, and its filter formula as printed",
+    note="The plant integrates, so the supplement to paper II omits the curvature constraint. Its formula for "
+    "the filter with $b = 1$ has a wrong sign, which makes the filter zero here.",
+)
+def as_written() -> pd.DataFrame:
+    """Design, and evaluate the filter formula as printed."""
+    return _frame(setpoint_filters().printed_formula)
+
+
+@drying.reading(
+    "filter-corrected",
+    "The filter formula with its misprints mended",
+    note="$T_{sp} = \\sqrt{(k_i^2 + k^2\\omega_{mp}^2)M_p^2 - A}\\,/(\\omega_{mp}\\sqrt A)$ follows from the "
+    "condition that the formula is to satisfy, $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.",
+)
+def corrected() -> pd.DataFrame:
+    """Design, and evaluate the filter from its defining condition."""
+    return _frame(setpoint_filters().corrected)
+
+
+filters = paper.table(
+    "V-drying-filter",
+    "Drying section: what the filter time constant could be",
+    printed=False,
+    rows=("printed_formula", "corrected", "eq_16", "eq_16_mended", "never_above_one"),
+    columns=("printed_settings", "optimum"),
+    labels={
+        "printed_formula": "formula for $b = 1$, as printed",
+        "corrected": "the same, mended",
+        "eq_16": "(16), for $b = 0$, as printed",
+        "eq_16_mended": "(16) with $\\omega_{mp}$, not its square",
+        "never_above_one": "$|G_{sp}| \\le 1$ at all frequencies",
+        "printed_settings": "from printed settings",
+        "optimum": "from the unrounded optimum",
+    },
+    units={"printed_settings": "s", "optimum": "s"},
+    caption="The paper prints 5.32 s.",
+)
+
+
+@filters.reading("as-written", "All formulas")
+def all_filters() -> pd.DataFrame:
+    """Tabulate the candidates."""
+    import pandas as pd
+
+    best = drying_design()
+    columns = {
+        "printed_settings": setpoint_filters()._asdict(),
+        "optimum": setpoint_filters((best.k, best.ki, best.kd))._asdict(),
+    }
+    return pd.DataFrame(columns, index=list(filters.rows), columns=list(filters.columns))
+
+
+near_peak = paper.table(
+    "V-drying-peak",
+    "Drying section: the peak frequency that the printed filter would need",
+    printed=False,
+    rows=("omega_mp", "omega_needed", "drop"),
+    columns=("value",),
+    labels={
+        "omega_mp": "$\\omega_{mp}$",
+        "omega_needed": "$\\omega$ that gives 5.32 s",
+        "drop": "$1 - |T|/M_p$ there",
+    },
+    caption="The peak of $|T|$ is so flat that a frequency well beside it has nearly the same height.",
+)
+
+
+@near_peak.reading("as-written", "Mended formula, solved for the frequency")
+def peak_frequency() -> pd.DataFrame:
+    """Solve the mended formula for the frequency."""
+    import pandas as pd
+
+    frequency, drop = frequency_for_filter(FILTER)
+    values = {"omega_mp": [evaluation()["omega_mp"]], "omega_needed": [frequency], "drop": [drop]}
+    return pd.DataFrame.from_dict(values, orient="index", columns=["value"])

@@ -1,0 +1,158 @@
+"""V, section 3: the temperature control of a starch boiler."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import TYPE_CHECKING, Literal
+
+from replicate.loops import PID, Loop
+from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.parts_3_to_6.industrial import (
+    STARCH,
+    STARCH_MS,
+    STARCH_PI,
+    STARCH_SETTINGS,
+    on_both_limits,
+    settings,
+    shape,
+    starch_design,
+    starch_pid,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MODEL_ROWS = (
+    "Ms", "Ms_filtered", "curvature", "phase_slope", "Ms_PI", "IE_PI", "IE_PID", "IAE_PI", "IAE_PID", "overshoot_PI",
+    "overshoot_PID",
+)  # fmt: skip
+
+starch = paper.table(
+    "V-starch",
+    "Starch boiler: the PID design for $M_s = 1.6$",
+    kind="example",
+    rows=("K", "Ti", "Td", "ki", "ISE_PI", "ISE_PID", *MODEL_ROWS),
+    columns=("value",),
+    labels={
+        "Ti": "$T_i$ (s)",
+        "Td": "$T_d$ (s)",
+        "ki": "$k_i = K/T_i$",
+        "ISE_PI": "measured ISE, PI",
+        "ISE_PID": "measured ISE, PID",
+        "Ms": "$M_s$ of the printed PID",
+        "Ms_filtered": "the same with $N = 8$",
+        "curvature": "its largest curvature",
+        "phase_slope": "its largest phase slope",
+        "Ms_PI": "$M_s$ of the old PI",
+        "IE_PI": "IE of a load step, PI",
+        "IE_PID": "PID",
+        "IAE_PI": "IAE of a load step, PI",
+        "IAE_PID": "PID, $N = 8$",
+        "overshoot_PI": "overshoot, PI",
+        "overshoot_PID": "PID, $N = 8$",
+    },
+    caption="$G(s) = 1.34\\,e^{-12.9s}/(43.3s+1)^2$. $K$, $T_i$, $T_d$ and $k_i$ are the optimum; below, the "
+    "printed settings and the previous PI controller are evaluated on the model. A positive curvature or "
+    "phase slope violates the constraint.",
+)
+
+
+@cache
+def evaluation() -> dict[str, float]:
+    """Evaluate the printed settings on the model."""
+    gain, ti, td = STARCH_SETTINGS
+    gains = (gain, gain / ti, gain * td)
+    ideal, filtered, old = (Loop(STARCH, c) for c in (starch_pid(filtered=False), starch_pid(), STARCH_PI))
+    loads = {name: loop.load_step() for name, loop in (("PI", old), ("PID", filtered))}
+    return {
+        "Ms": ideal.sensitivity_peak().value,
+        "Ms_filtered": filtered.sensitivity_peak().value,
+        "curvature": shape(gains, "curvature"),
+        "phase_slope": shape(gains, "phase"),
+        "Ms_PI": old.sensitivity_peak().value,
+        "IE_PI": loads["PI"].ie(),
+        "IE_PID": loads["PID"].ie(),
+        "IAE_PI": loads["PI"].iae(),
+        "IAE_PID": loads["PID"].iae(),
+        "overshoot_PI": old.step().overshoot(),
+        "overshoot_PID": filtered.step().overshoot(),
+    }
+
+
+@starch.reading(
+    "as-written",
+    "All constraints of the method",
+    note="The paper refers to the PID design of paper II; for a process without integrator its supplement, "
+    "(5), asks for the sensitivity circle, negative curvature and falling phase.",
+)
+def all_constraints() -> pd.DataFrame:
+    """Design with circle, curvature and phase."""
+    import pandas as pd
+
+    best = settings(starch_design(("curvature", "phase")))
+    values = {**best, "ISE_PI": math.nan, "ISE_PID": math.nan, **evaluation()}
+    return pd.DataFrame.from_dict({row: [values[row]] for row in starch.rows}, orient="index", columns=["value"])
+
+
+OPTIMA: dict[str, tuple[Literal["curvature", "phase"], ...]] = {
+    "full": ("curvature", "phase"),
+    "no_curvature": ("phase",),
+    "circle_only": (),
+}
+
+optima = paper.table(
+    "V-starch-optima",
+    "Starch boiler: the optimum by the constraints that are kept",
+    printed=False,
+    rows=tuple(OPTIMA),
+    columns=("K", "Ti", "Td", "ki"),
+    labels={
+        "full": "circle, curvature and phase",
+        "no_curvature": "circle and phase",
+        "circle_only": "circle alone",
+        "Ti": "$T_i$ (s)",
+        "Td": "$T_d$ (s)",
+        "ki": "$k_i$",
+    },
+    caption="The paper prints $K = 1.35$, $T_i = 40$, $T_d = 19$. No set of constraints has that optimum.",
+)
+
+
+@optima.reading("as-written", "Largest $k_i$")
+def by_constraints() -> pd.DataFrame:
+    """Design under each set of constraints."""
+    import pandas as pd
+
+    rows = {name: list(settings(starch_design(constraints)).values()) for name, constraints in OPTIMA.items()}
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(optima.columns))
+
+
+GAINS = (1.2, 1.35, 1.5, 2.0, 2.4)
+
+ridge = paper.table(
+    "V-starch-ridge",
+    "Starch boiler: controllers on both limits",
+    printed=False,
+    rows=(*(f"{gain:g}" for gain in GAINS), "optimum"),
+    columns=("K", "Ti", "Td", "ki", "Ms"),
+    labels={"Ti": "$T_i$ (s)", "Td": "$T_d$ (s)", "ki": "$k_i$", "Ms": "$M_s$"},
+    caption="For each $K$ the controller with $M_s = 1.6$ whose phase is just level somewhere. $T_i$ and "
+    "$T_d$ hardly change and round to the printed 40 and 19; $k_i$ grows all the way to the optimum without "
+    "curvature constraint.",
+)
+
+
+@ridge.reading("as-written", "Along the two limits")
+def along_the_ridge() -> pd.DataFrame:
+    """Follow the curve on which both constraints are active."""
+    import pandas as pd
+
+    rows = {}
+    for gain in GAINS:
+        found = on_both_limits(gain)
+        loop = Loop(STARCH, PID(gain, found["ki"], gain * found["Td"]))
+        rows[f"{gain:g}"] = [gain, found["Ti"], found["Td"], found["ki"], loop.sensitivity_peak().value]
+    best = settings(starch_design(("phase",)))
+    rows["optimum"] = [best["K"], best["Ti"], best["Td"], best["ki"], STARCH_MS]
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(ridge.columns))
