@@ -26,6 +26,11 @@ MODULES: tuple[str, ...] = (
     "example_7",
     "fig_9",
     "example_8",
+    "claims_specifications",
+    "claims_method",
+    "claims_processes",
+    "claims_examples",
+    "claims_comparison",
 )
 NUMBERED: tuple[str, ...] = (
     *(f"I-fig-{number}" for number in range(1, 10)),

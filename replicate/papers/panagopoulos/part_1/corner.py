@@ -51,7 +51,9 @@ def corner_limit(ms: float) -> float:
         if not others:
             return -1.0
         minima = (
-            minimize_scalar(distance, bounds=(FREQUENCIES[i - 1], FREQUENCIES[i + 1]), options={"xatol": 1e-12}).fun
+            minimize_scalar(
+                distance, bounds=(FREQUENCIES[i - 1], FREQUENCIES[i + 1]), options={"xatol": 1e-12}
+            ).fun
             for i in others
         )
         return float(1.0 / min(minima) - ms)
@@ -72,7 +74,10 @@ def slope_limit() -> float:
         slopes = (1j * FREQUENCIES * plant.log_derivative(1j * FREQUENCIES)).real
         steepest = FREQUENCIES[np.argmax(slopes)]
         found = minimize_scalar(
-            lambda w: -slope(w), bounds=(0.98 * steepest, 1.02 * steepest), method="bounded", options={"xatol": 1e-12}
+            lambda w: -slope(w),
+            bounds=(0.98 * steepest, 1.02 * steepest),
+            method="bounded",
+            options={"xatol": 1e-12},
         )
         return -float(found.fun) - 1.0
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 from functools import cache
 from typing import Literal
 
+import numpy as np
+
 from replicate.loops import PI, FrequencyPeak, Loop, PIDesign, Signal, design_pi, setpoint_weight
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
@@ -61,3 +63,12 @@ def controller(plant: str, ms: float, rule: WeightRule, solution: int = 0) -> PI
 def load_response(plant: str, ms: float) -> Signal:
     """Return the output after a unit load step at the plant's input, until it has died out."""
     return loop(plant, ms).load_step()
+
+
+def setpoint_gain(plant: str, ms: float, b: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return frequencies and |G_sp| (5) of a design with any set-point weight."""
+    found = design(plant, ms)
+    w = found.frequency * np.geomspace(1e-2, 10.0, 4001)
+    value = loop(plant, ms)(1j * w)
+    prefilter = (found.ki + 1j * w * b * found.k) / (found.ki + 1j * w * found.k)
+    return w, np.abs(prefilter * value / (1.0 + value))

@@ -10,7 +10,14 @@ import numpy as np
 
 from replicate.loops import PI, Loop
 from replicate.papers.panagopoulos import paper
-from replicate.papers.panagopoulos.part_1.table_4 import FACTORS, MS, NOISE_CORNER, NOISE_DENSITY, Filtered, filtered
+from replicate.papers.panagopoulos.part_1.table_4 import (
+    FACTORS,
+    MS,
+    NOISE_CORNER,
+    NOISE_DENSITY,
+    Filtered,
+    filtered,
+)
 from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
@@ -77,5 +84,9 @@ def as_written() -> pd.DataFrame:
     for name, factor in FINITE.items():
         case = filtered(factor)
         sigma = true_sigma(case)
-        values |= {f"Tf_m{name}": case.filter_time, f"sigma_S_m{name}": sigma, f"excess_m{name}": case.sigma / sigma}
+        values |= {
+            f"Tf_m{name}": case.filter_time,
+            f"sigma_S_m{name}": sigma,
+            f"excess_m{name}": case.sigma / sigma,
+        }
     return column({row: values[row] for row in example_8.rows})

@@ -18,7 +18,9 @@ from replicate.loops import PI, Loop, Signal
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
 SMALL_GAIN = 0.1  # stable for every plant that the ultimate point is asked of
-SETTLED = 60.0  # time constants (all plants here have a slowest one of 1) after which a step response is at rest
+SETTLED = (
+    60.0  # time constants (all plants here have a slowest one of 1) after which a step response is at rest
+)
 LAMBDA = 3.0  # closed-loop over open-loop time constant, section 6
 
 

@@ -32,7 +32,10 @@ table_5 = paper.table(
     caption="Gains, maximum sensitivity, IAE and settling time of a unit load step, overshoot of a set-point "
     "step, resonance peak. Ziegler–Nichols is the frequency-response method, lambda tuning asks for three "
     "times the time constant, the new design for $M_s = 1.6$.",
-    labels={**COLUMNS, **{row: f"{label(plant)}, {METHOD_NAMES[method]}" for row, (plant, method) in ROWS.items()}},
+    labels={
+        **COLUMNS,
+        **{row: f"{label(plant)}, {METHOD_NAMES[method]}" for row, (plant, method) in ROWS.items()},
+    },
     units={"o": "%"},
 )
 
@@ -137,7 +140,11 @@ identification = paper.table(
     "imply ($T = T_i$, $L = 1/k_i - 3T$). No method gives them; the area method is closest. $G_1$ and $G_3$ "
     "differ by a dead time only, so any method would give both the same $T$; the print does not.",
     labels={
-        **{f"{plant} {symbol}": f"{label(plant)}, ${symbol}$" for plant in ("G1", "G2", "G3") for symbol in ("T", "L")},
+        **{
+            f"{plant} {symbol}": f"{label(plant)}, ${symbol}$"
+            for plant in ("G1", "G2", "G3")
+            for symbol in ("T", "L")
+        },
         "area": "Area method",
         "two-points": "28 % and 63 %",
         "tangent": "Tangent",
