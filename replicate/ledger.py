@@ -138,7 +138,9 @@ class Ledger:
             As `load`, and if two files name the same cell.
         """
         parts = sorted(
-            entry.name for entry in folder.iterdir() if entry.name.startswith("ledger-") and entry.name.endswith(".toml")
+            entry.name
+            for entry in folder.iterdir()
+            if entry.name.startswith("ledger-") and entry.name.endswith(".toml")
         )
         ledgers = [cls.load(folder / name, paper) for name in ("ledger.toml", *parts)]
         entries = tuple(

@@ -59,7 +59,7 @@ def unrounded() -> pd.DataFrame:
 
 
 @paper.figure(
-    "eq-7-gains",
+    "gains",
     "The proposed gains against $ph$",
     caption="Restored, the two cases meet at $ph = 0.2$; as printed, (7a) jumps away from (7b).",
     alt="Two panels: K_P h and K_I h squared against ph from 0.01 to 20 on a logarithmic axis. The restored curves are "

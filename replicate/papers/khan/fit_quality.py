@@ -39,7 +39,7 @@ eq_3 = paper.table(
     labels=LABELS,
 )
 eq_2_edges = paper.table(
-    "eq-2-edges",
+    "case-edges",
     "Where the cases of (2) meet, and what they leave out",
     kind="formula",
     printed=False,

@@ -1,7 +1,7 @@
 """Panagopoulos' thesis on PI and PID design: six papers and a supplement, one sub-package a part.
 
-Each part keeps its own list of plants, because the papers use the same letters for different plants, and names its modules
-and its numbered exhibits; ids carry the part (``I-table-1``, ``IIs-table-2``).
+Each part keeps its own list of plants, because the papers use the same letters for different plants, and names its
+modules and its numbered exhibits; ids carry the part (``I-table-1``, ``IIs-table-2``).
 """
 
 from replicate.exhibits import Paper

@@ -1,0 +1,128 @@
+"""The example of section 1 of the supplement: two controllers for 1/(s+1)^4, and where the vertex loci mislead."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from replicate.loops import PID, Loop
+from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.part_2 import feasible
+from replicate.papers.panagopoulos.part_2.processes import G4
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CONTROLLERS = {"kd=1": PID(1.00, 0.50, 1.00), "kd=3": PID(1.00, 0.98, 3.00)}
+ROW_LABELS = {key: f"$k_d = {key[3:]}$" for key in ("kd=1", "kd=2", "kd=3", "kd=4")}
+
+
+def closed_loop_poles(controller: PID) -> np.ndarray:
+    """Return all five poles of the closed loop, real ones first, then pairs by descending frequency."""
+    numerator = [controller.kd, controller.k, controller.ki]
+    poles = np.roots(np.polyadd(np.append(G4.den, 0.0), np.polymul(numerator, G4.num)))
+    return np.asarray(sorted(poles, key=lambda p: (abs(p.imag) > 1e-9, -abs(p), -p.imag)))
+
+
+def pole_numbers(controller: PID) -> dict[str, float]:
+    """Return the real pole, and relative damping and frequency of the two pairs."""
+    real, first, _, second, _ = closed_loop_poles(controller)
+    numbers = {"p": float(real.real)}
+    for n, pole in enumerate((first, second), start=1):
+        numbers |= {f"zeta{n}": float(-pole.real / abs(pole)), f"omega{n}": float(abs(pole))}
+    return numbers
+
+
+example = paper.table(
+    "IIs-example",
+    "Two controllers for $1/(s+1)^4$",
+    kind="example",
+    rows=tuple(CONTROLLERS),
+    columns=("IAE", "p", "zeta1", "omega1", "zeta2", "omega2"),
+    caption=r"$(k, k_i, k_d) = (1.00, 0.50, 1.00)$ and $(1.00, 0.98, 3.00)$: integrated absolute error after a "
+    r"unit load "
+    "step, the real closed-loop pole, and relative damping and frequency of the two pairs.",
+    labels=ROW_LABELS
+    | {
+        "p": "real pole",
+        "zeta1": r"$\zeta_1$",
+        "omega1": r"$\omega_1$",
+        "zeta2": r"$\zeta_2$",
+        "omega2": r"$\omega_2$",
+    },
+)
+
+
+@example.reading("as-written", "Exact", "The error over the whole response, the poles as roots.")
+def numbers() -> pd.DataFrame:
+    """Return errors and poles."""
+    import pandas as pd
+
+    rows = {
+        key: {"IAE": Loop(G4, controller).load_step().iae()} | pole_numbers(controller)
+        for key, controller in CONTROLLERS.items()
+    }
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(example.columns))
+
+
+def bottom_maximum(kd: float) -> float:
+    """Return the largest ki on the locus of the bottom vertices, the first maximum over frequency."""
+    w = np.geomspace(0.05, 4.0, 4000)
+    _, ki = feasible.vertices("B", w, kd)
+    i = int(np.nonzero((ki[1:-1] >= ki[:-2]) & (ki[1:-1] >= ki[2:]))[0][0]) + 1
+    found = minimize_scalar(
+        lambda x: -float(feasible.vertices("B", np.array([x]), kd)[1][0]),
+        bounds=(w[i - 1], w[i + 1]),
+        method="bounded",
+        options={"xatol": 1e-12},
+    )
+    return -float(found.fun)
+
+
+envelope = paper.table(
+    "IIs-envelope",
+    "The vertex loci and the true region",
+    printed=False,
+    rows=("kd=1", "kd=2", "kd=3", "kd=4"),
+    columns=("ki", "k", "touches", "vertices", "k_example", "ki_example", "Ms"),
+    caption="For each $k_d$: the largest feasible $k_i$ and its $k$, at how many frequencies the Nyquist curve "
+    "touches the "
+    "circle there (one: smooth; two: an edge), the largest $k_i$ on the locus of the bottom vertices; and the "
+    "supplement's "
+    "own choice with its true $M_s$ (1.4 is asked for). No number: no controller with this $k_d$ satisfies the "
+    "constraint.",
+    labels=ROW_LABELS
+    | {
+        "ki": "largest $k_i$",
+        "k": "at $k$",
+        "vertices": "vertex locus",
+        "k_example": "chosen $k$",
+        "ki_example": "chosen $k_i$",
+        "Ms": "its $M_s$",
+    },
+)
+
+
+@envelope.reading("as-written", "Exact")
+def envelopes() -> pd.DataFrame:
+    """Compare the true largest ki with what the vertices suggest."""
+    import pandas as pd
+
+    rows = {}
+    for key in envelope.rows:
+        kd = float(key[3:])
+        found = feasible.best(kd)
+        row = {"vertices": bottom_maximum(kd)}
+        if found is not None:
+            row |= {"ki": found.ki, "k": found.k, "touches": float(len(found.frequencies))}
+        if key in CONTROLLERS:
+            controller = CONTROLLERS[key]
+            row |= {
+                "k_example": controller.k,
+                "ki_example": controller.ki,
+                "Ms": float(Loop(G4, controller).sensitivity_peak()),
+            }
+        rows[key] = row
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(envelope.columns))

@@ -1,0 +1,141 @@
+r"""The geometry of the sensitivity constraint in the (k, ki) plane at fixed kd, section 1 of the supplement.
+
+At each frequency the constraint forbids the interior of an ellipse with axes along the coordinates (3). Its vertices
+trace loci; the supplement approximates the envelope of the ellipses by the loci of the vertices. Here both are
+computed:
+the loci by the formulas, the region itself by taking, for every k, what the ellipses leave free and the loop stable.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import root
+
+from replicate.loops import PID, Circle, Loop, Plant
+from replicate.loops.nyquist_constraints import Constraint, LoopJet, constraint_slope
+from replicate.papers.panagopoulos.part_2.processes import G4
+
+Array = NDArray[np.float64]
+
+CIRCLE = Circle.of(1.4)  # C = 1, R = 1/1.4
+W = np.geomspace(2e-3, 8.0, 3000)
+
+Vertex = Literal["L", "R", "B"]
+
+
+def vertices(vertex: Vertex, w: Array, kd: float, plant: Plant = G4) -> tuple[Array, Array]:
+    """Return (k, ki) of the left, right or bottom vertex of the ellipse at each frequency."""
+    g = plant(1j * w)
+    r = np.abs(g)
+    k = -CIRCLE.center * g.real / r**2
+    ki = -CIRCLE.center * w * g.imag / r**2 + w**2 * kd
+    if vertex == "B":
+        return k, ki - w * CIRCLE.radius / r
+    return k + (-1.0 if vertex == "L" else 1.0) * CIRCLE.radius / r, ki
+
+
+def ellipse(w: float, kd: float, plant: Plant = G4) -> tuple[Array, Array]:
+    """Return the ellipse (3) of one frequency, as a closed curve (k, ki)."""
+    g = complex(plant(1j * w))
+    r, turn = abs(g), np.linspace(0.0, 2.0 * np.pi, 181)
+    k = -CIRCLE.center * g.real / r**2 + CIRCLE.radius / r * np.cos(turn)
+    ki = -CIRCLE.center * w * g.imag / r**2 + w**2 * kd + w * CIRCLE.radius / r * np.sin(turn)
+    return k, ki
+
+
+def ki_range(k: float, kd: float, w: Array = W) -> tuple[float, float]:
+    """Return the ends of the ki that keep a stable loop outside the circle; ``nan`` where there are none.
+
+    Of several gaps between the ellipses the highest stable one counts.
+    """
+    g = G4(1j * w)
+    r = np.abs(g)
+    inside = CIRCLE.radius**2 - (r * k + CIRCLE.center * g.real / r) ** 2
+    blocked = inside > 0.0
+    middle = (-CIRCLE.center * w * g.imag / r**2 + w**2 * kd)[blocked]
+    half = (w / r)[blocked] * np.sqrt(inside[blocked])
+    low, high = middle - half, middle + half
+    order = np.argsort(low)
+    low, high = low[order], np.maximum.accumulate(high[order])
+    floor = np.maximum(np.concatenate([[0.0], high[:-1]]), 0.0)
+    for i in np.nonzero(low > floor)[0][::-1]:
+        if _stable(k, 0.5 * (floor[i] + low[i]), kd):
+            return float(floor[i]), float(low[i])
+    return float("nan"), float("nan")
+
+
+def _stable(k: float, ki: float, kd: float) -> bool:
+    # plain roots: the region needs thousands of answers, and the plant has neither dead time nor delicate poles
+    characteristic = np.polyadd(np.append(G4.den, 0.0), np.polymul([kd, k, ki], G4.num))
+    return bool(np.roots(characteristic).real.max() < 0.0)
+
+
+@cache
+def region(kd: float, highest: float = 1.6, points: int = 161) -> tuple[Array, Array, Array]:
+    """Return k, and the lower and upper end of ki over it."""
+    k = np.linspace(0.0, highest, points)
+    ends = np.array([ki_range(float(x), kd) for x in k])
+    return k, ends[:, 0], ends[:, 1]
+
+
+@dataclass(frozen=True)
+class Best:
+    """The largest ki at a fixed kd: smooth (one frequency touches) or at an edge (two do)."""
+
+    k: float
+    ki: float
+    frequencies: tuple[float, ...]
+
+    @property
+    def smooth(self) -> bool:
+        """Whether the boundary has a horizontal tangent there."""
+        return len(self.frequencies) == 1
+
+
+@cache
+def best(kd: float) -> Best | None:
+    """Return the largest ki at a fixed kd, polished by Newton's method and verified; None if nothing is feasible."""
+    k, _, upper = region(kd)
+    if np.all(np.isnan(upper)):
+        return None
+    i = int(np.nanargmax(upper))
+    fine = np.linspace(k[max(i - 1, 0)], k[min(i + 1, k.size - 1)], 41)
+    tops = np.array([ki_range(float(x), kd)[1] for x in fine])
+    i = int(np.nanargmax(tops))
+    gains = np.array([fine[i], tops[i], kd])
+    value, _ = LoopJet.of(G4, W).values("sensitivity", CIRCLE, gains)
+    dips = np.nonzero((value[1:-1] <= value[:-2]) & (value[1:-1] <= value[2:]))[0] + 1
+    touching = [float(W[j]) for j in dips[np.argsort(value[dips])]]
+    for count in (1, 2):
+        found = _polish(gains, tuple(touching[:count]))
+        if found is not None:
+            return found
+    return None
+
+
+def _polish(gains: Array, touching: tuple[float, ...]) -> Best | None:
+    """Solve for tangency at each frequency and, with a single one, for a horizontal boundary."""
+
+    def equations(x: Array) -> list[float]:
+        now = np.array([x[0], x[1], gains[2]])
+        result = []
+        for w in x[2:]:
+            value, gradient = LoopJet.of(G4, np.array([w])).values("sensitivity", CIRCLE, now)
+            result += [float(value[0]), constraint_slope(G4, Constraint("sensitivity"), CIRCLE, now, float(w))]
+            if len(touching) == 1:
+                result.append(float(gradient[0, 0]))
+        return result
+
+    solution = root(equations, [gains[0], gains[1], *touching], options={"xtol": 1e-14})
+    if np.max(np.abs(solution.fun)) > 1e-9 or abs(solution.x[1] / gains[1] - 1.0) > 0.02:
+        return None
+    k, ki, *frequencies = (float(v) for v in solution.x)
+    loop = Loop(G4, PID(k, ki, float(gains[2])))
+    if not loop.is_stable() or loop.sensitivity_peak() * CIRCLE.radius > 1.0 + 1e-9:
+        return None
+    return Best(k, ki, tuple(sorted(frequencies)))

@@ -1,0 +1,166 @@
+"""Table 1 of paper II and Table 2 of the supplement, which is meant to replace it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from replicate.loops import PID, Loop, Plant
+from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
+from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
+from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
+from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from replicate.exhibits import Table
+
+SUPERSEDED = "II-table-1"
+REPLACEMENT = "IIs-table-2"
+GAINS = ("k", "Ti", "Td")
+
+
+@cache
+def design_properties(row: str, problem: Problem = "stated") -> Properties:
+    """Return the properties of a design."""
+    return Properties.of(PLANTS[split(row)[0]], optimal(row, problem))
+
+
+@cache
+def printed_properties(table: str, row: str) -> Properties:
+    """Return the properties that follow from the gains a table prints."""
+    return Properties.of(PLANTS[split(row)[0]], printed(table, row))
+
+
+def default_grid_peak(plant: Plant, controller: PID) -> Resonance:
+    """Return the largest |T| among the 50 frequencies of ``logspace(-2, 2)``, which Matlab takes by default."""
+    w = np.logspace(-2.0, 2.0, 50)
+    value = Loop(plant, controller)(1j * w)
+    size = np.abs(value / (1.0 + value))
+    i = int(np.argmax(size))
+    return Resonance(float(w[i]), float(size[i]))
+
+
+ONE_SIDED = 0.05  # as in paper I: the last time above +5 % of the step, undershoot ignored
+
+
+@cache
+def one_sided_settling(table: str, row: str) -> float:
+    """Return the settling time by paper I's definition, from the end of the dead time, for the printed gains."""
+    plant = PLANTS[split(row)[0]]
+    crossings = Loop(plant, printed(table, row)).load_step().crossings(ONE_SIDED)
+    return float(crossings[-1]) - plant.dead_time if crossings.size else 0.0
+
+
+def _frame(rows: dict[str, dict[str, float]]) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS)).loc[list(ROWS)]
+
+
+def _designs(problem: Problem) -> Callable[[], pd.DataFrame]:
+    return lambda: _frame({row: design_properties(row, problem).row() for row in ROWS})
+
+
+def _from_printed(table: str) -> Callable[[], pd.DataFrame]:
+    def compute() -> pd.DataFrame:
+        rows = {}
+        for row in ROWS:
+            rows[row] = printed_properties(table, row).row() | dict.fromkeys(GAINS, float("nan"))
+            if table == SUPERSEDED and row == "G3 Ms=2.0":  # its Td was taken from the printed b
+                rows[row]["b"] = float("nan")
+        return _frame(rows)
+
+    return compute
+
+
+def _filter_only(table: str, peak_of: Callable[[Plant, PID], Resonance]) -> Callable[[], pd.DataFrame]:
+    def compute() -> pd.DataFrame:
+        rows = {}
+        for row in ROWS:
+            plant, controller = PLANTS[split(row)[0]], printed(table, row)
+            exact = Resonance.of(plant, controller)
+            # whether there is a filter at all is decided by the exact peak
+            size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(plant, controller))
+            rows[row] = {"Tsp": size}
+        return _frame(rows)
+
+    return compute
+
+
+def _add_readings(table: Table) -> None:
+    table.reading(
+        "as-written",
+        "The optimum of the stated problem",
+        "The largest $k_i$ under the circle, negative curvature and falling phase on the search range of "
+        "section 4 of the "
+        "supplement; for $G_1$ (integrating) and $G_3$ (a pole close to zero, seen from its other poles) without the "
+        "curvature, as the text says. The other columns follow from these gains: $b$ by (13) and (15), $T_{sp}$ "
+        "by (16) as "
+        "printed. The text gives no band for $t_s$: here it is the time after which the response to a unit load stays "
+        "within ±0.02.",
+    )(_designs("stated"))
+    table.reading(
+        "printed-gains",
+        "The other columns from the printed gains",
+        "What follows from the printed $k$, $T_i$ and $T_d$ by the same formulas; says nothing about the gains "
+        "themselves."
+        + (
+            " The scan has lost $T_d$ of $G_3$, $M_s = 2.0$; it is taken from the printed $b = \\sqrt{T_d/T_i}$."
+            if table.id == SUPERSEDED
+            else ""
+        ),
+    )(_from_printed(table.id))
+    table.reading(
+        "filter-corrected",
+        "The printed gains, (16) over $\\omega_{mp}$",
+        "$T_{sp} = \\sqrt{k_i^2M_p^2/A-1}/\\omega_{mp}$, which does what the text wants; the print divides by "
+        "$\\omega_{mp}^2$.",
+    )(_filter_only(table.id, Resonance.of))
+    table.reading(
+        "filter-default-grid",
+        "The same on Matlab's default frequency grid",
+        "As before, with the peak of $|T|$ taken from 50 frequencies, `logspace(-2,2)`.",
+    )(_filter_only(table.id, default_grid_peak))
+    table.reading(
+        "paper-1-settling",
+        "The settling time of paper I",
+        "$t_s$ as the numbers of paper I show it: the last time at which the load response is above $+0.05$, "
+        "undershoot "
+        "ignored, counted from the end of the dead time; for the printed gains.",
+    )(lambda: _frame({row: {"ts": one_sided_settling(table.id, row)} for row in ROWS}))
+    table.reading(
+        "ms-only",
+        "The optimum under the circle alone",
+        "The largest $k_i$ with neither curvature nor phase constraint.",
+    )(_designs("ms-only"))
+
+
+table_1 = paper.table(
+    SUPERSEDED,
+    "Properties of the controllers for $G_1$ to $G_8$ (superseded)",
+    rows=ROWS,
+    columns=COLUMNS,
+    caption="The table of the conference paper, which the errata replace.",
+    labels=ROW_LABELS | LABELS,
+)
+_add_readings(table_1)
+
+
+def replacement() -> Table:
+    """Define the table of the errata; its module calls this where the supplement stands in the thesis."""
+    table = paper.table(
+        REPLACEMENT,
+        "Properties of the controllers for $G_1$ to $G_8$ (errata)",
+        rows=ROWS,
+        columns=COLUMNS,
+        caption="The table of the errata, which replaces Table 1 of the paper.",
+        labels=ROW_LABELS | LABELS,
+    )
+    _add_readings(table)
+    return table
