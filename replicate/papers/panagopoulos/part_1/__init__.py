@@ -14,6 +14,7 @@ MODULES: tuple[str, ...] = (
     "table_4",
     "table_5",
     "settling_evidence",
+    "iae_evidence",
     "example_1",
     "example_2",
     "example_3",
