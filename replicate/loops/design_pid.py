@@ -46,6 +46,7 @@ MESSAGES: dict[str, str] = {
 
 DERIVATIVE_STARTS = (0.0, 0.3, 0.8, 1.8)  # kd of the starts, in units of k / (frequency of the PI design)
 CAUTIOUS = 0.1  # ki of the second round of starts, in units of that of the first
+TRIED_AT_LEAST = 3  # of the starts, one of which is far from the PI design
 FEASIBLE = 2e-9
 SAME_TOUCH = 0.06  # touches closer than this relative distance in frequency are one
 RUNAWAY = 1e5  # gains this many times the start's: the search has left the problem
@@ -225,19 +226,20 @@ def _starts(
 
 
 def _best_from(problem: _Problem, starts: Sequence[tuple[float, float, float]]) -> PIDDesign | None:
-    """Return the best design that the starts lead to; two that agree settle it."""
+    """Return the best design that the starts lead to; two that agree settle it, once the first few have been tried."""
     best: PIDDesign | None = None
-    for gains in starts:
+    for tried, gains in enumerate(starts, start=1):
         point = problem.climb(np.array(gains))
         if point is None:
             continue
         found = problem.finish(point)
         if found is None:
             continue
-        if best is not None and found.status == best.status == "optimal" and abs(found.ki / best.ki - 1.0) < 1e-8:
-            break
+        agree = best is not None and found.status == best.status == "optimal" and abs(found.ki / best.ki - 1.0) < 1e-8
         if best is None or found.ki > best.ki:
             best = found
+        if agree and tried >= TRIED_AT_LEAST:
+            break
     return best
 
 
