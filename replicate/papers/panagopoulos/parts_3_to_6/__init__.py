@@ -1,4 +1,4 @@
-"""Papers III and IV: loop shaping, steam generator. Papers V and VI are to follow."""
+"""Papers III to VI: loop shaping, steam generator, industrial evaluations, active damping."""
 
 MODULES: tuple[str, ...] = (
     "iii_diagrams",
@@ -12,6 +12,10 @@ MODULES: tuple[str, ...] = (
     "v_starch",
     "v_drying",
     "v_claims",
+    "vi_figures",
+    "vi_example",
+    "vi_regression",
+    "vi_claims",
 )
 NUMBERED: tuple[str, ...] = (
     *(f"III-fig-{n}" for n in range(1, 7)),
@@ -21,4 +25,6 @@ NUMBERED: tuple[str, ...] = (
     *(f"IV-fig-{n}" for n in range(1, 11)),
     "IV-table-1",
     "IV-table-2",
+    *(f"V-fig-{n}" for n in range(1, 10)),
+    *(f"VI-fig-{n}" for n in range(1, 9)),
 )

@@ -134,7 +134,10 @@ def setpoint_filters(gains: tuple[float, float, float] | None = None) -> Setpoin
 
 
 def _never_above_one(k: float, ki: float, kd: float) -> float:
-    """Return the smallest filter time constant with |G_sp| <= 1 at all frequencies."""
+    """Return the smallest filter time constant with |G_sp| <= 1 at all frequencies.
+
+    It is decided at low frequency, where the loop's two integrators make |G_sp| exceed one.
+    """
     loop = Loop(DRYING, PID(k, ki, kd))
 
     def needed(log_w: float) -> float:
@@ -143,11 +146,10 @@ def _never_above_one(k: float, ki: float, kd: float) -> float:
         gain = abs((ki + k * s) / (ki + k * s + kd * s**2) * value / (1.0 + value))
         return float(np.sqrt(max(gain**2 - 1.0, 0.0)) / abs(s))
 
-    grid = np.linspace(np.log(1e-4), np.log(3.0), 800)
-    top = int(np.argmax([needed(x) for x in grid]))
-    low, high = grid[max(top - 1, 0)], grid[min(top + 1, grid.size - 1)]
-    found = minimize_scalar(lambda x: -needed(x), bounds=(low, high), method="bounded", options={"xatol": 1e-9})
-    return max(float(-found.fun), needed(grid[top]))
+    # the plant's velocity gain is P0(0) = Kp, so 1/G_sp = 1 + s^2 (kd + 1/Kp)/ki + O(s^3): the limit at zero frequency
+    at_rest = float(np.sqrt(2.0 * (kd + 1.0 / 0.008) / ki))
+    grid = np.linspace(np.log(1e-3), np.log(3.0), 800)
+    return max(at_rest, *(needed(x) for x in grid))
 
 
 def frequency_for_filter(time_constant: float) -> tuple[float, float]:
