@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from replicate.errors import TemplateError
 from replicate.exhibits import Table
 from replicate.handout.tree import Element, inlines, plain, span, string
 from replicate.judgement import VerdictRow
+from replicate.printed import MINUS
 from replicate.records import TableResult
+from replicate.report.numbers import aligned
 from replicate.report.tables import Cell, TableView, Value, table_view
 from replicate.report.words import MATCHES, VERDICTS
 
@@ -25,6 +27,8 @@ class Choice:
         Reading ids with the heading of their columns.
     printed
         Whether the printed values are shown. (A table of the project's own has none.)
+    digits
+        Significant digits of computed values in a table without printed ones; 0: six.
     """
 
     columns: Sequence[str] = ()
@@ -32,6 +36,7 @@ class Choice:
     readings: Mapping[str, str] | None = None
     labels: Mapping[str, str] | None = None
     printed: bool = True
+    digits: int = 0
 
 
 def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow], choice: Choice) -> Element:
@@ -43,6 +48,8 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
         If a row, column or reading does not exist.
     """
     view = table_view(table, result, verdicts)
+    if choice.digits:
+        view = replace(view, rows=_rounded(view.rows, choice))
     columns = _chosen("column", choice.columns, view.columns)
     rows = _chosen("row", choice.rows, [row for row, _ in view.rows])
     titles = {reading.id: reading.id for reading in view.readings}
@@ -62,7 +69,9 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
         cells = [_cell(label(row), "AlignLeft")]
         for found in (cell for cell in by_row[row] if cell.column in columns):
             cells += ([_printed_cell(found)] if printed else []) + [
-                _computed_cell(found, value) for value in found.values if value.reading.id in readings
+                _computed_cell(found, value)
+                for value in found.values
+                if value.reading.id in readings
             ]
         body.append(_row(cells))
     aligned = [["AlignLeft"], *([["AlignRight"]] * (groups * len(columns)))]
@@ -95,6 +104,26 @@ def legend(view: TableView, choice: Choice) -> list[Element]:
                 string(f"\N{NO-BREAK SPACE}{word.name.replace(' ', chr(0xA0))}"),
             ]
     return out
+
+
+def _rounded(rows: Sequence[tuple[str, list[Cell]]], choice: Choice) -> list[tuple[str, list[Cell]]]:
+    """Return the rows with computed values of so many digits, decimal points of the shown rows in line again."""
+    shown = [
+        (row, [replace(cell, values=[_short(value, choice.digits) for value in cell.values]) for cell in cells])
+        for row, cells in rows
+        if not choice.rows or row in choice.rows
+    ]
+    columns = zip(*(cells for _, cells in shown), strict=True)
+    texts = [aligned(value.text for cell in column for value in cell.values) for column in columns]
+    return [
+        (row, [replace(cell, texts=padded) for cell, padded in zip(cells, texts, strict=True)]) for row, cells in shown
+    ]
+
+
+def _short(value: Value, digits: int) -> Value:
+    if not value.full:
+        return value
+    return replace(value, text=f"{float(value.full.replace(MINUS, '-')):.{digits}g}".replace("-", MINUS))
 
 
 def _heads(

@@ -1,6 +1,6 @@
 r"""The functions that only a handout's text can call: they place tables and figures and ask for answers.
 
-``table(exhibit, columns=[...], rows=[...], readings={id: heading}, labels={key: text}, printed=True)``
+``table(exhibit, columns=[...], rows=[...], readings={id: heading}, labels={key: text}, printed=True, digits=0)``
     a table of the paper, each printed value beside what the readings compute;
 ``figure(name, width=1.0)``
     a figure of the paper or of the handout's own, as a vector drawing;
@@ -112,6 +112,7 @@ class Placing:
         readings: Mapping[str, str] | None = None,
         labels: Mapping[str, str] | None = None,
         printed: bool = True,
+        digits: int = 0,
     ) -> str:
         """Place a table of the paper."""
         found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
@@ -124,7 +125,7 @@ class Placing:
             msg = f"table('{exhibit}'): the reading '{reading}' failed: {why}"
             raise TemplateError(msg)
         verdicts = [row for row in self.verdicts if row.paper == self.paper.id and row.exhibit == exhibit]
-        choice = Choice(columns, rows, readings, labels, printed)
+        choice = Choice(columns, rows, readings, labels, printed, digits)
         try:
             placed = key_table(found, result, verdicts, choice)
         except TemplateError as error:

@@ -26,6 +26,7 @@ TEMPLATE = "handout.typ"
 # Functions of the template, by the class of a Div or Span.
 _BLOCKS = {"lead", "key", "exercise", "solution"}
 _SPANS = {"number", "tool", "printed", "computed"}
+_LONG = 15  # rows; a table with more of them may break across pages, and repeats its head
 _SIGNS = {"mark", "sign"}  # these also say which verdict or match they stand for
 
 
@@ -126,8 +127,9 @@ def _block(element: Element, document: Document) -> Blocks | None:
         return [raw_block("typst", call), *content, raw_block("typst", "]")]
     if "exhibit" in found:
         table, *caption = content
+        long = "true" if len(table["c"][4][0][3]) > _LONG else "false"
         return [
-            raw_block("typst", "#exhibit["),
+            raw_block("typst", f"#exhibit({long})["),
             table,
             raw_block("typst", "]["),
             *caption,
