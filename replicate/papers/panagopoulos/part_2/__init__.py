@@ -12,6 +12,10 @@ MODULES: tuple[str, ...] = (
     "noise_figures",
     "setpoint_formulas",
     "errata_table",
+    "settling",
+    "rounding",
+    "claims",
+    "supplement_claims",
 )
 NUMBERED: tuple[str, ...] = (
     "II-fig-1",

@@ -1,4 +1,3 @@
-# mypy: ignore-errors  -- stubs of numpy and matplotlib; to be narrowed
 """Table 2 of the errata, and what the printed controllers of both tables violate."""
 
 from __future__ import annotations
@@ -46,24 +45,27 @@ def violations(table: str) -> pd.DataFrame:
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
-for _table, _id, _title in (
-    (SUPERSEDED, "II-violations", "What the controllers of Table 1 violate"),
-    (REPLACEMENT, "IIs-violations", "What the controllers of the errata violate"),
-):
-    paper.table(
-        _id,
-        _title,
+def _register(table: str, id: str, title: str) -> None:
+    exhibit = paper.table(
+        id,
+        title,
         printed=False,
         rows=ROWS,
         columns=tuple(_SHAPE),
         caption="For the printed gains: $M_s$; the largest curvature and the largest slope of the phase on the stated "
-        "frequency range (both should be negative); $k_i$ as a fraction of the optimum of the stated problem "
-        "and of the "
-        "optimum under the circle alone; $k$ as a fraction of the largest gain that any controller with this "
+        "frequency range (both should be negative); $k_i$ as a fraction of the optimum of the stated problem and of "
+        "the optimum under the circle alone; $k$ as a fraction of the largest gain that any controller with this "
         "$M_s$ can have.",
         labels=ROW_LABELS | _SHAPE,
-    ).reading("as-written", "From the printed gains")(lambda table=_table: violations(table))
+    )
 
+    @exhibit.reading("as-written", "From the printed gains")
+    def compute() -> pd.DataFrame:
+        return violations(table)
+
+
+_register(SUPERSEDED, "II-violations", "What the controllers of Table 1 violate")
+_register(REPLACEMENT, "IIs-violations", "What the controllers of the errata violate")
 
 TRIED_ROWS = tuple(row for row in ROWS if split(row)[0] in NEAR_INTEGRATING)
 _TRIED = {

@@ -1,4 +1,3 @@
-# mypy: ignore-errors  -- stubs of numpy and matplotlib; to be narrowed
 """Formulas (13) to (16) of the supplement and the two filters for b = 1, put to the test."""
 
 from __future__ import annotations
@@ -29,7 +28,8 @@ def weight_peak(controller: PID, b: float) -> float:
     top = np.array([(b * k) ** 2, ki**2])  # in x = w^2
     bottom = np.array([kd**2, k**2 - 2.0 * ki * kd, ki**2])
     slope: Any = np.polysub(np.polymul(np.polyder(top), bottom), np.polymul(top, np.polyder(bottom)))
-    real = [x.real for x in np.roots(slope) if abs(x.imag) < 1e-12 * (1.0 + abs(x)) and x.real > 0.0]
+    roots: Any = np.roots(slope)
+    real = [x.real for x in roots if abs(x.imag) < 1e-12 * (1.0 + abs(x)) and x.real > 0.0]
     return max([1.0, *(float(np.sqrt(np.polyval(top, x) / np.polyval(bottom, x))) for x in real)])
 
 

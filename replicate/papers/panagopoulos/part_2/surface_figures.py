@@ -1,4 +1,3 @@
-# mypy: ignore-errors  -- stubs of numpy and matplotlib; to be narrowed
 """Figures 1 to 3 of the supplement: the surface ki(k, kd), and the ellipses, vertex loci and regions behind it."""
 
 from __future__ import annotations
@@ -54,14 +53,14 @@ def surface(fig: Figure) -> None:
     left.set_ylabel("$k_i$, shifted up with $k_d$")
     left.set_xlim(-0.1, 2.0)
     left.set_title("sections")
-    kd = np.linspace(0.0, 3.4, 35)
-    smooth, edge = np.full(kd.size, np.nan), np.full(kd.size, np.nan)
-    for i, value in enumerate(kd):
-        found = feasible.best(float(value))
+    gains = np.linspace(0.0, 3.4, 35)
+    smooth, edge = np.full(gains.size, np.nan), np.full(gains.size, np.nan)
+    for i, kd in enumerate(gains):
+        found = feasible.best(float(kd))
         if found is not None:
             (smooth if found.smooth else edge)[i] = found.ki
-    right.plot(kd, smooth, label="smooth")
-    right.plot(kd, edge, label="edge", linestyle="-", color="C1")
+    right.plot(gains, smooth, label="smooth")
+    right.plot(gains, edge, label="edge", linestyle="-", color="C1")
     right.set_xlabel("$k_d$")
     right.set_ylabel("largest $k_i$")
     right.set_ylim(0.0)
