@@ -66,11 +66,11 @@ def present_state(outcome: Outcome, result: Result) -> State:
 
 def figure_state(curves: pd.DataFrame, axes: Sequence[Mapping[str, Any]]) -> FigureState:
     """Return the state of a figure whose curves are in a frame with the columns ``panel, curve, x, y``."""
-    points = {
-        (str(panel), str(curve)): rows[["x", "y"]].to_numpy(dtype=float)
-        for (panel, curve), rows in curves.groupby(["panel", "curve"], sort=False)
-    }
-    return FigureState(points, axes)
+    places: dict[tuple[str, str], list[int]] = {}
+    for place, (panel, curve) in enumerate(zip(curves["panel"], curves["curve"], strict=True)):
+        places.setdefault((str(panel), str(curve)), []).append(place)
+    points = curves[["x", "y"]].to_numpy(dtype=float)
+    return FigureState({key: points[rows] for key, rows in places.items()}, axes)
 
 
 def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> State | str:

@@ -207,7 +207,7 @@ def diff(
         papers, selection = select(names or ())
         outcome = _recompute(papers, selection, jobs, out, no_cache)
         comparison = compare(outcome, _accepted(accepted))
-        write_diff(comparison, outcome, fresh)
+        write_diff(comparison, outcome, fresh, jobs)
     print_comparison(comparison, console())
     typer.echo(f"pictures: {out / 'diff' / 'index.html'}")
     if comparison.failed or not comparison.compared:

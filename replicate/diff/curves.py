@@ -20,6 +20,9 @@ from replicate.diff.wording import moved_words
 from replicate.readback import TOLERANCE as THINNING
 from replicate.simplify import Points
 
+# A function of x that moved by less than this needs no second measure that says whether it moved sideways.
+_LITTLE = 10.0 * TOLERANCE
+
 #: By panel and name, in data coordinates.
 Curves = Mapping[tuple[str, str], Points]
 
@@ -35,7 +38,8 @@ class Pair:
     values
         For functions of x.
     distance
-        Of the new curve from the accepted one, then the other way round; empty for functions of x that agree.
+        Of the new curve from the accepted one, then the other way round; empty for functions of x whose values
+        tell enough.
     """
 
     axes: Axes  # the accepted description of the panel: all fractions are of these axes
@@ -164,7 +168,7 @@ class _Panel:
             window = WINDOW + coarse + rounding(self.old, "x")
             values = compare_values(before, after, tolerance, window, self.view)
             far = bool(values.alarm.any())
-            apart = self.apart(before, after, tolerance) if far else ()
+            apart = self.apart(before, after, tolerance) if far and values.largest > _LITTLE else ()
             return Pair(self.old, new_name, one, other, far, tolerance, values, apart)
         if kinds == ["points", "points"]:
             apart = (point_distances(after, before, self.view), point_distances(before, after, self.view))

@@ -29,8 +29,13 @@ _LINES_PER_EXHIBIT = 20
 _EXHIBITS = 200
 
 
-def write_diff(comparison: Comparison, outcome: Outcome, folder: Path) -> None:
+def write_diff(comparison: Comparison, outcome: Outcome, folder: Path, jobs: int | None = None) -> None:
     """Write ``diff/index.html``, ``diff.json``, ``diff.junit.xml`` and ``diff.md`` into an existing folder.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes that draw.
 
     Raises
     ------
@@ -40,7 +45,7 @@ def write_diff(comparison: Comparison, outcome: Outcome, folder: Path) -> None:
     text = markdown(comparison)
     (folder / "diff").mkdir()
     for name, content in (
-        ("diff/index.html", page(comparison, outcome)),
+        ("diff/index.html", page(comparison, outcome, jobs)),
         ("diff.json", json_text(comparison)),
         ("diff.junit.xml", junit(comparison)),
         ("diff.md", text),

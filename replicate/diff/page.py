@@ -6,22 +6,16 @@ pictures of a figure.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from markupsafe import Markup
-
-from replicate.accepted import FigureState
 from replicate.diff.cells import CellChange
 from replicate.diff.changes import relative
 from replicate.diff.comparison import Comparison, ExhibitDiff
 from replicate.diff.counts import summary
-from replicate.diff.distance import Distances
-from replicate.diff.redraw import MOST_CURVES, differences, overlay, picture
+from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
 from replicate.diff.wording import percent
 from replicate.exhibits import Paper
 from replicate.outcome import Outcome
-from replicate.report.figures import description, inline_svg
 from replicate.report.labels import heading
 from replicate.report.rendering import render
 
@@ -42,15 +36,12 @@ class CellRow:
 
 @dataclass(frozen=True)
 class DiffView:
-    """A changed exhibit as the template sees it; pictures are elements of the page."""
+    """A changed exhibit as the template sees it; `drawings` is missing for one that is no figure, or one too many."""
 
     diff: ExhibitDiff
     label: str
     title: str
-    overlay: str = ""
-    differences: str = ""
-    pictures: tuple[Markup, Markup] | None = None
-    not_drawn: int = 0
+    drawings: Drawings | None = None
     cells: list[CellRow] = field(default_factory=list)
     more_cells: int = 0
 
@@ -60,8 +51,13 @@ class DiffView:
         return self.diff.name.replace("/", "-")
 
 
-def page(comparison: Comparison, outcome: Outcome) -> str:
+def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> str:
     """Return the page of a comparison.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes that draw.
 
     Raises
     ------
@@ -69,55 +65,26 @@ def page(comparison: Comparison, outcome: Outcome) -> str:
         If a title cannot be converted.
     """
     papers = {paper.id: paper for paper in outcome.papers}
-    views = [_view(diff, papers.get(diff.paper)) for diff in comparison.changed]
+    names = {diff.name: _name(diff, papers.get(diff.paper)) for diff in comparison.changed}
+    figures = [(diff, names[diff.name][0] or diff.name) for diff in comparison.changed if diff.pairs]
+    drawn = draw_all(figures[:MOST_FIGURES], jobs)
+    drawings = {diff.name: pictures for (diff, _), pictures in zip(figures, drawn, strict=False)}
+    views = [
+        DiffView(
+            diff,
+            *names[diff.name],
+            drawings.get(diff.name),
+            [_row(cell) for cell in diff.cells[:_MOST_CELLS]],
+            max(0, len(diff.cells) - _MOST_CELLS),
+        )
+        for diff in comparison.changed
+    ]
     return render("diff.html", "diff/index.html", comparison=comparison, summary=summary(comparison), views=views)
 
 
-def _view(diff: ExhibitDiff, paper: Paper | None) -> DiffView:
+def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:
     exhibit = paper.exhibits.get(diff.exhibit) if paper else None
-    label, title = heading(diff.exhibit, exhibit.title if exhibit else "")
-    if isinstance(diff.before, FigureState) and isinstance(diff.after, FigureState):
-        return _figure(diff, label, title, diff.before, diff.after)
-    shown = diff.cells[:_MOST_CELLS]
-    return DiffView(diff, label, title, cells=[_row(cell) for cell in shown], more_cells=len(diff.cells) - len(shown))
-
-
-def _figure(diff: ExhibitDiff, label: str, title: str, before: FigureState, after: FigureState) -> DiffView:
-    id = diff.name.replace("/", "-")
-    name = label or title or diff.exhibit
-    same = {(str(pair.axes["panel"]), pair.name) for pair in diff.pairs if not pair.moved}
-    moved = sorted((pair for pair in diff.pairs if pair.moved), key=lambda pair: -_size(pair.distance))
-    order = list(dict.fromkeys((*before.curves, *after.curves)))
-    pictures = [
-        _element(picture(state, f"{id}-{when}", order), f"{id}-{when}", f"{name}, {when}", description("", state.axes))
-        for when, state in (("accepted", before), ("new", after))
-    ]
-    drawn = [pair for pair in moved if pair.values is not None or len(pair.distance[0].points)][:MOST_CURVES]
-    both = curves = Markup()
-    words = " ".join(change.text + "." for change in diff.changes)
-    if len(same) < len(order):
-        svg = overlay(before, after, same, f"{id}-overlay")
-        both = _element(svg, f"{id}-overlay", f"{name}: accepted and new curves in one picture", words)
-    if drawn:
-        svg = differences(drawn, f"{id}-differences")
-        curves = _element(svg, f"{id}-differences", f"{name}: how far the curves moved", words)
-    return DiffView(
-        diff,
-        label,
-        title,
-        both,
-        curves,
-        (pictures[0], pictures[1]),
-        len(moved) - len(drawn) if drawn else 0,
-    )
-
-
-def _element(svg: str, id: str, title: str, words: str) -> Markup:
-    return Markup(inline_svg(svg, id, title, words))  # noqa: S704 -- our own drawing
-
-
-def _size(distance: Sequence[Distances]) -> float:
-    return max((part.largest for part in distance), default=0.0)
+    return heading(diff.exhibit, exhibit.title if exhibit else "")
 
 
 def _row(cell: CellChange) -> CellRow:

@@ -113,9 +113,11 @@ def differences(pairs: Sequence[Pair], salt: str) -> str:
 def _draw_values(axes: Axes, pair: Pair) -> None:
     found = pair.values
     assert found is not None  # noqa: S101  -- the caller has looked
-    x = np.array([from_units(float(value), pair.axes, "x") for value in found.x])
-    moved = 100.0 * (found.after - found.before)
-    lower, upper = 100.0 * (found.lower - found.before), 100.0 * (found.upper - found.before)
+    relative = np.column_stack([part - found.before for part in (found.after, found.lower, found.upper)])
+    # The limits from both sides of every x are needed only where something jumps.
+    twin = np.r_[False, (np.diff(found.x) == 0.0) & np.all(np.diff(relative, axis=0) == 0.0, axis=1)]
+    x = np.array([from_units(float(value), pair.axes, "x") for value in found.x[~twin]])
+    moved, lower, upper = 100.0 * relative[~twin].T
     reach = 1.2 * max(float(np.nanmax(np.abs(moved), initial=0.0)), 300.0 * pair.tolerance)
     axes.fill_between(x, lower, upper, color=plotstyle.PALETTE[2], alpha=0.25, linewidth=0.0, label="tolerance")
     axes.plot(x, moved, color=NEW, linewidth=1.2, label="new − accepted")

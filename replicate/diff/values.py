@@ -50,6 +50,12 @@ class ValueDifference:
     upper: Array
     alarm: NDArray[np.bool_]
 
+    @property
+    def largest(self) -> float:
+        """The largest change of value outside the band; infinite where just one of the curves is defined."""
+        size = np.abs(self.after - self.before)[self.alarm]
+        return float(np.where(np.isnan(size), np.inf, size).max(initial=0.0))
+
 
 def is_function(points: Points) -> bool:
     """Whether a curve has one value at every x (two at a jump) and goes from left to right.

@@ -35,7 +35,7 @@ def moved_words(pair: Pair, view: Array) -> tuple[str, float]:
         parts.append(words)
         sizes.append(size)
     if not parts:  # something smaller than all that has a name
-        return "changed", max(part.largest for part in pair.distance)
+        return "changed", max((part.largest for part in pair.distance), default=pair.values.largest)
     return "; ".join(parts), max(sizes)
 
 
@@ -105,7 +105,7 @@ def _at_most(pair: Pair, found: ValueDifference, worst: int, *, first: bool) -> 
     at = _number(from_units(float(found.x[worst]), pair.axes, "x"))
     words = f"{'moved: ' if first else 'elsewhere '}at most {how} ({percent(size)} of the axis)"
     words += f" at {symbol(pair.axes, 'x')} = {at}"
-    apart = max(part.largest for part in pair.distance)
+    apart = max((part.largest for part in pair.distance), default=size)
     if first and size > _STEEP * apart:
         words += f", where it is steep; the curves are {percent(apart)} of the axes apart"
     return words
