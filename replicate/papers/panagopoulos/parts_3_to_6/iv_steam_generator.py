@@ -125,6 +125,7 @@ settings = paper.table(
     rows=("K", "Ti", "Td", "K2", "ki", "Tr"),
     columns=("high_load", "low_load", "fault_high_load", "fault_low_load"),
     labels={
+        "K": "$K$",
         "Ti": "$T_i$ (s)",
         "Td": "$T_d$ (s)",
         "K2": "$K_2$",

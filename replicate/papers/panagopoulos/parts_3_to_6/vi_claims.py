@@ -202,7 +202,7 @@ def iae() -> Finding:
     return Finding(
         "fails" if values[0.0] <= min(values.values()) else "holds",
         values[K_B] - values[0.0],
-        "Not in the example, where the slow decay dominates: the IAE of an impulse is "
+        "In the example the slow decay dominates: the IAE of an impulse is "
         f"{number(values[0.0], 5)} without active control, {number(values[1.0], 5)} with $k_b = 1$ and "
         f"{number(values[K_B], 5)} with $k_b = 2.75$. It cannot be less than $P(0)$ = "
         f"{number(EXAMPLE.plant.gain, 5)}, which an output without sign change has, however much it "

@@ -18,7 +18,7 @@ BATCH = (
 
 regression = paper.table(
     "VI-eq-10",
-    "The line $k_b = $ intercept $+$ slope $\\cdot P_{max}/P_{min}$",
+    "The line for $k_b$ over $P_{max}/P_{min}$",
     kind="formula",
     rows=("intercept", "slope", "largest_residual"),
     columns=("value",),
@@ -44,7 +44,7 @@ def line() -> pd.DataFrame:
 
 
 lines = paper.table(
-    "VI-eq-10-lines",
+    "VI-kb-lines",
     "The line by resonance frequency",
     printed=False,
     rows=tuple(f"{omega_p:g}" for omega_p in OMEGA_P),
@@ -65,7 +65,7 @@ def by_frequency() -> pd.DataFrame:
 
 
 members = paper.table(
-    "VI-eq-10-batch",
+    "VI-kb-batch",
     "The test batch and its best gains",
     printed=False,
     rows=tuple(f"{omega_p:g}, {zeta_p:g}" for omega_p in OMEGA_P for zeta_p in ZETA_P),
