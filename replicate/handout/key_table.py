@@ -29,6 +29,8 @@ class Choice:
         Whether the printed values are shown. (A table of the project's own has none.)
     digits
         Significant digits of computed values in a table without printed ones; 0: six.
+    transposed
+        Whether the paper's columns are shown as rows; `columns` and `rows` are those shown, then.
     """
 
     columns: Sequence[str] = ()
@@ -37,6 +39,7 @@ class Choice:
     labels: Mapping[str, str] | None = None
     printed: bool = True
     digits: int = 0
+    transposed: bool = False
 
 
 def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow], choice: Choice) -> Element:
@@ -48,6 +51,8 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
         If a row, column or reading does not exist.
     """
     view = table_view(table, result, verdicts)
+    if choice.transposed:
+        view = _transposed(view)
     if choice.digits:
         view = replace(view, rows=_rounded(view.rows, choice))
     columns = _chosen("column", choice.columns, view.columns)
@@ -67,11 +72,9 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
     body = []
     for row in rows:
         cells = [_cell(label(row), "AlignLeft")]
-        for found in (cell for cell in by_row[row] if cell.column in columns):
+        for found in (cell for key, cell in zip(view.columns, by_row[row], strict=True) if key in columns):
             cells += ([_printed_cell(found)] if printed else []) + [
-                _computed_cell(found, value)
-                for value in found.values
-                if value.reading.id in readings
+                _computed_cell(found, value) for value in found.values if value.reading.id in readings
             ]
         body.append(_row(cells))
     aligned = [["AlignLeft"], *([["AlignRight"]] * (groups * len(columns)))]
@@ -92,8 +95,15 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
 
 def legend(view: TableView, choice: Choice) -> list[Element]:
     """Return what the signs in the shown cells mean, as inline content."""
+    if choice.transposed:
+        view = _transposed(view)
     columns, rows = choice.columns or view.columns, choice.rows or [row for row, _ in view.rows]
-    shown = [cell for row, cells in view.rows if row in rows for cell in cells if cell.column in columns]
+    shown = [
+        cell
+        for row, cells in view.rows
+        for key, cell in zip(view.columns, cells, strict=True)
+        if row in rows and key in columns
+    ]
     found = {cell.verdict.verdict for cell in shown if cell.verdict}
     out: list[Element] = []
     for word in VERDICTS.values():
@@ -106,18 +116,35 @@ def legend(view: TableView, choice: Choice) -> list[Element]:
     return out
 
 
+def _transposed(view: TableView) -> TableView:
+    """Return the table with rows and columns exchanged, decimal points of the new columns in line."""
+    rows = [(column, [cells[place] for _, cells in view.rows]) for place, column in enumerate(view.columns)]
+    return replace(view, columns=[row for row, _ in view.rows], rows=_lined_up(rows))
+
+
+def _lined_up(rows: Sequence[tuple[str, list[Cell]]]) -> list[tuple[str, list[Cell]]]:
+    columns = zip(*(cells for _, cells in rows), strict=True)
+    texts = [
+        aligned(text for cell in column for text in (cell.printed, *(value.text for value in cell.values)))
+        for column in columns
+    ]
+    return [
+        (row, [replace(cell, texts=lined) for cell, lined in zip(cells, texts, strict=True)])
+        for row, cells in rows
+    ]
+
+
 def _rounded(rows: Sequence[tuple[str, list[Cell]]], choice: Choice) -> list[tuple[str, list[Cell]]]:
     """Return the rows with computed values of so many digits, decimal points of the shown rows in line again."""
     shown = [
-        (row, [replace(cell, values=[_short(value, choice.digits) for value in cell.values]) for cell in cells])
+        (
+            row,
+            [replace(cell, values=[_short(value, choice.digits) for value in cell.values]) for cell in cells],
+        )
         for row, cells in rows
         if not choice.rows or row in choice.rows
     ]
-    columns = zip(*(cells for _, cells in shown), strict=True)
-    texts = [aligned(value.text for cell in column for value in cell.values) for column in columns]
-    return [
-        (row, [replace(cell, texts=padded) for cell, padded in zip(cells, texts, strict=True)]) for row, cells in shown
-    ]
+    return _lined_up(shown)
 
 
 def _short(value: Value, digits: int) -> Value:
@@ -135,7 +162,9 @@ def _heads(
 ) -> list[Any]:
     under = ([inlines("printed")] if printed else []) + [inlines(title) for title in titles]
     groups = [
-        _cell([*label(key), *_unit(table, key)], "AlignCenter" if len(under) > 1 else "AlignRight", len(under))
+        _cell(
+            [*label(key), *_unit(table, key)], "AlignCenter" if len(under) > 1 else "AlignRight", len(under)
+        )
         for key in columns
     ]
     first = _row([_cell([], "AlignLeft"), *groups])

@@ -1,9 +1,10 @@
 r"""The functions that only a handout's text can call: they place tables and figures and ask for answers.
 
-``table(exhibit, columns=[...], rows=[...], readings={id: heading}, labels={key: text}, printed=True, digits=0)``
+``table(exhibit, columns=[...], rows=[...], readings={id: heading}, labels={key: text}, printed=True, digits=0,
+transposed=False)``
     a table of the paper, each printed value beside what the readings compute;
-``figure(name, width=1.0)``
-    a figure of the paper or of the handout's own, as a vector drawing;
+``figure(name, width=1.0, size=None)``
+    a figure of the paper or of the handout's own, as a vector drawing; with a size in inches it is drawn anew at that size;
 ``answer(name)``
     what a function in the paper's ``handout.py`` computes for an exercise, by the names of its values;
 ``tex(number, digits=3)``, ``fixed(number, decimals)``, ``percent(number, digits=2)``
@@ -18,7 +19,7 @@ from __future__ import annotations
 import importlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -32,6 +33,8 @@ from replicate.judgement import VerdictRow
 from replicate.records import FigureResult, Results, TableResult
 from replicate.report.figures import description
 from replicate.report.tables import table_view
+
+TEXT_WIDTH = 6.3  # inches between the margins of the printed page
 
 OPEN, CLOSE = "\ue002", "\ue003"
 
@@ -113,6 +116,7 @@ class Placing:
         labels: Mapping[str, str] | None = None,
         printed: bool = True,
         digits: int = 0,
+        transposed: bool = False,
     ) -> str:
         """Place a table of the paper."""
         found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
@@ -125,7 +129,7 @@ class Placing:
             msg = f"table('{exhibit}'): the reading '{reading}' failed: {why}"
             raise TemplateError(msg)
         verdicts = [row for row in self.verdicts if row.paper == self.paper.id and row.exhibit == exhibit]
-        choice = Choice(columns, rows, readings, labels, printed, digits)
+        choice = Choice(columns, rows, readings, labels, printed, digits, transposed)
         try:
             placed = key_table(found, result, verdicts, choice)
         except TemplateError as error:
@@ -134,14 +138,18 @@ class Placing:
         signs = legend(table_view(found, result, verdicts), choice) if printed else []
         return self._mark(Placed(placed, signs))
 
-    def figure(self, name: str, width: float = 1.0) -> str:
+    def figure(self, name: str, width: float = 1.0, size: tuple[float, float] | None = None) -> str:
         """Place a figure of the handout's own, or else one of the paper."""
-        own = self.exercises.figures.get(name)
-        if own is not None:
+        own, found = self.exercises.figures.get(name), self.paper.exhibits.get(name)
+        if own is not None or (size is not None and isinstance(found, Figure)):
+            drawn = own or found
+            assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker
+            if size is not None:
+                drawn, width = replace(drawn, size=size), min(1.0, size[0] / TEXT_WIDTH)
             with _said_by(f"figure('{name}')"):
-                result = capture.capture(f"{self.paper.id}-handout", own)
-            return self._mark(Drawing(name, result.svg, own.alt, width))
-        found, known = self.paper.exhibits.get(name), self.results.get((self.paper.id, name))
+                result = capture.capture(f"{self.paper.id}-handout", drawn)
+            return self._mark(Drawing(name, result.svg, description(drawn.alt, result.axes), width))
+        known = self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
             figures = [id for id, other in self.paper.exhibits.items() if isinstance(other, Figure)]
             msg = f"figure('{name}'): no such figure; allowed: {_listed([*self.exercises.figures, *figures])}"

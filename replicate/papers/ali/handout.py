@@ -57,7 +57,8 @@ def best_gain() -> Answer:
     """Return where in the window the maximum sensitivity is smallest, and the gains of both tables."""
     low, high = _window()
     inset = 0.01 * (high - low)
-    found = optimize.minimize_scalar(_peak, bounds=(low + inset, high - inset), method="bounded", options={"xatol": 1e-8})
+    ends = (low + inset, high - inset)
+    found = optimize.minimize_scalar(_peak, bounds=ends, method="bounded", options={"xatol": 1e-8})
     reduced = gain_product(HARD, REDUCED)
     return {
         "gain": float(found.x),
@@ -73,8 +74,8 @@ def best_gain() -> Answer:
 @exercises.figure(
     "window",
     "Maximum sensitivity over the window of stable gains",
-    alt="Maximum sensitivity over the gain for theta/T = 0.9, a curve that rises steeply towards both ends of the window "
-    "of stable gains. The gain of Table 2 lies right of its bottom, that of Table 1 on the steep right flank.",
+    alt="Maximum sensitivity over the gain for theta/T = 0.9, a curve that rises steeply towards both ends of the "
+    "window of stable gains. The gain of Table 2 lies right of its bottom, that of Table 1 on the steep right flank.",
     size=(5.8, 2.1),
 )
 def window(fig: Figure) -> None:
@@ -88,7 +89,5 @@ def window(fig: Figure) -> None:
         gain = gain_product(HARD, exponent)
         peak = _peak(gain)
         axes.plot([gain], [peak], "o", color=colour)
-        axes.annotate(
-            name, (gain, peak), (offset, 3), textcoords="offset points", ha="right", va="bottom"
-        )
+        axes.annotate(name, (gain, peak), (offset, 3), textcoords="offset points", ha="right", va="bottom")
     axes.set(xlabel="$KK_p$", ylabel="$M_s$", ylim=(0.0, 40.0))

@@ -1,0 +1,115 @@
+"""Answers and figures of the handout's exercises."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import optimize
+
+from replicate.exercises import Answer, Exercises
+from replicate.loops import Signal
+from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.normalised_loop import lag, loop, point
+from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, printed_coefficients
+from replicate.papers.krajewski.table_1_errors import residuals, single_digit_slips
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+exercises = Exercises()
+
+TAU, CROSSOVER = 0.5, 1.5  # the last exercise
+
+
+@exercises.answer("slips")
+def slips() -> Answer:
+    """Return how many single wrong digits explain the column of 75 degrees, and the first of them."""
+    found = single_digit_slips("75")
+    tau, right, wrong = found[0]
+    return {"count": float(len(found)), "tau": tau, "right": right, "wrong": wrong}
+
+
+@exercises.answer("at-0.3")
+def at_a_third() -> Answer:
+    """Return the printed hyperbola of 45 degrees at tau = 0.3."""
+    return {"printed": float(hyperbola(printed_coefficients("45"), 0.3))}
+
+
+@exercises.figure(
+    "residuals",
+    "Residuals of the printed hyperbolas",
+    alt="Residuals over the dead time for six phase margins. Five grey curves start positive, dip below zero and "
+    "rise above it again. The curve of 45 degrees, in colour, falls below zero and stays there.",
+    size=(6.4, 2.5),
+)
+def draw_residuals(fig: Figure) -> None:
+    """Draw the residuals of all columns of Table 1, the impossible one in colour."""
+    axes = fig.subplots()
+    for margin in MARGINS:
+        odd = margin == "45"
+        style = {"color": "C1", "linewidth": 2.0, "zorder": 3} if odd else {"color": "0.55", "linewidth": 1.0}
+        values = residuals(margin)
+        axes.plot(TAUS, values, marker="o", markersize=4 if odd else 2.5, **style)  # type: ignore[arg-type]
+    for names, height in (("90°", "90"), ("75°", "75"), ("60°, 120°", "60"), ("30°", "30"), ("45°", "45")):
+        axes.annotate(
+            names, (TAUS[-1], residuals(height)[-1]), (6, {"90": 2, "75": -2}.get(height, 0)),
+            textcoords="offset points", va="center", fontsize=8, color="C1" if height == "45" else "0.35",
+            annotation_clip=False,
+        )  # fmt: skip
+    axes.axhline(0.0, color="0.2", linewidth=0.8)
+    axes.set(xlabel="$\\tau$", ylabel="residual", xlim=(0.08, 1.0))
+
+
+@cache
+def _step(margin: float) -> Signal:
+    """Return the step response on the arc of the exercise at a phase margin in degrees."""
+    a, b = point(TAU, CROSSOVER, margin)
+    return loop(float(a), float(b), TAU).step()
+
+
+@cache
+def _margins() -> NDArray[np.float64]:
+    """Return phase margins from 45 degrees to close to the b axis."""
+    most = 180.0 - float(np.degrees(lag(TAU, CROSSOVER)))
+    return np.linspace(45.0, most - 1.0, 160)
+
+
+@exercises.answer("arc")
+def arc() -> Answer:
+    """Return where on the arc the response settles first, and where its second dip leaves the 2 % band."""
+    margins = _margins()
+    times = [_step(float(margin)).settling_time() for margin in margins]
+    best = _step(float(margins[int(np.argmin(times))]))
+
+    def second_dip(margin: float) -> float:
+        return float(_step(margin).extrema()[3]) - 0.98
+
+    jump = float(optimize.brentq(second_dip, 50.0, 62.0, xtol=1e-9))
+    return {
+        "margin": float(margins[int(np.argmin(times))]),
+        "time": best.settling_time(),
+        "overshoot": best.overshoot(),
+        "jump": jump,
+        "dip_time": _step(jump).extrema()[3].time,
+    }
+
+
+@exercises.figure(
+    "along-the-arc",
+    "Overshoot and settling time along the arc",
+    alt="Two panels over the phase margin. The overshoot falls to zero. The settling time is nearly "
+    "constant at first, jumps once, and grows without bound towards the end of the arc on the b axis.",
+    size=(6.4, 2.2),
+)
+def along_the_arc(fig: Figure) -> None:
+    """Draw overshoot and settling time over the phase margin."""
+    margins = _margins()
+    left, right = fig.subplots(1, 2)
+    left.plot(margins, [100.0 * _step(float(m)).overshoot() for m in margins])
+    left.axhline(2.0, color="0.5", linestyle=":", linewidth=1.0)
+    right.plot(margins, [_step(float(m)).settling_time() for m in margins])
+    left.set(xlabel="phase margin (degrees)", ylabel="overshoot (%)")
+    right.set(xlabel="phase margin (degrees)", ylabel="settling time", ylim=(0.0, 40.0))
