@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from replicate.diff.axes import Axes, matched_panels
-from replicate.diff.changes import Change
+from replicate.diff.changes import Change, Kind
 from replicate.diff.distance import Distances, distances, point_distances
 from replicate.diff.scaling import TOLERANCE, finite, in_units, rounding
 from replicate.diff.values import WINDOW, Array, ValueDifference, compare_values, is_function
@@ -134,7 +134,7 @@ class _Panel:
     def say(
         self,
         found: CurveComparison,
-        kind: str,
+        kind: Kind,
         text: str,
         name: str,
         before: str = "",
@@ -145,7 +145,7 @@ class _Panel:
         where = f"{self.old['panel']} / {name}"
         text += self.suffix if suffix is None else suffix
         after = name if before else ""
-        found.changes.append(Change(self.paper, self.exhibit, kind, text, where, before, after, size))  # type: ignore[arg-type]
+        found.changes.append(Change(self.paper, self.exhibit, kind, text, where, before, after, size))
 
     def pair(self, old_name: str, new_name: str, one: Points, other: Points) -> Pair:
         """Compare two curves, which need not have the same name."""
