@@ -4,7 +4,8 @@ r"""The functions that only a handout's text can call: they place tables and fig
 transposed=False)``
     a table of the paper, each printed value beside what the readings compute;
 ``figure(name, width=1.0, size=None)``
-    a figure of the paper or of the handout's own, as a vector drawing; with a size in inches it is drawn anew at that size;
+    a figure of the paper or of the handout's own, as a vector drawing; with a size in inches
+    it is drawn anew at that size;
 ``answer(name)``
     what a function in the paper's ``handout.py`` computes for an exercise, by the names of its values;
 ``tex(number, digits=3)``, ``fixed(number, decimals)``, ``percent(number, digits=2)``

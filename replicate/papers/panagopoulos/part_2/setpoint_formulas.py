@@ -25,11 +25,10 @@ def weight_peak(controller: PID, b: float) -> float:
     Its square is a ratio of polynomials in w^2, so the maximum is at a root of the derivative.
     """
     k, ki, kd = controller.k, controller.ki, controller.kd
-    top = np.array([(b * k) ** 2, ki**2])  # in x = w^2
-    bottom = np.array([kd**2, k**2 - 2.0 * ki * kd, ki**2])
+    top: Any = np.array([(b * k) ** 2, ki**2])  # in x = w^2
+    bottom: Any = np.array([kd**2, k**2 - 2.0 * ki * kd, ki**2])
     slope: Any = np.polysub(np.polymul(np.polyder(top), bottom), np.polymul(top, np.polyder(bottom)))
-    roots: Any = np.roots(slope)
-    real = [x.real for x in roots if abs(x.imag) < 1e-12 * (1.0 + abs(x)) and x.real > 0.0]
+    real = [x.real for x in np.roots(slope) if abs(x.imag) < 1e-12 * (1.0 + abs(x)) and x.real > 0.0]
     return max([1.0, *(float(np.sqrt(np.polyval(top, x) / np.polyval(bottom, x))) for x in real)])
 
 
