@@ -15,7 +15,9 @@ MODULES: tuple[str, ...] = (
     "settling",
     "rounding",
     "claims",
+    "parameter_claims",
     "supplement_claims",
+    "setpoint_claims",
 )
 NUMBERED: tuple[str, ...] = (
     "II-fig-1",

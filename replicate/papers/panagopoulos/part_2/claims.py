@@ -22,6 +22,7 @@ from replicate.papers.panagopoulos.part_2.tables import REPLACEMENT, SUPERSEDED,
 
 claims = paper.claims("II-claims", "Claims of paper II and its supplement")
 
+ROUNDING = 1e-10  # relative; what a computation in double precision may leave
 PROCESSES = tuple(PLANTS)
 REGULAR = tuple(name for name in PROCESSES if name not in NEAR_INTEGRATING)
 Verdict = Literal["holds", "fails", "holds-partly"]
@@ -44,27 +45,25 @@ def share(flags: Iterable[bool]) -> tuple[Verdict, int, int]:
     return ("holds" if kept == len(known) else "holds-partly" if kept else "fails"), kept, len(known)
 
 
-def _row(name: str, ms: float) -> str:
+def row_of(name: str, ms: float) -> str:
     return f"{name} Ms={ms}"
 
 
 def load_ratio(name: str, ms: float) -> float:
     """Return the swing back of the load response as a fraction of its peak, for the optimum of the stated problem."""
-    return load_numbers(_row(name, ms), optimal(_row(name, ms)))["undershoot"]
+    return load_numbers(row_of(name, ms), optimal(row_of(name, ms)))["undershoot"]
 
 
 @claims.claim(
     "ie-is-1/ki", "Maximising $k_i$ minimises the integrated error after a load step.", where="II, section 2"
 )
 def integrated_error() -> Finding:
-    worst = max(
-        abs(Loop(PLANTS[split(row)[0]], optimal(row)).load_step().ie() * optimal(row).ki - 1.0) for row in ROWS
-    )
+    gaps = [abs(Loop(PLANTS[split(row)[0]], optimal(row)).load_step().ie() * optimal(row).ki - 1.0) for row in ROWS]
+    verdict, kept, total = share(gap < ROUNDING for gap in gaps)
     return Finding(
-        "holds" if worst < 1e-8 else "fails",
-        worst,
-        f"Over the {len(ROWS)} designs the integral of the exact load response differs from $1/k_i$ by at most "
-        f"{number(worst, 2)} of it.",
+        verdict,
+        kept,
+        f"The integral of the exact load response is $1/k_i$, to {ROUNDING:g} of it, in {kept} of {total} designs.",
     )
 
 
@@ -90,7 +89,7 @@ def overshoots(ms: float, *, full_weight: bool = False) -> dict[str, float]:
     """Return the set-point overshoots in percent, with the text's weight and filter or with b = 1."""
     found = {}
     for name in PROCESSES:
-        row = _row(name, ms)
+        row = row_of(name, ms)
         c = printed(REPLACEMENT, row) if name in NEAR_INTEGRATING else optimal(row)
         c = PID(c.k, c.ki, c.kd, b=1.0) if full_weight else with_setpoint(row, c)
         found[name] = 100.0 * Loop(PLANTS[name], c).step().overshoot()
@@ -118,14 +117,14 @@ def little_overshoot() -> Finding:
 )
 def settling_shorter() -> Finding:
     old = {
-        n: printed_number(SUPERSEDED, _row(n, 2.0), "ts") / printed_number(SUPERSEDED, _row(n, 1.4), "ts")
+        n: printed_number(SUPERSEDED, row_of(n, 2.0), "ts") / printed_number(SUPERSEDED, row_of(n, 1.4), "ts")
         for n in PROCESSES
     }
     new = {
-        n: printed_number(REPLACEMENT, _row(n, 2.0), "ts") / printed_number(REPLACEMENT, _row(n, 1.4), "ts")
+        n: printed_number(REPLACEMENT, row_of(n, 2.0), "ts") / printed_number(REPLACEMENT, row_of(n, 1.4), "ts")
         for n in PROCESSES
     }
-    exact = {n: design_properties(_row(n, 2.0)).ts / design_properties(_row(n, 1.4)).ts for n in PROCESSES}
+    exact = {n: design_properties(row_of(n, 2.0)).ts / design_properties(row_of(n, 1.4)).ts for n in PROCESSES}
     verdict, kept, total = share(value < 1.0 for value in exact.values())
     wrong = [n for n, value in new.items() if value >= 1.0]
     return Finding(
@@ -135,70 +134,6 @@ def settling_shorter() -> Finding:
         "errata's own column "
         f"contradicts the sentence for {' and '.join(wrong)}, Table 1's for "
         f"{' and '.join(n for n in PROCESSES if old[n] >= 1.0)}.",
-    )
-
-
-@claims.claim("k-larger", "The gain $k$ is larger for $M_s = 2.0$ than for 1.4.", where="II, section 4")
-def gain_larger() -> Finding:
-    ratios = {n: optimal(_row(n, 2.0)).k / optimal(_row(n, 1.4)).k for n in PROCESSES}
-    verdict, kept, total = share(value > 1.0 for value in ratios.values())
-    return Finding(verdict, min(ratios.values()), f"True for {kept} of {total}; ratios {listed(ratios)}.")
-
-
-@claims.claim(
-    "ti-constant", "The integral time is fairly constant for all processes except $G_1$.", where="II, section 4"
-)
-def integral_time() -> Finding:
-    ratios = {n: optimal(_row(n, 1.4)).integral_time / optimal(_row(n, 2.0)).integral_time for n in PROCESSES}
-    verdict, kept, total = share(ratios[n] < 1.25 for n in PROCESSES if n != "G1")
-    return Finding(
-        verdict,
-        max(value for n, value in ratios.items() if n != "G1"),
-        f"$T_i$ for $M_s = 1.4$ over that for 2.0: {listed(ratios)}; within a quarter for {kept} of {total}.",
-    )
-
-
-@claims.claim(
-    "td-larger", "The derivative time is usually larger for $M_s = 1.4$ than for 2.0.", where="II, section 4"
-)
-def derivative_time() -> Finding:
-    def larger(of: Mapping[str, tuple[float, float]]) -> int:
-        return sum(low > high for low, high in of.values())
-
-    exact = {
-        n: (optimal(_row(n, 1.4)).derivative_time, optimal(_row(n, 2.0)).derivative_time) for n in PROCESSES
-    }
-    tables = [
-        {
-            n: (printed(t, _row(n, 1.4)).derivative_time, printed(t, _row(n, 2.0)).derivative_time)
-            for n in PROCESSES
-        }
-        for t in (SUPERSEDED, REPLACEMENT)
-    ]
-    count = larger(exact)
-    return Finding(
-        "holds" if count > 5 else "fails" if count < 4 else "holds-partly",
-        count,
-        f"True for {larger(tables[0])} of {len(PROCESSES)} in Table 1, for {larger(tables[1])} in the errata "
-        "that replace it, "
-        f"and for {count} of the optimal designs: the sentence belongs to the superseded table.",
-    )
-
-
-@claims.claim(
-    "complex-zeros", "All designs with $M_s = 2.0$ have complex controller zeros.", where="II, section 4"
-)
-def complex_zeros() -> Finding:
-    ratios = {n: optimal(_row(n, 2.0)).integral_time / optimal(_row(n, 2.0)).derivative_time for n in PROCESSES}
-    errata = {n: printed(REPLACEMENT, _row(n, 2.0)) for n in PROCESSES}
-    verdict, kept, total = share(value < 4.0 for value in ratios.values())
-    also = sum(c.integral_time < 4.0 * c.derivative_time for c in errata.values())
-    return Finding(
-        verdict,
-        max(ratios.values()),
-        f"$T_i/T_d$ must be below 4: true for {kept} of {total} optimal designs ({listed(ratios)}) and for "
-        f"{also} of {total} "
-        "printed ones.",
     )
 
 
@@ -274,7 +209,7 @@ def better_than_pi() -> Finding:
     where="II, section 3; IIs, section 1",
 )
 def too_severe() -> Finding:
-    rows = [_row(n, ms) for n in NEAR_INTEGRATING for ms in (1.4, 2.0)]
+    rows = [row_of(n, ms) for n in NEAR_INTEGRATING for ms in (1.4, 2.0)]
     costs = {row: optimal(row).ki / optimal(row, "curvature-phase").ki for row in rows}
     loss = {row: optimal(row, "ms-only").ki / optimal(row).ki for row in rows}
     return Finding(
