@@ -50,9 +50,8 @@ def filtered(column: str) -> PID:
     "measurement (time scale stretched). "
     "Measured output and control signal; left with filters of first, right of second order, designed as the "
     "text says. Dashed: "
-    "the load response of the design without filter. The text's first-order filters with $N = 10$ let eight "
-    "times the noise "
-    "through to the control signal, those of second order far less.",
+    "the load response of the design without filter. First-order filters let more of the "
+    "noise through to the control signal than those of second order.",
     alt="Twelve panels, three filter constants in pairs of rows for y and u, two filter orders in columns. Load "
     "responses "
     "hardly differ between columns; the noise in the control signal is much smaller in the right column and "

@@ -88,11 +88,9 @@ STYLES = (
     "the stated constraints cost more than derivative action gains. The scales follow the PID controllers: a PI "
     "response may "
     "leave the panel.",
-    alt="Sixteen panels, eight processes in rows and the two values of Ms in columns, each with three load "
-    "responses. The PID "
-    "controllers halve the deviation of the PI or better; the one under Ms alone swings below zero, the one "
-    "under the stated "
-    "constraints hardly does.",
+    alt="Sixteen panels, eight processes in rows and the two values of Ms in columns, each with three load responses. "
+    "The PID responses have lower peaks than the PI response and return sooner, except for the first process; the one "
+    "under Ms alone swings below zero, the one under the stated constraints less.",
     size=(7.4, 13.0),
 )
 def responses(fig: Figure) -> None:
