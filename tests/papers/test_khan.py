@@ -10,7 +10,19 @@ import numpy as np
 import pytest
 from scipy.special import lambertw
 
-from replicate.papers.khan import appendix, break_point, fits, processes, refit, sweep
+from replicate.loops import PI, Loop, Plant
+from replicate.papers.khan import (
+    appendix,
+    break_point,
+    closed_form,
+    coefficients_7,
+    fits,
+    processes,
+    refit,
+    smooth,
+    sweep,
+    transcription,
+)
 
 FOLDER = Path(processes.__file__).parent
 
@@ -118,11 +130,148 @@ def test_the_optimum_is_stationary():
         assert appendix.closed_form(2.0, kp + dk, ki + di) > best
 
 
-def test_smooth_formula_has_no_complex_values():
-    ph, kh = np.meshgrid(np.linspace(0, 10, 41), np.linspace(0, 10, 41))
-    values = refit.better_formula(np.array(refit.BETTER_START), ph.ravel(), kh.ravel())
-    assert np.isfinite(values).all()
-    assert (values >= 0).all()
+@pytest.mark.parametrize(("ph", "kh"), [(0.0, 1.2), (0.3, 0.9), (1.0, 0.5), (4.0, 0.6), (10.0, 5.0)])
+def test_first_peak_in_closed_form(ph, kh):
+    # the paper's own definition on the closed-form response: where its slope first vanishes, found by bisection
+    with mp.workdps(30):
+
+        def slope(t: float) -> float:
+            return exact_p_control(ph, kh, t + 5e-6) - exact_p_control(ph, kh, t - 5e-6)
+
+        left, right = 1.5, 2.0 + 1.01 * np.exp(-ph) / kh + 1e-3
+        for _ in range(60):
+            middle = 0.5 * (left + right)
+            left, right = (middle, right) if slope(middle) > 0.0 else (left, middle)
+    final = kh / (kh + ph)
+    assert left == pytest.approx(2.0 + np.exp(-ph) / kh, abs=2e-6)
+    expected = 100.0 * (exact_p_control(ph, kh, left) / final - 1.0)
+    assert closed_form.has_first_peak(ph, kh)
+    assert closed_form.first_peak(ph, kh) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize(("ph", "kh"), [(0.0, 1.2), (0.5, 0.8), (2.5, 0.05), (10.0, 5.0)])
+def test_rise_time_in_closed_form(ph, kh):
+    final = kh / (kh + ph)
+
+    def reach(level: float) -> float:
+        left, right = 1.0, 2.0
+        for _ in range(60):
+            middle = 0.5 * (left + right)
+            left, right = (middle, right) if exact_p_control(ph, kh, middle) < level * final else (left, middle)
+        return left
+
+    expected = reach(0.9) - reach(0.1)
+    assert closed_form.has_rise_time(ph, kh)
+    assert closed_form.rise_time(ph, kh) == pytest.approx(expected, rel=1e-10)
+    assert sweep.sweep(ph, np.array([kh])).rise_time[0] == pytest.approx(expected, rel=1e-10)
+
+
+def test_closed_forms_say_where_they_end():
+    # just below Kh = e^-ph the peak comes after the second dead time; 90 % is then not reached before the feedback
+    assert not closed_form.has_first_peak(1.0, 0.99 * np.exp(-1.0))
+    assert closed_form.has_rise_time(np.log(10.0) + 1e-9, 1e-12)
+    assert not closed_form.has_rise_time(np.log(10.0) - 0.01, 1e-12)
+
+
+def test_batches_agree_with_single_responses():
+    # Signal finds peaks and crossings one response at a time, by the colleague matrix
+    for ph, kh in ((0.0, 0.45), (0.7, 1.9), (3.0, 3.8), (7.0, 7.45)):
+        y = Loop(Plant([1.0], [1.0, ph], dead_time=1.0), PI(kh)).step(until=60.0)
+        found = sweep.sweep(ph, np.array([0.5 * kh, kh]))
+        assert found.overshoot[1] == pytest.approx(100.0 * y.overshoot(), rel=1e-11)
+        assert found.rise_time[1] == pytest.approx(y.rise_time(), rel=1e-11)
+        assert found.first_peak[1] == pytest.approx(100.0 * (float(y.extrema()[0]) / y.final - 1.0), rel=1e-11)
+
+
+def test_dense_grid_is_what_the_quality_tables_say():
+    loops = sweep.dense()
+    assert loops.ph.size >= 10_000
+    assert (loops.kh < np.hypot(loops.ph, np.pi)).all()  # Kh^2 = ph^2 + w^2 with w < pi at the limit
+    higher = loops.overshoot > loops.first_peak + 1e-9
+    assert 0.94 < loops.share[higher].min() < 0.96
+    assert loops.ph[higher].min() >= 2.5
+
+
+def test_unstable_gains_are_refused_by_name():
+    with pytest.raises(ValueError, match=r"ph = 1: stable gains are 0 < Kh < 2\.26183, not 1 to 3"):
+        sweep.sweep(1.0, np.array([1.0, 3.0]))
+
+
+def test_smooth_formula_against_the_exact_overshoot():
+    # published coefficients, at loops between those of the grid it is fitted to
+    coefficients = refit.smooth_coefficients()
+    for ph in (0.0, 0.0125, 0.33, 0.777, 1.61, 2.93, 6.1, 9.9):
+        loops = sweep.sweep(ph, np.linspace(0.013, 0.945, 37) * sweep.stability_limit(ph))
+        values = smooth.smooth_overshoot(ph, loops.kh, coefficients)
+        assert np.abs(values - loops.overshoot).max() < 0.25, ph
+        assert (values >= 0.0).all()
+
+
+def test_refits_are_better_than_the_print_in_what_they_minimise():
+    for case, (start, found, old, new) in refit.refitted().items():
+        assert start.shape == found.shape
+        assert new["rms"] <= old["rms"], case
+
+
+@pytest.mark.parametrize(("case", "step"), [("case-3", 1e-6), ("rise-time", 1e-6)])
+def test_jacobian_of_the_refit_against_differences(case, step):
+    loops = sweep.sweep(1.3, np.linspace(0.3, 0.9, 7) * sweep.stability_limit(1.3))
+    printed = fits.printed_coefficients()
+    evaluate = {"case-3": refit._clipped, "rise-time": None}[case]
+
+    def value(x: np.ndarray) -> np.ndarray:
+        c = refit._with(printed, case, x)
+        return refit._rise_time(loops, c) if evaluate is None else evaluate("III", loops, c)
+
+    start = refit._flat(printed, case)
+    found = refit._jacobian(refit._SLOPES[case], printed[case], loops)
+    for index, x in enumerate(start):
+        shift = np.zeros(start.size)
+        shift[index] = step * max(1.0, abs(x))
+        expected = (value(start + shift) - value(start - shift)) / (2.0 * shift[index])
+        assert found[:, index] == pytest.approx(expected, rel=1e-5, abs=1e-7), index
+
+
+def test_only_three_shifted_decimal_points_meet_7b():
+    # by hand: (7a) at ph = 0.2, h = 1 against (7b)
+    kp = 0.404 + 0.256 * 0.2 - 0.1275 * np.sqrt(0.2)
+    ki = 0.0808 + 0.719 * 0.2 - 0.324 * np.sqrt(0.2)
+    frame = coefficients_7.implied()["value"]
+    a, b, c = (frame[f"7a_KP_{letter}"] for letter in "abc")
+    assert (a, b, c) == (-0.0404, 0.0723, 0.3852)
+    assert a * 0.04 + b * 0.2 + c == pytest.approx(kp, rel=5e-4)
+    a, b, c = (frame[f"7a_KI_{letter}"] for letter in "abc")
+    assert (a, b, c) == (-0.0525, 0.4104, -0.00024)
+    assert a * 0.04 + b * 0.2 + c == pytest.approx(ki, rel=6e-4)
+
+
+def test_tables_against_a_frequency_grid_and_an_ode_solver():
+    # the ITAE row at ph = 1: K_P, K_I from the rule by hand, M_s on a fine grid, overshoot by RK45 with a history
+    kp, ki = 0.586, 0.586 * (1.03 - 0.165)
+    w = np.linspace(1e-3, 20.0, 400_001)
+    s = 1j * w
+    ms = np.max(np.abs(1.0 / (1.0 + (kp + ki / s) * np.exp(-s) / (s + 1.0))))
+    closed = processes.loop("ITAE", 1.0, 1.0)
+    assert float(closed.sensitivity_peak()) == pytest.approx(ms, rel=1e-9)
+    n = 4000  # steps per dead time, trapezoidal rule
+    y, u = np.zeros(12 * n), np.zeros(12 * n)
+    integral, dt = 0.0, 1.0 / n
+    for j in range(1, 12 * n):
+        old, new = (u[j - 1 - n] if j > n else 0.0), (u[j - n] if j >= n else 0.0)
+        y[j] = ((1.0 - 0.5 * dt) * y[j - 1] + 0.5 * dt * (old + new)) / (1.0 + 0.5 * dt)
+        integral += 0.5 * dt * (2.0 - y[j] - y[j - 1])
+        u[j] = kp * (1.0 - y[j]) + ki * integral
+        if j == 1:
+            u[0] = kp
+    assert closed.step().overshoot() == pytest.approx(y.max() - 1.0, abs=1e-4)
+    outside = np.flatnonzero(np.abs(y - 1.0) > 0.02)[-1] * dt
+    assert closed.step().settling_time() == pytest.approx(outside, abs=5e-3)
+
+
+def test_meets_rounds_and_truncates():
+    assert transcription.meets("75.7", 75.7508)  # truncated
+    assert transcription.meets("38.4", 38.351)
+    assert not transcription.meets("7.23", 7.2406)
 
 
 @pytest.mark.parametrize(("table", "rows", "columns"), [("table-1", 5, 4), ("table-2", 7, 8)])

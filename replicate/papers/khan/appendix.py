@@ -6,11 +6,14 @@ from functools import cache
 
 import numpy as np
 import pandas as pd
-from scipy.optimize import minimize
+from numpy.typing import NDArray
+from scipy.optimize import root
 
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import case_gains, plant
+
+Array = NDArray[np.float64]
 
 POINTS = ((0.1, 0.5, 0.05), (0.5, 0.6, 0.25), (1.0, 0.8, 0.5), (2.0, 1.0, 1.0), (5.0, 2.0, 2.5), (10.0, 3.0, 4.0))
 PH_FIT = (0.01, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0)
@@ -44,11 +47,17 @@ appendix_fit = paper.table(
 def closed_form(p: float, kp: float, ki: float, *, sign: float = -1.0) -> float:
     """Return J for h = 1 by the residues at the zeros of 1 - (loop)(s) (loop)(-s).
 
+    Only for stable loops: the formula returns numbers for unstable ones, too.
+
     Parameters
     ----------
     sign
         That of K_P p in the second numerator: +1 as printed, -1 as the residues give.
     """
+    return float(_closed_form(p, complex(kp), complex(ki), sign).real)
+
+
+def _closed_form(p: float, kp: complex, ki: complex, sign: float = -1.0) -> complex:
     delta = np.sqrt((kp**2 - p**2) ** 2 + 4.0 * ki**2)
     rho, sigma = np.sqrt((delta + p**2 - kp**2) / 2.0), np.sqrt((delta - p**2 + kp**2) / 2.0)
     below, above = p**2 - rho**2, p**2 + sigma**2
@@ -56,7 +65,14 @@ def closed_form(p: float, kp: float, ki: float, *, sign: float = -1.0) -> float:
     second = (
         above * (ki + sign * kp * p + above * np.cos(sigma)) / (kp * sigma**2 + p * ki - sigma * above * np.sin(sigma))
     )
-    return float((first + second) / (2.0 * delta))
+    return complex((first + second) / (2.0 * delta))
+
+
+def _gradient(x: Array, p: float) -> Array:
+    """Return dJ/dK_P, dJ/dK_I by complex steps, which lose no digits."""
+    step = 1e-30
+    kp, ki = complex(x[0]), complex(x[1])
+    return np.array([_closed_form(p, kp + 1j * step, ki).imag, _closed_form(p, kp, ki + 1j * step).imag]) / step
 
 
 def integral(p: float, kp: float, ki: float) -> float:
@@ -66,18 +82,30 @@ def integral(p: float, kp: float, ki: float) -> float:
 
 @cache
 def optimum(p: float) -> tuple[float, float, float]:
-    """Return the ISE-optimal K_P, K_I and J for h = 1, by the corrected closed form."""
+    """Return the ISE-optimal K_P, K_I and J for h = 1: the zero of the corrected closed form's gradient.
+
+    Raises
+    ------
+    ValueError
+        If the zero that is found is no minimum, or its loop is not stable.
+    """
     start = np.array(case_gains("ISE-I" if p < 0.2 else "ISE-II", p, 1.0))
 
-    def cost(x: np.ndarray) -> float:
-        kp, ki = x * start
-        if ki <= 0.0 or not Loop(plant(p, 1.0), PI(float(kp), float(ki))).is_stable():
-            return 1e3  # the formula returns numbers for unstable loops, too
-        return closed_form(p, float(kp), float(ki))
+    def slope(x: Array) -> Array:  # in units of the printed gains
+        return np.asarray(_gradient(x * start, p) * start)
 
-    found = minimize(cost, np.ones(2), method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-15, "maxiter": 2000})
-    kp, ki = found.x * start
-    return float(kp), float(ki), float(found.fun)
+    found = root(slope, np.ones(2), tol=1e-14)
+    kp, ki = (float(value) for value in found.x * start)
+    # the Hessian from central differences of the exact gradient
+    h = 1e-5 * np.array([kp, ki])
+    columns = [
+        (_gradient(np.array([kp, ki]) + d, p) - _gradient(np.array([kp, ki]) - d, p)) / (2.0 * d.sum())
+        for d in np.diag(h)
+    ]
+    if not (np.all(np.linalg.eigvalsh(np.array(columns)) > 0.0) and Loop(plant(p, 1.0), PI(kp, ki)).is_stable()):
+        msg = f"ph = {p:g}: no minimum of J near the printed gains ({found.message})"
+        raise ValueError(msg)
+    return kp, ki, closed_form(p, kp, ki)
 
 
 def _j_frame(sign: float) -> pd.DataFrame:

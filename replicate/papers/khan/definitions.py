@@ -1,38 +1,41 @@
-"""Which definitions the tables use: every alternative that was tried, and how many printed cells it meets."""
+"""Which definitions and which versions of the rules the tables use: what was tried, and how many cells it meets."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
+from functools import cache
 
 import pandas as pd
 
 from replicate.loops import PI, Loop, Signal
 from replicate.papers.khan import paper
-from replicate.papers.khan.processes import RESTORED, gains, plant
-from replicate.papers.khan.tables import LOAD_AT, RULES_1, RULES_2
-from replicate.papers.khan.transcription import printed_cells
+from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
+from replicate.papers.khan.sweep import stability_limit
+from replicate.papers.khan.tables import LOAD_AT, QUANTITIES, RULES_1, RULES_2
+from replicate.papers.khan.transcription import meets, printed_cells
+from replicate.rules import classical_rules
 
-NEAR = 0.005  # a cell is met if it agrees within half a per cent: the printed times carry errors of that size
+NEAR = 0.005  # half a per cent: the printed times carry errors of that size
+DEAD_TIMES = {"10": 10.0, "1": 1.0, "0.1": 0.1}  # by the label of ph; p = 1 throughout
 
 definitions = paper.table(
     "definitions",
-    "Settling-time definitions tried on Tables I and II",
+    "Definitions and rule versions tried on Tables I and II",
     printed=False,
-    caption="Number of printed cells that agree within 0.5 % under each definition, rules as restored. The definitions "
-    "of the tables are those of the first row of each kind. The two swapped cells of Table I count as they stand.",
-    labels={"cells": "cells met", "of": "of"},
+    caption="How many printed cells come out to the last digit, and how many within 0.5 %, under each definition of "
+    "$t_s$ and $t_d$ (all rules, (7a) restored; the two swapped cells of Table I count as they stand), and under each "
+    "version of a rule (all four quantities). The definition used here is the first of each kind. A rule that gives no "
+    "stable loop meets no cell.",
+    labels={"equal": "to the last digit", "close": "within 0.5 %", "of": "of"},
 )
 
-# of a loop with its dead time
-Measure = Callable[[Loop, float], float]
+Measure = Callable[[Loop, float], float]  # of a loop with its dead time
+Cell = tuple[str, float, str]  # rule, dead time, printed text
 
 
 def _last_exit(y: Signal, width: float) -> float:
     return y.settling_time(width / (abs(y.final) or 1.0))
-
-
-def _load(closed: Loop, width: float) -> float:
-    return _last_exit(closed.load_step(), width)
 
 
 def _relative_to_peak(closed: Loop, _: float) -> float:
@@ -50,37 +53,107 @@ SETTLING: dict[str, Measure] = {
     "ts: last exit from 2 % of the set-point": lambda c, _: _last_exit(c.step(), 0.02),
     "ts: last exit from 1 %": lambda c, _: _last_exit(c.step(), 0.01),
     "ts: last exit from 5 %": lambda c, _: _last_exit(c.step(), 0.05),
+    "ts: first entry into 2 %": lambda c, _: c.step().first_reach(0.98),
     "ts: 2 %, counted from the end of the dead time": lambda c, h: _last_exit(c.step(), 0.02) - h,
 }
 LOAD: dict[str, Measure] = {
-    "td: load before the dead time at finite t1, band 0.02": _at_finite_time,
-    "td: the same, t1 infinite": lambda c, _: _load(c, 0.02),
-    "td: load after the dead time": lambda c, h: _load(c, 0.02) - h,
+    "td: band 0.02, load before the dead time, late": lambda c, _: _last_exit(c.load_step(), 0.02),
+    "td: the same, load at t = 100, 25, 5": _at_finite_time,
+    "td: load after the dead time": lambda c, h: _last_exit(c.load_step(), 0.02) - h,
     "td: 2 % of the load response's peak": _relative_to_peak,
-    "td: band 0.01": lambda c, _: _load(c, 0.01),
-    "td: band 0.05": lambda c, _: _load(c, 0.05),
+    "td: band 0.01": lambda c, _: _last_exit(c.load_step(), 0.01),
+    "td: band 0.05": lambda c, _: _last_exit(c.load_step(), 0.05),
 }
+
+Version = Callable[[float], tuple[float, float]]  # (K_P, K_I) for p = 1 and a dead time
+
+
+def _classical(id: str, variant: str = "printed") -> Version:
+    def evaluate(h: float) -> tuple[float, float]:
+        ultimate = stability_limit(h) / h  # of proportional control, with the period of its oscillation
+        period = 2.0 * math.pi / math.sqrt(ultimate**2 - 1.0)
+        found = classical_rules(variant)[id].evaluate(K=1.0, tau=1.0, L=h, Ku=ultimate, Tu=period)
+        return float(found.kp), float(found.ki)
+
+    return evaluate
+
+
+def _paper(rule: str, variant: str) -> Version:
+    return lambda h: gains(rule, 1.0, h, variant)
+
+
+VERSIONS: dict[str, dict[str, Version]] = {
+    "Proposed": {
+        "(7): (7a) restored, (7b) printed": _paper("Proposed", RESTORED),
+        "(7): (7a) as printed": _paper("Proposed", "printed"),
+        "(7): (7a) restored, (7b) unrounded": lambda h: gains("Proposed", 1.0, h, RESTORED if h < 0.2 else "unrounded"),
+    },
+    "ZN": {
+        "ZN: reaction curve, Ti = 3h": _classical("ziegler-nichols"),
+        "ZN: reaction curve, Ti = h/0.3": _classical("ziegler-nichols", "original"),
+        "ZN: ultimate gain": _classical("ziegler-nichols", "ultimate-gain"),
+    },
+    "ISE": {
+        "ISE: Appendix": _paper("ISE", "printed"),
+        "ISE: Appendix, case II throughout": lambda h: case_gains("ISE-II", 1.0, h),
+        "ISE: Zhuang and Atherton": _classical("ise-setpoint"),
+    },
+    "CC": {
+        "CC: original fractions": _classical("cohen-coon"),
+        "CC: decimals 3.33, 0.33, 2.2": _classical("cohen-coon", "decimals-033"),
+        "CC: decimals 3.33, 0.31, 2.22": _classical("cohen-coon", "decimals-031"),
+        "CC: Åström and Hägglund": _classical("cohen-coon", "astrom-hagglund"),
+    },
+}
+
+
+@cache
+def _printed(quantity: str) -> tuple[Cell, ...]:
+    first, second = printed_cells("table-1"), printed_cells("table-2")
+    cells = [(rule, 10.0, first[rule, quantity]) for rule in RULES_1]
+    cells += [(r, h, second[r, f"ph{key}_{quantity}"]) for r in RULES_2 for key, h in DEAD_TIMES.items() if h < 10.0]
+    return tuple(cells)
+
+
+def _count(pairs: list[tuple[str, float]]) -> dict[str, int]:
+    return {
+        "equal": sum(meets(text, value) for text, value in pairs),
+        "close": sum(meets(text, value) or abs(value - float(text)) <= NEAR * float(text) for text, value in pairs),
+        "of": len(pairs),
+    }
 
 
 @definitions.reading("as-written", "Number of cells met")
 def count() -> pd.DataFrame:
-    """Count the cells of t_s and t_d that each definition meets."""
+    """Count the cells that each definition and each version of a rule meets."""
     rows = {}
+    loops = {(rule, h): Loop(plant(1.0, h), PI(*gains(rule, 1.0, h, RESTORED))) for rule, h, _ in _printed("ts")}
     for kind, measures in (("ts", SETTLING), ("td", LOAD)):
-        cells = _cells(kind)
         for name, measure in measures.items():
-            met = 0
-            for rule, h, printed in cells:
-                kp, ki = gains(rule, 1.0, h, RESTORED)
-                value = measure(Loop(plant(1.0, h), PI(kp, ki)), h)
-                met += abs(value - printed) <= NEAR * printed
-            rows[name] = {"cells": met, "of": len(cells)}
+            rows[name] = _count([(text, measure(loops[rule, h], h)) for rule, h, text in _printed(kind)])
+    for rule, versions in VERSIONS.items():
+        for name, version in versions.items():
+            rows[name] = _count(_version_cells(rule, version))
     return pd.DataFrame.from_dict(rows, orient="index")
 
 
-def _cells(kind: str) -> list[tuple[str, float, float]]:
-    first = [(rule, 10.0, printed_cells("table-1")[rule, kind]) for rule in RULES_1]
-    second = printed_cells("table-2")
-    return first + [
-        (rule, h, second[rule, f"ph{key}_{kind}"]) for rule in RULES_2 for key, h in (("1", 1.0), ("0.1", 0.1))
+def _version_cells(rule: str, version: Version) -> list[tuple[str, float]]:
+    """Return printed text and computed value of every cell of one rule."""
+    computed = {h: specifications_of(version(h), h) for row, h, _ in _printed("ts") if row == rule}
+    return [
+        (text, computed[h][quantity]) for quantity in QUANTITIES for row, h, text in _printed(quantity) if row == rule
     ]
+
+
+def specifications_of(pair: tuple[float, float], h: float) -> Mapping[str, float]:
+    """Return the four quantities of the tables; infinite where the loop is not stable or has no integral action."""
+    if pair[1] <= 0.0 or not (closed := Loop(plant(1.0, h), PI(*pair))).is_stable():
+        return dict.fromkeys(QUANTITIES, math.inf)
+    y = closed.step()
+    values = (
+        100.0 * y.overshoot(),
+        y.settling_time(0.02),
+        closed.load_step().settling_time(0.02),
+        float(closed.sensitivity_peak()),
+    )
+    return dict(zip(QUANTITIES, values, strict=True))

@@ -10,6 +10,7 @@ from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
 from replicate.papers.khan.processes import plant
 from replicate.papers.khan.sweep import stability_limit, sweep
+from replicate.papers.khan.transcription import printed_cells
 
 ROWS_21 = ("ph", "A1", "B1", "overshoot_estimate", "overshoot_actual", "overshoot_error", "A2", "B2", "C2", "D2",
            "tr_estimate", "tr_actual")  # fmt: skip
@@ -62,6 +63,23 @@ def example_2_1_three_digits() -> pd.DataFrame:
 def example_2_1_fraction() -> pd.DataFrame:
     """Evaluate with p = 1/0.6."""
     return _example_2_1(5.0 / 3.0)
+
+
+@example_2_1.reading(
+    "printed-parts",
+    "from the example's own intermediate values",
+    "$t_r$ and the overshoot from the coefficients that the example prints, to see whether its last step is right.",
+)
+def example_2_1_from_print() -> pd.DataFrame:
+    """Take the last step of the example with its printed intermediate values."""
+    printed = {row: float(text) for (row, _), text in printed_cells("example-2-1").items()}
+    parts = [printed[name] for name in ("A2", "B2", "C2", "D2")]
+    values = dict.fromkeys(ROWS_21, float("nan")) | {
+        "overshoot_estimate": printed["A1"] + printed["B1"] * H,
+        "overshoot_error": printed["overshoot_actual"] - printed["overshoot_estimate"],
+        "tr_estimate": H * (parts[0] * np.exp(-H / parts[1]) + parts[2] * np.exp(-H / parts[3])),
+    }
+    return pd.DataFrame({"value": values})
 
 
 example_2_2 = paper.table(

@@ -61,6 +61,34 @@ def overshoot_fit(ph: float, kh: float, case: str | None = None) -> float:
     return 0.0 if np.isnan(m) else max(0.0, m)
 
 
+def overshoot_fits(ph: Array, kh: Array) -> Array:
+    """Return Max[0, M] of (2) at many points; see `overshoot_fit`."""
+    cases = cases_of(ph, kh)
+    found = np.full(ph.shape, np.nan)
+    for case in CASES:
+        mask = cases == case
+        found[mask] = np.maximum(np.nan_to_num(m_of_case(case, ph[mask], kh[mask])), 0.0)
+    return found
+
+
+def cases_of(ph: Array, kh: Array) -> NDArray[np.str_]:
+    """Return the case of (2) that covers each point, "" where none does."""
+    return np.array([case_of(*point) or "" for point in zip(ph.tolist(), kh.tolist(), strict=True)])
+
+
+def complex_below(ph: float) -> float:
+    """Return the gain below which case I takes the power of a negative number."""
+    one = printed_coefficients()["case-1"]
+    return float(one["d"] + one["e"] * np.exp(-ph / one["f"]))
+
+
+def positive_from(ph: float) -> float:
+    """Return the gain from which case I estimates an overshoot above zero."""
+    one = printed_coefficients()["case-1"]
+    size = one["a"] + one["b"] * np.exp(-ph / one["c"])
+    return complex_below(ph) + float((-one["offset"] / size) ** (2.0 / 3.0))
+
+
 def rise_time_parts(ph: Array | float, coefficients: Coefficients | None = None) -> tuple[Array, Array, Array, Array]:
     """Return A2, B2, C2, D2 of (3)."""
     c = (coefficients or printed_coefficients())["rise-time"]

@@ -1,4 +1,9 @@
-"""Exact overshoot and rise time of proportional control over many gains at once, time scaled to h = 1."""
+r"""Exact overshoot and rise time under proportional control, for many gains at once, time scaled to h = 1.
+
+The loop of Figure 2 then has two parameters, the normalised dead time ph and the gain Kh:
+:math:`\dot y(t) = -ph\,y(t) + Kh\,[1 - y(t-1)]`, with final value Kh/(Kh + ph). All gains of one ph advance
+together, one matrix product per piece of the dead time.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +13,52 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
+from scipy.special import lambertw
 
-from replicate.loops import PI, Plant, step_responses
+from replicate.loops import PI, Plant, method_of_steps
+from replicate.papers.khan.peaks import ROUNDING, Responses
 
 Array = NDArray[np.float64]
 
-SHORTEST = 30.0  # dead times; the highest peak of a loop up to 0.999 of its stability limit comes long before
+SHORTEST = 30.0  # dead times; the highest peak comes long before, which `sweep` checks
+
+# The dense grid: finer in ph where the curves change most, with the edges of the paper's cases on it.
+PH = np.round(np.concatenate([np.arange(0.0, 0.5, 0.025), np.arange(0.5, 3.0, 0.05), np.arange(3.0, 10.1, 0.2)]), 3)
+SHARES = np.arange(1, 100) / 100.0  # of the stability limit
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Loops with one ph: gains Kh, overshoot in per cent, rise time over h."""
+    """Stable loops; every array has shape (loops,).
 
-    ph: float
+    Attributes
+    ----------
+    ph, kh
+        Normalised dead time and gain.
+    overshoot
+        Largest value of the output beyond its final value, in per cent of that: the paper's definition.
+    first_peak
+        The same for the first local maximum. Close to the stability limit a later peak can be higher.
+    rise_time
+        From 10 % to 90 % of the final value, in dead times.
+    share
+        The gain as a fraction of the stability limit.
+    """
+
+    ph: Array
     kh: Array
     overshoot: Array
+    first_peak: Array
     rise_time: Array
+    share: Array
+
+    def where(self, mask: NDArray[np.bool_]) -> Sweep:
+        """Return the loops that the mask selects."""
+        return Sweep(*(part[mask] for part in self.parts()))
+
+    def parts(self) -> tuple[Array, ...]:
+        """Return all arrays in the order of the fields."""
+        return self.ph, self.kh, self.overshoot, self.first_peak, self.rise_time, self.share
 
 
 @cache
@@ -36,21 +71,47 @@ def stability_limit(ph: float) -> float:
 
 
 def sweep(ph: float, kh: Array) -> Sweep:
-    """Return exact overshoot and rise time; one matrix product per dead time serves all gains."""
-    until = max(SHORTEST, 1.0 + 4.0 / (ph + float(kh.min())))  # a slow loop is close to the lag 1/(p + K)
-    signals = step_responses(Plant([1.0], [1.0, ph], dead_time=1.0), [PI(float(k)) for k in kh], until)
-    overshoot = [max(0.0, 100.0 * (float(y.peak()) / y.final - 1.0)) for y in signals]
-    rise = [y.first_reach(0.9 * y.final) - y.first_reach(0.1 * y.final) for y in signals]
-    return Sweep(ph, np.asarray(kh, dtype=float), _without_rounding(np.array(overshoot)), np.array(rise))
+    """Return exact overshoot and rise time of loops with one ph.
+
+    Raises
+    ------
+    ValueError
+        If a gain is not in (0, stability limit), or the highest peak comes late in the horizon.
+    """
+    kh = np.asarray(kh, dtype=float)
+    limit = stability_limit(ph)
+    if not np.all((kh > 0.0) & (kh < limit)):
+        msg = f"ph = {ph:g}: stable gains are 0 < Kh < {limit:.6g}, not {kh.min():.6g} to {kh.max():.6g}"
+        raise ValueError(msg)
+    # below the breakpoint one real pole, s = W(-Kh e^ph) - ph, may be slow: the horizon must still hold the rise
+    slow = kh < np.exp(-1.0 - ph)
+    decay = ph - lambertw(-kh[slow] * np.exp(ph)).real
+    until = float(np.ceil(max(SHORTEST, 2.0 + 3.5 / decay.min(initial=1.0))))
+    plant = Plant([1.0], [1.0, ph], dead_time=1.0)
+    length, coefficients, _ = method_of_steps.respond(plant, [PI(float(k)) for k in kh], until, setpoint=1.0, load=0.0)
+    final = kh / (kh + ph)
+    responses = Responses(coefficients, length, final)
+    highest, at = responses.maximum()
+    if np.any((highest > 1.001 * final) & (at > 0.7 * until)):
+        msg = f"ph = {ph:g}: the highest peak comes late; {until:g} dead times are too few"
+        raise ValueError(msg)
+    return Sweep(
+        np.full(kh.size, ph),
+        kh,
+        _percent(highest, final),
+        _percent(responses.first_maximum(), final),
+        responses.first_reach(0.9) - responses.first_reach(0.1),
+        kh / limit,
+    )
 
 
-def _without_rounding(overshoot: Array) -> Array:
-    return np.where(overshoot < 1e-11, 0.0, overshoot)
+def _percent(peak: Array, final: Array) -> Array:
+    excess = peak / final - 1.0
+    return np.where(excess > ROUNDING, 100.0 * excess, 0.0)
 
 
 @cache
-def dense(count: int, gains: int, top: float = 0.95) -> tuple[Sweep, ...]:
-    """Return ``count`` values of ph from 0 to 10, each with ``gains`` values of Kh up to ``top`` of the limit."""
-    # finer where the curves change most
-    values = np.round(10.0 * np.linspace(0.0, 1.0, count) ** 2, 4)
-    return tuple(sweep(float(ph), np.linspace(0.02, top, gains) * stability_limit(float(ph))) for ph in values)
+def dense() -> Sweep:
+    """Return the dense grid of more than 10,000 stable loops, 0 <= ph <= 10, up to 0.99 of the stability limit."""
+    parts = [sweep(float(ph), SHARES * stability_limit(float(ph))).parts() for ph in PH]
+    return Sweep(*(np.concatenate(column) for column in zip(*parts, strict=True)))

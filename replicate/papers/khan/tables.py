@@ -66,29 +66,27 @@ READINGS: dict[str, tuple[str, str, Specifications]] = {
         "as printed, load after settling",
         (
             "Rules (7a), (7b) and those of the literature as printed, dead time exact. $t_s$ is the last exit from "
-            "$\\pm 2\\,\\%$ of the set-point. The load is a unit step at the plant input of Fig. 6, before the "
-            "dead time; "
-            "$t_d$ counts from that step, with the same absolute band, and the load enters 'sufficiently' late. "
-            "Ziegler-"
-            "Nichols is the reaction-curve rule with $T_i = 3h$."
+            "$\\pm 2\\,\\%$ of the set-point. The load is a unit step at the plant input of Fig. 6, before the dead "
+            "time; $t_d$ counts from that step, with the same absolute band, and the load enters “sufficiently” late. "
+            "Ziegler–Nichols is the reaction-curve rule with $T_i = 3h$."
         ),
         as_written,
     ),
     "restored": (
         "lost zeros of (7a) restored, load at finite time",
         (
-            "(7a) with three restored zeros. The load enters the running set-point response at $t_1 = 100$ for "
-            "$ph = 10$, "
-            "as the text says, and at 25 and 5 for $ph = 1$ and $0.1$, which slow responses still feel."
+            "(7a) with three restored zeros. The load enters the running set-point response, of which slow loops still "
+            "feel the rest: at $t = 100$ for $ph = 10$, as the text says for Fig. 8(a), and at 25 and 5 for $ph = 1$ "
+            "and 0.1, where the text is silent and these are round times that give the two cells that depend on it. "
+            "(Ziegler–Nichols at $ph = 10$ is far from settled at 100: its printed $t_d$ is that of a late load.)"
         ),
         restored,
     ),
     "unrounded": (
         "the same, (7b) unrounded",
         (
-            "(7b) is half of $K_{Popt}$ and 0.85 of $K_{Iopt}$ of the Appendix, with rounded coefficients; here "
-            "they are "
-            "not rounded."
+            "(7b) is half of $K_{Popt}$ and 0.85 of $K_{Iopt}$ of the Appendix, with rounded coefficients; here they "
+            "are not rounded."
         ),
         unrounded,
     ),

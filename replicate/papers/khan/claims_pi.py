@@ -1,0 +1,228 @@
+"""The checkable sentences of section III: PI control."""
+# ruff: noqa: D103  -- the text of a claim documents its check
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import brentq, minimize_scalar
+from scipy.special import lambertw
+
+from replicate.exhibits import ClaimVerdict, Finding
+from replicate.loops import PI, Loop
+from replicate.papers.khan.claims import claims
+from replicate.papers.khan.fig_8 import robustness
+from replicate.papers.khan.processes import NAMES, PRINTED, RESTORED, gains, loop, plant, settling_after_load
+from replicate.papers.khan.sweep import sweep
+from replicate.papers.khan.tables import RULES_1, RULES_2
+
+
+@claims.claim(
+    "steady-error", "PI control leaves no steady-state error for step references and loads.", where="Section III-A"
+)
+def no_steady_error() -> Finding:
+    closed = loop("Proposed", 1.0, 1.0)
+    value = max(abs(float(closed.step()(closed.horizon())) - 1.0), abs(float(closed.load_step()(closed.horizon()))))
+    return Finding("holds", value, f"Largest remaining deviation of rule (7) at ph = 1: {value:.0e}.")
+
+
+@claims.claim("bryant-damping", "Bryant's constants 0.368, 0.403 and 1.571 belong to damping 1.0, 0.6 and 0.0.",
+              where="Section III-B", printed="0.6")  # fmt: skip
+def bryant_damping() -> Finding:
+    def damping(kh: float) -> float:
+        pole = complex(lambertw(-kh, 0))
+        return -pole.real / abs(pole)
+
+    true = damping(0.403)
+    gain = brentq(lambda kh: damping(kh) - 0.6, 0.37, 1.5)
+    return Finding(
+        "holds-partly",
+        true,
+        f"0.368 is 1/e (double pole) and 1.571 is pi/2 (stability limit). Kh = 0.403 has a dominant damping ratio of "
+        f"{true:.3f}; 0.6 needs Kh = {gain:.4f}.",
+    )
+
+
+@claims.claim("haalman", "Haalman's 2/3 minimises the mean square error for a set-point step.", where="Section III-B",
+              )  # fmt: skip
+def haalman() -> Finding:
+    # ISE of (K/s) e^{-s}: cos K / (2 K (1 - sin K)) is the delayed integrator's; its minimum is at K = cos K
+    best = brentq(lambda k: k - np.cos(k), 0.5, 1.0)
+
+    def ise(k: float) -> float:
+        return Loop(plant(0.0, 1.0), PI(k)).step().ise()
+
+    loss = ise(2.0 / 3.0) / ise(best) - 1.0
+    return Finding(
+        "fails",
+        best,
+        f"The ISE of the cancelled loop is smallest at Kh = cos(Kh) = {best:.6f}; 2/3 gives {100 * loss:.2f} % more.",
+    )
+
+
+@claims.claim(
+    "small-overshoot", "The overshoot of rule (7) is almost always below 1 %.", where="Section III-C", printed="1"
+)
+def small_overshoot() -> Finding:
+    def overshoot(ph: float) -> float:
+        return 100.0 * loop("Proposed", 1.0, ph, RESTORED).step().overshoot()
+
+    ph = np.geomspace(0.01, 20.0, 61)
+    at = int(np.argmax([overshoot(float(x)) for x in ph]))
+    around = (float(ph[max(at - 1, 0)]), float(ph[min(at + 1, ph.size - 1)]))
+    found = minimize_scalar(lambda x: -overshoot(x), bounds=around, method="bounded", options={"xatol": 1e-7})
+    largest = -float(found.fun)
+    return Finding("holds" if largest < 1.0 else "fails", largest,
+                   f"On 0.01..20 the largest overshoot is {largest:.4f} %, at ph = {found.x:.3f}: always, not "
+                   f"almost.")  # fmt: skip
+
+
+@claims.claim("gain-margin", "For 0.01 <= ph <= 20 the gain margin of rule (7) is above 2.5.", where="Section III-C",
+              printed="2.5")  # fmt: skip
+def gain_margin() -> Finding:
+    lowest = float(robustness(RESTORED)[1].min())
+    printed = float(robustness(PRINTED)[1].min())
+    return Finding("holds" if lowest > 2.5 else "fails", lowest,
+                   f"The smallest is {lowest:.4f}, at ph = 20 (with (7a) as printed: {printed:.4f}).")  # fmt: skip
+
+
+@claims.claim("phase-margin", "For 0.01 <= ph <= 20 its phase margin is above 60 degrees.", where="Section III-C",
+              printed="60")  # fmt: skip
+def phase_margin() -> Finding:
+    lowest = float(np.degrees(robustness(RESTORED)[2].min()))
+    return Finding("holds" if lowest > 60.0 else "fails", lowest, f"The smallest is {lowest:.2f} degrees.")
+
+
+@claims.claim("sensitivity", "For 0.01 <= ph <= 20 the sensitivity peak of rule (7) is between 1.3 and 2.0.",
+              where="Section III-C")  # fmt: skip
+def sensitivity() -> Finding:
+    ms = robustness(RESTORED)[3]
+    low, high = float(ms.min()), float(ms.max())
+    return Finding("holds" if low > 1.3 and high < 2.0 else "fails", high, f"It lies between {low:.4f} and {high:.4f}.")
+
+
+@claims.claim("margin-from-Ms", "The gain margin is greater than Ms/(Ms - 1).", where="Section III-A")
+def margin_from_sensitivity() -> Finding:
+    _, gain, _, ms = robustness(RESTORED)
+    smallest = float(np.min(gain - ms / (ms - 1.0)))
+    return Finding("holds" if smallest > 0.0 else "fails", smallest,
+                   f"For rule (7) on 0.01..20 the gain margin exceeds it by at least {smallest:.3f}.")  # fmt: skip
+
+
+@claims.claim("eleven-rules", "No other of the usual rules guarantees both margins for such a range of ph.",
+              where="Section III-C")  # fmt: skip
+def other_rules() -> Finding:
+    worst = [loop("Bryant", 1.0, h).margins() for h in (0.01, 1.0, 20.0)]
+    gain, phase = min(m.gain for m in worst), min(m.phase for m in worst)
+    return Finding(
+        "holds-partly",
+        gain,
+        f"The eleven rules are in another paper and not checked here. But Bryant's rule, in this paper's own "
+        f"tables, has a "
+        f"gain margin of {gain:.3f} and a phase margin of {phase:.1f} degrees for every ph.",
+    )
+
+
+@claims.claim("itae-integral", "The integral gains of (7) correspond very closely to the ITAE rule for 0.3 <= ph <= 1.",
+              where="Section III-C")  # fmt: skip
+def itae_integral() -> Finding:
+    ph = np.linspace(0.3, 1.0, 71)
+    pairs = [(gains("Proposed", 1.0, float(x)), gains("ITAE", 1.0, float(x))) for x in ph]
+    ki = [ours[1] / itae[1] for ours, itae in pairs]
+    li = [ours[1] / ours[0] / (itae[1] / itae[0]) for ours, itae in pairs]
+    return Finding(
+        "holds-partly",
+        min(ki),
+        f"K_I of (7) is {min(ki):.3f} to {max(ki):.3f} of the ITAE value. What agrees is L_I = K_I/K_P: "
+        f"{min(li):.3f} to "
+        f"{max(li):.3f}.",
+    )
+
+
+@claims.claim("proportional-lower", "The proportional gains of (7) are usually lower than those of ITAE, more "
+                                    "so for small ph.",
+              where="Section III-C")  # fmt: skip
+def proportional_lower() -> Finding:
+    ph = np.linspace(0.3, 1.0, 71)
+    ratio = np.array([gains("Proposed", 1.0, float(x))[0] / gains("ITAE", 1.0, float(x))[0] for x in ph])
+    below = gains("Proposed", 1.0, 0.1, RESTORED)[0] / gains("ITAE", 1.0, 0.1)[0]
+    verdict: ClaimVerdict = "holds" if ratio.max() < 1.0 and np.all(np.diff(ratio) > 0.0) else "fails"
+    return Finding(
+        verdict,
+        float(ratio[0]),
+        f"The ratio rises from {ratio[0]:.3f} at ph = 0.3 to {ratio[-1]:.3f} at ph = 1. Below that range it does not "
+        f"go on falling: it is {below:.3f} at ph = 0.1.",
+    )
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """How fast rule (7) settles among the rules of a table: its places and the evidence in words."""
+
+    setpoint: int
+    load: int
+    settling_time: float
+    evidence: str
+
+
+def _ranking(rules: tuple[str, ...], h: float) -> Ranking:
+    loops = {rule: loop(rule, 1.0, h, RESTORED) for rule in rules}
+    ts = {rule: closed.step().settling_time() for rule, closed in loops.items()}
+    td = {rule: settling_after_load(closed, None) for rule, closed in loops.items()}
+    places, texts = [], []
+    for name, times in (("set-point", ts), ("load", td)):
+        order = sorted(times, key=times.__getitem__)
+        places.append(order.index("Proposed") + 1)
+        first, own = f"{NAMES.get(order[0], order[0])} in {times[order[0]]:.4g} s", f"{times['Proposed']:.4g} s"
+        texts.append(
+            f"After the {name} step rule (7) is the fastest of {len(order)}, in {own}"
+            if places[-1] == 1
+            else f"After the {name} step rule (7) is number {places[-1]} of {len(order)}, in {own}; first is {first}"
+        )
+    return Ranking(places[0], places[1], ts["Proposed"], ". ".join(texts) + ".")
+
+
+@claims.claim("superior-ph10", "At ph = 10 rule (7) settles faster than the other rules, for set-point and load.",
+              where="Section III-C")  # fmt: skip
+def superior_large() -> Finding:
+    found = _ranking(RULES_1, 10.0)
+    both = found.setpoint == found.load == 1
+    return Finding("holds" if both else "fails", found.settling_time, found.evidence)
+
+
+@claims.claim("outstanding-ph1", "At ph = 1 rule (7) still gives outstanding performance.", where="Section III-C")
+def outstanding_medium() -> Finding:
+    found = _ranking(RULES_2, 1.0)
+    both = found.setpoint == found.load == 1
+    verdict: ClaimVerdict = "holds" if both else "holds-partly" if found.setpoint <= 2 else "fails"
+    return Finding(verdict, found.settling_time, found.evidence)
+
+
+@claims.claim("slower-ph0.1", "At ph = 0.1 rule (7) still settles well on the set-point, and is slower on the load.",
+              where="Section III-C")  # fmt: skip
+def small_dead_time() -> Finding:
+    found = _ranking(RULES_2, 0.1)
+    holds = found.setpoint == 1 and found.load > 1
+    return Finding("holds" if holds else "fails", found.settling_time, found.evidence)
+
+
+@claims.claim(
+    "td-text", "At ph = 10 the load settling time of rule (7) is 37.4.", where="Section III-C", printed="37.4"
+)
+def td_of_the_text() -> Finding:
+    value = settling_after_load(loop("Proposed", 1.0, 10.0), 100.0)
+    return Finding("fails", value, f"It is {value:.3f}: Table I's 38.4 is right, and the text has one wrong digit.")
+
+
+@claims.claim("five-percent", "With K = 0.28 the overshoot is about 5 % and the rise time is estimated, too.",
+              where="Example 3.1", printed="5")  # fmt: skip
+def five_percent() -> Finding:
+    exact = sweep(0.0, np.array([0.28 * 1.82]))
+    value = float(exact.overshoot[0])
+    return Finding(
+        "holds-partly",
+        value,
+        f"The overshoot is {value:.2f} %. The rise-time fit (3) is given for ph >= 0.5 only; the cancelled loop "
+        f"has p = 0.",
+    )
