@@ -81,7 +81,12 @@ def test_a_verdict_without_its_ledger_entry_fails_check(outcome):
     told = "\n".join(after.problems)
     changed = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}
     old = {(v.exhibit, v.row, v.column): v.verdict for v in before.verdicts}
-    silent = [cell for cell in cells if changed[cell] == old[cell] and f"{cell[0]} {cell[1]}" not in told]
+    silent = [
+        (exhibit, row, column)
+        for exhibit, row, column in cells
+        if changed[exhibit, row, column] == old[exhibit, row, column]
+        and f"{exhibit}: row '{row}', column '{column}'" not in told
+    ]
     assert not silent
 
 
