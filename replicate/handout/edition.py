@@ -28,6 +28,7 @@ _FORMAT = (
     "markdown-auto_identifiers-implicit_figures-yaml_metadata_block-fancy_lists-example_lists-citations"
     "-raw_html-raw_tex-raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
 )
+_EXERCISE_LEVEL = 2  # below the section that they stand in, whatever the text writes
 _MARK = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
 
@@ -146,7 +147,7 @@ def _numbered(blocks: Blocks, source: str) -> Blocks:
         ]
         if tool:
             head += [{"t": "Space"}, {"t": "Span", "c": [["", ["tool"], []], [string(tool)]]}]
-        heading["c"] = [heading["c"][0], ["", [], []], head]
+        heading["c"] = [_EXERCISE_LEVEL, ["", [], []], head]
     return blocks
 
 

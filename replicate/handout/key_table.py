@@ -83,7 +83,7 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
     return {
         "t": "Table",
         "c": [
-            ["", ["key"], []],
+            ["", ["values"], []],
             [None, []],
             widths,
             [no_attr, heads],
@@ -110,7 +110,7 @@ def legend(view: TableView, choice: Choice) -> list[Element]:
         if word.id in found:
             out += [
                 *([string(","), {"t": "Space"}] if out else []),
-                span([string(word.symbol)], "mark", word.id),
+                span([string(word.symbol)], "badge", word.id),
                 string(f"\N{NO-BREAK SPACE}{word.name.replace(' ', chr(0xA0))}"),
             ]
     return out
@@ -184,7 +184,7 @@ def _printed_cell(cell: Cell) -> Any:
     if cell.verdict is None:
         return _cell([], "AlignRight")
     word = VERDICTS[cell.verdict.verdict]
-    mark = span([string(word.symbol)], "mark", word.id)
+    mark = span([string(word.symbol)], "badge", word.id)
     return _cell([span([string(cell.padded(cell.printed))], "printed"), mark], "AlignRight")
 
 

@@ -27,7 +27,7 @@ TEMPLATE = "handout.typ"
 _BLOCKS = {"lead", "key", "exercise", "solution"}
 _SPANS = {"number", "tool", "printed", "computed"}
 _LONG = 15  # rows; a table with more of them may break across pages, and repeats its head
-_SIGNS = {"mark", "sign"}  # these also say which verdict or match they stand for
+_SIGNS = {"badge", "sign"}  # these also say which verdict or match they stand for
 
 
 def pdf(document: Document) -> bytes:

@@ -33,7 +33,7 @@ def undershoot() -> Answer:
 
 @exercises.answer("late")
 def late() -> Answer:
-    """Return by how many per cent the printed times are later than the one-sided ones, and how far off the others are."""
+    """Return by how many per cent the print is later than the one-sided times, and how far off the others are."""
     frame = levels()
     rows = [f"{plant} Ms={ms}" for plant in TIMED for ms in (1.4, 2.0)]
     chosen = frame.loc[rows]
@@ -51,8 +51,8 @@ def dead_time() -> Answer:
 @exercises.figure(
     "one-sided",
     "Load responses of G6",
-    alt="Load responses of the sixth plant for maximum sensitivities of 1.4 and 2 with a band of plus or minus five per "
-    "cent. A circle on the curve for 2 marks the printed settling time: there the response crosses zero, and it then "
+    alt="Load responses of the sixth plant for maximum sensitivities of 1.4 and 2 with a band of plus or minus "
+    "five per cent. A circle on the curve for 2 marks the printed settling time: there it crosses zero, and it then "
     "leaves the band downwards before it settles.",
     size=(6.3, 2.5),
 )
@@ -92,8 +92,8 @@ def jump() -> Answer:
 @exercises.figure(
     "settling-over-ms",
     "Settling times of G1 over the maximum sensitivity",
-    alt="Settling time of the load response of the first plant over the maximum sensitivity from 1.2 to 2.2. The one-sided "
-    "time falls steadily. The two-sided one falls with it, then jumps up once and decreases slowly.",
+    alt="Settling time of the load response of the first plant over the maximum sensitivity from 1.2 to 2.2. The "
+    "one-sided time falls steadily. The two-sided one falls with it, then jumps up once and decreases slowly.",
     size=(5.6, 2.2),
 )
 def draw_settling(fig: Figure) -> None:
