@@ -29,13 +29,13 @@ def outcome(request) -> Outcome:
     return recompute([PAPERS[request.param]], cache_dir=ROOT / "build" / "cache")
 
 
-def altered(text: str) -> str:
-    """Change the leading digit by three: '1.43' -> '4.43', '-0.52' -> '-0.82', '0' -> '3'."""
+def altered(text: str, by: int = 3) -> str:
+    """Change the leading digit by a few units: '1.43' -> '4.43', '-0.52' -> '-0.82', '0' -> '3'."""
     place = next((i for i, c in enumerate(text) if c.isdigit() and c != "0"), None)
     if place is None:
         place = text.index("0")
     digit = int(text[place])
-    return text[:place] + str(digit + 3 if digit <= 6 else digit - 3) + text[place + 1 :]
+    return text[:place] + str(digit + by if digit + by <= 9 else digit - by) + text[place + 1 :]
 
 
 def test_altering():
@@ -49,27 +49,38 @@ def test_altering():
     ]
 
 
-def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
-    (paper,) = outcome.papers
-    before = outcome.judgements[paper.id]
-    cells = {(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in HOLDS}
-    assert cells
-    printed = {
+def _mutants(paper, cells, by):
+    return {
         exhibit: {
-            key: PrintedValue(altered(value.text), *key, value.line, significant_digits=value.significant_digits)
+            key: PrintedValue(altered(value.text, by), *key, value.line, significant_digits=value.significant_digits)
             if (exhibit, *key) in cells
             else value
             for key, value in values.items()
         }
         for exhibit, values in read_all_printed(paper).items()
     }
-    after = judge(paper, outcome.results, printed=printed)
+
+
+def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
+    (paper,) = outcome.papers
+    before = outcome.judgements[paper.id]
+    cells = {(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in HOLDS}
+    assert cells
+    after = judge(paper, outcome.results, printed=_mutants(paper, cells, 3))
     old = {(v.exhibit, v.row, v.column): v.verdict for v in before.verdicts}
     new = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}
-    unchanged = sorted(cell for cell in cells if new[cell] == old[cell])
-    assert not unchanged
+    unchanged = {cell for cell in cells if new[cell] == old[cell]}
+    # among many readings one may meet the mutant by chance; it will not meet a second one
+    again = judge(paper, outcome.results, printed=_mutants(paper, unchanged, 2))
+    assert not sorted(
+        (v.exhibit, v.row, v.column)
+        for v in again.verdicts
+        if (v.exhibit, v.row, v.column) in unchanged and v.verdict == old[v.exhibit, v.row, v.column]
+    )
+    assert len(unchanged) <= max(1, len(cells) // 100)
+    changed = cells - unchanged
     told = "\n".join(check(replace(outcome, judgements={paper.id: after}), ROOT / "figures"))
-    silent = sorted(cell for cell in cells if cell[0] not in told or cell[1] not in told)
+    silent = sorted(cell for cell in changed if cell[0] not in told or cell[1] not in told)
     assert not silent
 
 
