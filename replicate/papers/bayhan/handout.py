@@ -101,7 +101,7 @@ def misprint() -> Answer:
     "Settling time over the free parameter",
     alt="Settling time of the pole assignment over a. It falls to a flat minimum above the paper's choice, "
     "next to the value from which on the second inequality fails, and rises again.",
-    size=(5.6, 2.3),
+    size=(5.6, 1.4),
 )
 def settling_over_a(fig: Figure) -> None:
     """Draw the settling time of the pole assignment over a for Example 4.1."""
@@ -114,7 +114,7 @@ def settling_over_a(fig: Figure) -> None:
     axes.axvline(limit, color="C3", linestyle=":", linewidth=1.2)
     top = max(times)
     axes.set_ylim(0.0, top)
-    axes.annotate("the paper's choice", (EXAMPLE_41.a, 0.93 * top), (-4, 0), textcoords="offset points", ha="right")
-    axes.annotate("second inequality fails", (limit, 0.93 * top), (4, 0), textcoords="offset points")
+    axes.annotate("the paper's choice", (EXAMPLE_41.a, 0.88 * top), (-4, 0), textcoords="offset points", ha="right")
+    axes.annotate("second inequality fails", (limit, 0.88 * top), (4, 0), textcoords="offset points")
     axes.set_xlabel("$a$")
     axes.set_ylabel("settling time")
