@@ -7,7 +7,9 @@ of its axes.
 
 from __future__ import annotations
 
+import hashlib
 import io
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -110,9 +112,27 @@ def svg_text(canvas: Canvas, title: str) -> str:
     buffer = io.StringIO()
     unknown = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     canvas.savefig(buffer, format="svg", transparent=True, metadata={**unknown, "Title": title})
-    svg = buffer.getvalue().replace("#000000", plotstyle.INK)
+    svg = _settled_ids(buffer.getvalue()).replace("#000000", plotstyle.INK)
     # matplotlib writes no fill for black shapes and texts: let them inherit the ink colour.
     return svg.replace("<g ", f'<g fill="{plotstyle.INK}" ', 1)
+
+
+def _settled_ids(svg: str) -> str:
+    """Name clips and markers by their order in the file.
+
+    matplotlib names them by a hash of their coordinates, whose last bit depends on the order in which the layout solver
+    happens to add: the same picture would have different bytes.
+    """
+    import matplotlib as mpl
+
+    salt = mpl.rcParams["svg.hashsalt"] or ""
+    names: dict[str, str] = {}
+
+    def settled(match: re.Match[str]) -> str:
+        order = f"{salt}/{len(names)}".encode()
+        return names.setdefault(match[0], match[0][0] + hashlib.sha256(order).hexdigest()[:10])
+
+    return re.sub(r"(?<=[\"#])[a-z][0-9a-f]{10}(?=[\")])", settled, svg)
 
 
 def _png(canvas: Canvas) -> bytes:

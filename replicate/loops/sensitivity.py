@@ -20,6 +20,8 @@ from replicate.loops.stability import frequency_grid
 
 Array = NDArray[np.float64]
 
+TIE = 1e-9  # a design at two tangencies makes two peaks equal to within its own convergence
+
 
 class FrequencyPeak(float):
     """The peak of a frequency response; a float that also knows its frequency.
@@ -100,7 +102,7 @@ def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) ->
             break
         wider = end * 1.5
         beyond = _grid(transfer, wider, poles, start=0.98 * end)
-        best = max(best, highest_peak(kind.magnitude, kind.slope, beyond), key=float)
+        best = _highest(best, highest_peak(kind.magnitude, kind.slope, beyond))
         end = wider
     at_rest = _at_rest(transfer, kind)
     if at_rest >= best.value:
@@ -131,24 +133,21 @@ def highest_peak(magnitude: Callable[[Array], Array], slope: Callable[[float], f
     """
     m = magnitude(w)
     inner = np.nonzero((m[1:-1] >= m[:-2]) & (m[1:-1] >= m[2:]))[0] + 1
-    best = FrequencyPeak(float(m[0]), float(w[0]))
-    if m[-1] > best.value:
-        best = FrequencyPeak(float(m[-1]), float(w[-1]))
+    found = [FrequencyPeak(float(m[0]), float(w[0])), FrequencyPeak(float(m[-1]), float(w[-1]))]
     # A peak in the first or last interval can hide behind the end point: then the slope there points inwards.
-    for left, right, end in ((w[0], w[1], w[0]), (w[-2], w[-1], w[-1])) if w.size > 1 else ():
-        frequency = _polish(slope, float(left), float(end), float(right))
-        value = float(magnitude(np.array([frequency]))[0])
-        if value > best.value:
-            best = FrequencyPeak(value, frequency)
-    if inner.size == 0:
-        return best
+    brackets = [(w[0], w[1], w[0]), (w[-2], w[-1], w[-1])] if w.size > 1 else []
     # polishing gains little on a grid this fine: only the highest few can win
-    for index in inner[np.argsort(-m[inner])][:6]:
-        frequency = _polish(slope, float(w[index - 1]), float(w[index]), float(w[index + 1]))
-        value = float(magnitude(np.array([frequency]))[0])
-        if value > best.value:
-            best = FrequencyPeak(value, frequency)
-    return best
+    brackets += [(w[i - 1], w[i + 1], w[i]) for i in inner[np.argsort(-m[inner])][:6]]
+    for left, right, start in brackets:
+        frequency = _polish(slope, float(left), float(start), float(right))
+        found.append(FrequencyPeak(float(magnitude(np.array([frequency]))[0]), frequency))
+    return _highest(*found)
+
+
+def _highest(*peaks: FrequencyPeak) -> FrequencyPeak:
+    """Return the highest peak; of several that are equal up to rounding the frequency of the lowest."""
+    value = max(float(peak) for peak in peaks)
+    return FrequencyPeak(value, min(peak.frequency for peak in peaks if float(peak) >= value * (1.0 - TIE)))
 
 
 def _polish(slope: Callable[[float], float], left: float, middle: float, right: float) -> float:
