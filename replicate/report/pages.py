@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import dropwhile, takewhile
 from pathlib import Path
 
 from replicate.errors import OutputError, TemplateError
@@ -45,6 +46,22 @@ class Page:
     def by_id(self) -> dict[str, ExhibitView]:
         """The exhibits of the page by id."""
         return {exhibit.id: exhibit for exhibit in self.exhibits}
+
+    @property
+    def opening(self) -> str:
+        """The prose before the first heading or exhibit: what a reader should see on the first screen."""
+        before = takewhile(lambda piece: piece.kind == "text", self.prose)
+        return "\n\n".join(piece.text for piece in before)
+
+    @property
+    def abstract(self) -> str:
+        """The first paragraph of the opening."""
+        return self.opening.partition("\n\n")[0]
+
+    @property
+    def body(self) -> list[Piece]:
+        """The prose after the opening."""
+        return list(dropwhile(lambda piece: piece.kind == "text", self.prose))
 
     @property
     def verdicts(self) -> list[VerdictRow]:
