@@ -9,6 +9,7 @@ This module only describes: computing, judging and rendering happen elsewhere.
 
 from __future__ import annotations
 
+import csv
 import importlib
 import importlib.resources
 from collections.abc import Callable, Sequence
@@ -240,6 +241,23 @@ class Paper:
     def folder(self) -> Traversable:
         """Return the package's folder, for its data files."""
         return importlib.resources.files(self.package)
+
+    def printed_cells(self, exhibit: str) -> dict[tuple[str, str], str]:
+        """Return what the paper prints in a table, by row and column, for exhibits that weigh the print as evidence.
+
+        Blank cells are left out. The file is not validated here; `replicate.printed.read_printed` does that.
+        """
+        text = (self.folder() / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
+        return {
+            (record["row"], column): cell
+            for record in csv.DictReader(text.splitlines())
+            for column, cell in record.items()
+            if column != "row" and cell
+        }
+
+    def printed_numbers(self, exhibit: str) -> dict[tuple[str, str], float]:
+        """Return the printed cells of a table as numbers."""
+        return {key: float(cell) for key, cell in self.printed_cells(exhibit).items()}
 
     def _add(self, exhibit: Exhibit) -> None:
         if exhibit.id in self.exhibits:

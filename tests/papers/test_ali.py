@@ -19,7 +19,6 @@ from replicate.papers.ali.structures import (
     Settings,
     d_filter,
     plant,
-    printed_texts,
     series,
 )
 from replicate.papers.ali.toolchain import norm_estimate, pade_sensitivity_norm, pade_sensitivity_peak
@@ -240,7 +239,7 @@ def test_reconstruction_meets_every_printed_sensitivity_two_of_them_by_truncatio
     truncated = []
     for id in ("table-1", "table-2"):
         computed = exhibits[id].readings["authors"].compute()["Ms"].to_dict()
-        for (row, column), text in printed_texts(id).items():
+        for (row, column), text in paper.printed_cells(id).items():
             if column == "Ms":
                 assert float(text) - 0.005 <= computed[row] < float(text) + 0.01  # rounds or truncates to the print
                 truncated += [(id, row)] * (computed[row] > float(text) + 0.005)
@@ -267,7 +266,7 @@ def test_design_loop_meets_the_specification_only_with_the_other_sign_of_q(exhib
 
 
 def test_cubic_is_the_least_squares_fit_to_the_printed_data(exhibits):
-    texts = {**printed_texts("table-2"), **printed_texts("table-1")}
+    texts = {**paper.printed_cells("table-2"), **paper.printed_cells("table-1")}
     data = {Fraction(row): Fraction(text) for (row, column), text in texts.items() if column == "Ti"}
     assert len(data) == 10
     matrix = sp.Matrix([[sp.Rational(x.numerator, x.denominator) ** n for n in (3, 2, 1, 0)] for x in data])
@@ -275,7 +274,7 @@ def test_cubic_is_the_least_squares_fit_to_the_printed_data(exhibits):
     expected = (matrix.T * matrix).LUsolve(matrix.T * values)  # exact normal equations
     computed = exhibits["eq-11"].readings["as-written"].compute()["coefficient"]
     assert computed.tolist() == pytest.approx([float(c) for c in expected], rel=1e-10)
-    printed = printed_texts("eq-11")
+    printed = paper.printed_cells("eq-11")
     for row, value in zip(computed.index, expected, strict=True):
         text = printed[row, "coefficient"]
         assert f"{float(value):.{len(text.split('.')[1])}f}" == text
@@ -290,7 +289,7 @@ def test_rightmost_poles_and_gain_intervals(exhibits, id):
     row = exhibits["stability"].readings["as-written"].compute().loc[id]
     x = Fraction(id.rsplit("-", 1)[1])
     theta = float(x)
-    a3, a2, a1, a0 = (float(text) for text in printed_texts("eq-11").values())
+    a3, a2, a1, a0 = (float(text) for text in paper.printed_cells("eq-11").values())
     ti = tuning.integral_time(x) if id.startswith("table") else ((a3 * theta + a2) * theta + a1) * theta + a0
     settings = Settings(row["KKp"], ti, theta / 2)
     with mp.workdps(30):

@@ -8,12 +8,13 @@ from itertools import pairwise
 
 from replicate.exhibits import Finding
 from replicate.loops import Loop
+from replicate.papers.ali import paper
 from replicate.papers.ali.claims import TABLE_1, WORST, claims, number, true_peak
 from replicate.papers.ali.eq_11 import ROWS, printed_coefficients, printed_integral_times
 from replicate.papers.ali.sensitivities import designed, exact_peak
 from replicate.papers.ali.sensitivity_count import is_print_of
 from replicate.papers.ali.stability import DESIGNS, robustness
-from replicate.papers.ali.structures import Settings, plant, printed_texts, series
+from replicate.papers.ali.structures import Settings, plant, series
 from replicate.papers.ali.table_1 import table_1
 from replicate.papers.ali.table_2 import table_2
 from replicate.papers.ali.tuning import (
@@ -33,7 +34,7 @@ from replicate.papers.ali.tuning import (
 def true_ms() -> Finding:
     deviations, equal = [], 0
     for table in (table_1, table_2):
-        texts = printed_texts(table.id)
+        texts = paper.printed_cells(table.id)
         for row in table.rows:
             peak = true_peak(table.id, Fraction(row))
             deviations.append(float(texts[row, "Ms"]) / peak - 1.0)

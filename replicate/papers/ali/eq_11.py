@@ -10,7 +10,6 @@ import numpy as np
 
 from replicate.exhibits import AS_WRITTEN
 from replicate.papers.ali import paper
-from replicate.papers.ali.structures import printed_texts
 from replicate.papers.ali.tuning import cubic, integral_time
 
 if TYPE_CHECKING:
@@ -22,7 +21,7 @@ ROWS = tuple(str(float(Fraction(tenths, 10))) for tenths in range(1, 11))
 
 def printed_integral_times() -> dict[str, float]:
     """Return the ten printed Ti by theta/T: nine from Table 1, the last from Table 2."""
-    texts = {**printed_texts("table-2"), **printed_texts("table-1")}
+    texts = {**paper.printed_cells("table-2"), **paper.printed_cells("table-1")}
     return {row: float(texts[row, "Ti"]) for row in ROWS}
 
 
@@ -33,7 +32,7 @@ def exact_integral_times() -> dict[str, float]:
 
 def printed_coefficients() -> tuple[float, float, float, float]:
     """Return the coefficients of (11) as printed."""
-    texts = printed_texts("eq-11")
+    texts = paper.printed_cells("eq-11")
     a, b, c, d = (float(texts[row, "coefficient"]) for row in COEFFICIENTS)
     return a, b, c, d
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import Loop, Response, Signal
+from replicate.papers.ali import paper
 from replicate.papers.ali.stability import summarised
 from replicate.papers.ali.structures import (
     STRUCTURES,
     Settings,
     plant,
     printed_settings,
-    printed_texts,
 )
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ LABELS = {
 
 def example_1() -> dict[str, Settings]:
     """Return the settings simulated in Example 1; the proposed ones are those printed in Table 2."""
-    texts = printed_texts("table-2")
+    texts = paper.printed_cells("table-2")
     proposed = Settings(float(texts["0.7", "KKp"]), float(texts["0.7", "Ti"]), float(EXAMPLE_1 / 2))
     return {
         "proposed": proposed,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import PID, Loop
-from replicate.papers.ali.structures import Settings, Structure, d_filter, plant, printed_texts, series
+from replicate.papers.ali import paper
+from replicate.papers.ali.structures import Settings, Structure, d_filter, plant, series
 from replicate.papers.ali.toolchain import pade_sensitivity_norm, pade_sensitivity_peak
 from replicate.papers.ali.tuning import gain_product, integral_time, specified_sensitivity
 
@@ -48,7 +49,7 @@ def tabulated(table: str, row: str) -> Settings:
     Ti as printed; the gain unrounded in Table 1 (the printed 1.82 or 1.49 would change Ms in the second digit), and as
     printed in Table 2.
     """
-    texts = printed_texts(table)
+    texts = paper.printed_cells(table)
     gain = gain_product(Fraction(row)) if table == "table-1" else float(texts[row, "KKp"])
     return Settings(gain, float(texts[row, "Ti"]), float(Fraction(row) / 2))
 

@@ -14,7 +14,6 @@ from replicate.papers.ali.structures import (
     Structure,
     d_filter,
     ideal,
-    printed_texts,
     series,
     unfiltered,
 )
@@ -96,7 +95,7 @@ def count() -> pd.DataFrame:
     for id, (_, structure, peak, settings) in HYPOTHESES.items():
         equal, deviations = [], []
         for table in (table_1, table_2):
-            texts = printed_texts(table.id)
+            texts = paper.printed_cells(table.id)
             values = {row: sensitivity(table.id, row, structure, peak, settings) for row in table.rows}
             equal.append(sum(is_print_of(texts[row, "Ms"], value) for row, value in values.items()))
             deviations += [abs(value / float(texts[row, "Ms"]) - 1.0) for row, value in values.items()]

@@ -12,7 +12,6 @@ ideal    :math:`K_p (1 + 1/sT_i + sT_d/(1 + s\alpha T_d))`                 paral
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -88,19 +87,7 @@ def plant(theta: float) -> Plant:
     return Plant([1.0], [1.0, -1.0], dead_time=theta)
 
 
-def printed_texts(exhibit: str) -> dict[tuple[str, str], str]:
-    """Return what the paper prints in a table, by row and column; blank cells are left out."""
-    text = (paper.folder() / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
-    records = csv.DictReader(text.splitlines())
-    return {
-        (record["row"], column): cell
-        for record in records
-        for column, cell in record.items()
-        if column != "row" and cell
-    }
-
-
 def printed_settings(exhibit: str, name: str) -> Settings:
     """Return the settings (Kp, Ti, Td) that the paper prints for one controller, in a row or a column of an exhibit."""
-    texts = printed_texts(exhibit)
+    texts = paper.printed_cells(exhibit)
     return Settings(*(float(texts.get((name, key)) or texts[key, name]) for key in ("Kp", "Ti", "Td")))

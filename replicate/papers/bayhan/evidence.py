@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from typing import TYPE_CHECKING
 
@@ -21,13 +20,6 @@ STEP_ROWS = tuple(f"{table.id}-{row}" for table, _ in TABLES for row in table.ro
 TIMES = ("settling_time", "delay_time", "rise_time")
 
 Printed = dict[tuple[str, str], str]
-
-
-def printed_values(table: str) -> Printed:
-    """Return the printed strings of a table by row and column."""
-    text = (paper.folder() / "printed" / f"{table}.csv").read_text(encoding="utf-8")
-    rows = csv.DictReader(text.splitlines())
-    return {(row["row"], column): cell for row in rows for column, cell in row.items() if column != "row"}
 
 
 def six_digits(number: float | str) -> str:
@@ -70,7 +62,7 @@ def in_steps() -> pd.DataFrame:
 
     rows: dict[str, list[float]] = {}
     for table, process in TABLES:
-        printed = printed_values(table.id)
+        printed = paper.printed_cells(table.id)
         found = controllers(process, AUTHORS.convention, AUTHORS.variant)
         for row in table.rows:
             response = sampled_response(process, found[row].k, found[row].ki)
@@ -131,7 +123,7 @@ def matches() -> pd.DataFrame:
         equal, near, cells = [], 0, 0
         for table, process in TABLES:
             computed = assumption.table(process, table.rows)
-            printed = printed_values(table.id)
+            printed = paper.printed_cells(table.id)
             pairs = [(text, number(computed, row, column)) for (row, column), text in printed.items()]
             equal.append(sum(_equal(text, value) for text, value in pairs))
             near += sum(

@@ -9,7 +9,6 @@ import pandas as pd
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import case_gains
-from replicate.papers.khan.transcription import printed_cells
 
 # (7a): K_P = a p^2 h + b p + c/h, K_I = a p^2 + b p/h + c/h^2; (7b): a/h + b p + c sqrt(p/h), and K_I alike
 ROWS = tuple(f"{case}_{gain}_{letter}" for case in ("7a", "7b") for gain in ("KP", "KI") for letter in "abc")
@@ -46,7 +45,7 @@ search = paper.table(
 @cache
 def _combinations(gain: str) -> tuple[tuple[float, tuple[float, ...]], ...]:
     """Return (jump in per cent, coefficients) of all combinations of shifts, the smallest jump first."""
-    printed = printed_cells("rule-coefficients")
+    printed = paper.printed_cells("rule-coefficients")
     own = [float(printed[f"7a_{gain}_{letter}", "value"]) for letter in "abc"]
     target = case_gains("7b", MEETING, 1.0)[0 if gain == "KP" else 1]
     found = []
@@ -92,7 +91,7 @@ def lost_zeros() -> pd.DataFrame:
         found = _combinations(gain)
         for number, (jump, values) in enumerate(found[:3], 1):
             rows[f"{gain}, no. {number}"] = [*(float(f"{x:.12g}") for x in values), jump]
-        printed = printed_cells("rule-coefficients")
+        printed = paper.printed_cells("rule-coefficients")
         own = tuple(float(printed[f"7a_{gain}_{letter}", "value"]) for letter in "abc")
         jump = next(jump for jump, values in found if max(abs(x - y) for x, y in zip(values, own, strict=True)) < 1e-12)
         rows[f"{gain}, printed"] = [*own, jump]

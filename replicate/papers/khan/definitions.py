@@ -13,7 +13,7 @@ from replicate.papers.khan import paper
 from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
 from replicate.papers.khan.sweep import stability_limit
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES, RULES_1, RULES_2
-from replicate.papers.khan.transcription import meets, printed_cells
+from replicate.papers.khan.transcription import meets
 from replicate.rules import classical_rules
 
 NEAR = 0.005  # half a per cent: the printed times carry errors of that size
@@ -109,7 +109,7 @@ VERSIONS: dict[str, dict[str, Version]] = {
 
 @cache
 def _printed(quantity: str) -> tuple[Cell, ...]:
-    first, second = printed_cells("table-1"), printed_cells("table-2")
+    first, second = paper.printed_cells("table-1"), paper.printed_cells("table-2")
     cells = [(rule, 10.0, first[rule, quantity]) for rule in RULES_1]
     cells += [(r, h, second[r, f"ph{key}_{quantity}"]) for r in RULES_2 for key, h in DEAD_TIMES.items() if h < 10.0]
     return tuple(cells)

@@ -10,7 +10,7 @@ from replicate.papers.khan import paper
 from replicate.papers.khan.definitions import VERSIONS, specifications_of
 from replicate.papers.khan.processes import loop, settling_after_load
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES
-from replicate.papers.khan.transcription import meets, printed_cells
+from replicate.papers.khan.transcription import meets
 
 swapped = paper.table(
     "swapped-rows",
@@ -56,7 +56,7 @@ cohen_coon = paper.table(
 def swapped_rows() -> pd.DataFrame:
     """Compare both printed times with both exact ones."""
     pair = ("Haalman", "Bryant")
-    printed = printed_cells("table-1")
+    printed = paper.printed_cells("table-1")
     exact = {rule: settling_after_load(loop(rule, 1.0, 10.0), LOAD_AT[10.0]) for rule in pair}
     rows = {}
     for rule, other in (pair, pair[::-1]):
@@ -75,7 +75,7 @@ def _against(text: str, value: float) -> tuple[float, float]:
 @scaling.reading("as-written", "Printed times over $h$")
 def scaled() -> pd.DataFrame:
     """Divide the printed times of the cancelled loops by the dead time."""
-    first, second, example = printed_cells("table-1"), printed_cells("table-2"), printed_cells("example-3-1")
+    first, second, example = (paper.printed_cells(id) for id in ("table-1", "table-2", "example-3-1"))
     rows = {}
     for rule in ("Haalman", "Bryant"):
         y = loop(rule, 1.0, 1.0).step()
@@ -92,7 +92,7 @@ def scaled() -> pd.DataFrame:
 @cohen_coon.reading("as-written", "Published versions of the rule")
 def cohen_coon_versions() -> pd.DataFrame:
     """Evaluate every version at ph = 1 and count the cells it meets."""
-    printed = printed_cells("table-2")
+    printed = paper.printed_cells("table-2")
     rows: dict[str, list[float]] = {
         "printed": [math.nan, math.nan, *(float(printed["CC", f"ph1_{q}"]) for q in QUANTITIES), 4.0, 4.0]
     }

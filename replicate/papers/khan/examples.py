@@ -10,7 +10,6 @@ from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
 from replicate.papers.khan.processes import plant
 from replicate.papers.khan.sweep import stability_limit, sweep
-from replicate.papers.khan.transcription import printed_cells
 
 ROWS_21 = ("ph", "A1", "B1", "overshoot_estimate", "overshoot_actual", "overshoot_error", "A2", "B2", "C2", "D2",
            "tr_estimate", "tr_actual")  # fmt: skip
@@ -72,7 +71,7 @@ def example_2_1_fraction() -> pd.DataFrame:
 )
 def example_2_1_from_print() -> pd.DataFrame:
     """Take the last step of the example with its printed intermediate values."""
-    printed = {row: float(text) for (row, _), text in printed_cells("example-2-1").items()}
+    printed = {row: float(text) for (row, _), text in paper.printed_cells("example-2-1").items()}
     parts = [printed[name] for name in ("A2", "B2", "C2", "D2")]
     values = dict.fromkeys(ROWS_21, float("nan")) | {
         "overshoot_estimate": printed["A1"] + printed["B1"] * H,

@@ -1,16 +1,6 @@
-"""The printed numbers of a table, for exhibits that weigh them as evidence."""
+"""When a number meets a print, for exhibits that weigh printed numbers as evidence."""
 
 from __future__ import annotations
-
-import csv
-from importlib.resources import files
-
-
-def printed_cells(exhibit: str) -> dict[tuple[str, str], str]:
-    """Return the printed strings of a table by row and column key."""
-    text = (files(__package__) / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
-    rows = csv.DictReader(text.splitlines())
-    return {(row["row"], column): cell for row in rows for column, cell in row.items() if column != "row"}
 
 
 def meets(printed: str, value: float) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -52,9 +51,8 @@ def hyperbola(coefficients: tuple[float, float], tau: ArrayLike) -> NDArray[np.f
 
 def printed_coefficients(margin: str) -> tuple[float, float]:
     """Return (μ, ν) as the paper prints them."""
-    text = (paper.folder() / "printed" / "table-1.csv").read_text(encoding="utf-8")
-    rows = {row["row"]: row for row in csv.DictReader(text.splitlines())}
-    return float(rows["mu"][margin]), float(rows["nu"][margin])
+    printed = paper.printed_numbers("table-1")
+    return printed["mu", margin], printed["nu", margin]
 
 
 def _frame(fits: Iterable[tuple[float, float]]) -> pd.DataFrame:

@@ -11,9 +11,9 @@ from scipy import optimize
 
 from replicate.exercises import Answer, Exercises
 from replicate.loops import Loop, Signal, design_pi
+from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design, load_response
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
 from replicate.papers.panagopoulos.part_1.settling_evidence import levels
 
@@ -64,7 +64,7 @@ def draw_one_sided(fig: Figure) -> None:
     for ms, style in ((1.4, "--"), (2.0, "-")):
         response = load_response("G6", ms)
         (line,) = axes.plot(times, response(times), style, label=f"$M_s = {ms:g}$")
-        mark = float(printed("I-table-1")[f"G6 Ms={ms}", "ts"])
+        mark = paper.printed_numbers("I-table-1")[f"G6 Ms={ms}", "ts"]
         axes.plot([mark], [float(response(mark))], "o", color=line.get_color(), markersize=6)
     axes.set(xlabel="time $t$", ylabel="output $y$", xlim=(0.0, 8.0))
     axes.legend()

@@ -14,7 +14,6 @@ from replicate.papers.panagopoulos.part_1.corner import (
     slope_limit,
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
@@ -69,7 +68,7 @@ example_5 = paper.table(
 
 def _values(a_corner: float, ms: float) -> pd.DataFrame:
     found = design_pi(PLANTS[EXTREME], ms=ms)
-    gains = (float(printed("I-example-5")[row, VALUE]) for row in ("k_a0", "ki_a0"))
+    gains = (paper.printed_numbers("I-example-5")[row, VALUE] for row in ("k_a0", "ki_a0"))
     resonance = PLANTS["G6"].poles()
     resonance = resonance[resonance.imag > 0.0][0]
     return column(

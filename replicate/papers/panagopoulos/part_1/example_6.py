@@ -8,7 +8,6 @@ from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, design, weight
 from replicate.papers.panagopoulos.part_1.phase import frequencies_of_lag
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
@@ -91,4 +90,4 @@ def as_written() -> pd.DataFrame:
 )
 def authors() -> pd.DataFrame:
     """Compute the example as the numbers were made."""
-    return column({**_values("w_0"), "crossing_2": -1.0 / float(printed("I-example-6")["k_low", VALUE])})
+    return column({**_values("w_0"), "crossing_2": -1.0 / paper.printed_numbers("I-example-6")["k_low", VALUE]})

@@ -13,7 +13,6 @@ from replicate.loops.design_pi import smooth_gains
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
@@ -74,7 +73,7 @@ def _values(rule: WeightRule) -> pd.DataFrame:
         values |= {f"k_a{a}": found.k, f"ki_a{a}": found.ki, f"b_a{a}": weight(plant, MS, rule)}
         values |= {f"w0_a{a}": found.frequency, f"Mp_a{a}": complementary_peak(plant, MS).value}
         values[f"lag_a{a}"], values[f"w_lag_a{a}"] = smallest_lag(a)
-    at_printed = smooth_gains(PLANTS["G14 a=8"], Circle.of(MS), float(printed("I-example-7")["w0_a8", VALUE]))
+    at_printed = smooth_gains(PLANTS["G14 a=8"], Circle.of(MS), paper.printed_numbers("I-example-7")["w0_a8", VALUE])
     return column(values | dict(zip(example_7.rows[-2:], at_printed, strict=True)))
 
 

@@ -9,7 +9,6 @@ from scipy.optimize import brentq
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.simple_models import ziegler_nichols
 from replicate.papers.panagopoulos.part_1.table_5 import table_5
 
@@ -44,7 +43,7 @@ def horizons() -> pd.DataFrame:
     rows = {}
     for row, plant in ROWS.items():
         loop = Loop(PLANTS[plant], ziegler_nichols(plant))
-        target, settling = (float(printed("I-table-5")[row, column]) for column in ("IAE", "ts"))
+        target, settling = (paper.printed_numbers("I-table-5")[row, column] for column in ("IAE", "ts"))
 
         def missing(until: float, loop: Loop = loop, target: float = target) -> float:
             return loop.load_step(until=until).iae() - target

@@ -9,7 +9,6 @@ from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1 import table_1, table_5
 from replicate.papers.panagopoulos.part_1.designs import load_response
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
 
 if TYPE_CHECKING:
@@ -63,10 +62,10 @@ def levels() -> pd.DataFrame:
 
     rows = {}
     for row, (plant, ms) in table_1.ROWS.items():
-        rows[row] = _row(printed("I-table-1")[row, "ts"], load_response(plant, ms), PLANTS[plant].dead_time)
+        rows[row] = _row(paper.printed_cells("I-table-1")[row, "ts"], load_response(plant, ms), PLANTS[plant].dead_time)
     for row, key in TABLE_5.items():
         plant, method = table_5.ROWS[key]
         pi = table_5.authors_controller(plant, method)
         _, load = table_5.responses(plant, pi.k, pi.ki, pi.b)
-        rows[row] = _row(printed("I-table-5")[key, "ts"], load, PLANTS[plant].dead_time)
+        rows[row] = _row(paper.printed_cells("I-table-5")[key, "ts"], load, PLANTS[plant].dead_time)
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(evidence.columns))

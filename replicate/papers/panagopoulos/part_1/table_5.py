@@ -13,7 +13,6 @@ from replicate.papers.panagopoulos.part_1.designs import design, weight
 from replicate.papers.panagopoulos.part_1.frequency_grid import weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
-from replicate.papers.panagopoulos.part_1.printed_values import printed
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
 from replicate.papers.panagopoulos.part_1.simple_models import METHODS, area_method, ziegler_nichols
 
@@ -54,7 +53,7 @@ def authors_controller(plant: str, method: str) -> PI:
     """Return a controller as the numbers were made: lambda tuning with the printed gains, b by their rule."""
     if method == "Lambda":
         row = f"{plant} {method}"
-        return PI(*(float(printed("I-table-5")[row, column]) for column in ("k", "ki")))
+        return PI(*(paper.printed_numbers("I-table-5")[row, column] for column in ("k", "ki")))
     if method == "New":
         found = design(plant, MS)
         return PI(found.k, found.ki, weight_on_grid(plant, MS))
@@ -162,7 +161,7 @@ def models() -> pd.DataFrame:
     rows: dict[str, list[float]] = {}
     for plant in ("G1", "G2", "G3"):
         found = [method(plant) for method in METHODS.values()]
-        integral_time, ki = (float(printed("I-table-5")[f"{plant} Lambda", column]) for column in ("Ti", "ki"))
+        integral_time, ki = (paper.printed_numbers("I-table-5")[f"{plant} Lambda", column] for column in ("Ti", "ki"))
         rows[f"{plant} T"] = [*(model.time_constant for model in found), integral_time]
         rows[f"{plant} L"] = [*(model.dead_time for model in found), 1.0 / ki - 3.0 * integral_time]
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(identification.columns))

@@ -2,24 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-from functools import cache
+import math
 
 from replicate.loops import PID
 from replicate.papers.panagopoulos import paper
 
 
-@cache
-def printed_values(table: str) -> dict[tuple[str, str], str]:
-    """Return the printed strings of a table by row and column; a blank cell is an empty string."""
-    text = (paper.folder() / "printed" / f"{table}.csv").read_text(encoding="utf-8")
-    rows = csv.DictReader(text.splitlines())
-    return {(row["row"], column): cell for row in rows for column, cell in row.items() if column != "row"}
-
-
 def printed_number(table: str, row: str, column: str) -> float:
     """Return a printed number; ``nan`` where the cell is blank."""
-    return float(printed_values(table)[row, column] or "nan")
+    return paper.printed_numbers(table).get((row, column), math.nan)
 
 
 def printed_pid(table: str, row: str) -> PID:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import gamma_of_m, m_of_gamma
-from replicate.papers.panagopoulos.parts_3_to_6.printed_values import printed_values
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +26,7 @@ table_1 = paper.table(
 
 def printed_pairs() -> dict[str, tuple[float, float]]:
     """Return (M, gamma) as printed, by column."""
-    printed = printed_values("III-table-1")
+    printed = paper.printed_numbers("III-table-1")
     return {column: (printed["M", column], printed["gamma", column]) for column in COLUMNS}
 
 

@@ -7,12 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from replicate.exhibits import Finding
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.diagrams import Diagram
-from replicate.papers.panagopoulos.parts_3_to_6.printed_values import printed_values
 from replicate.papers.panagopoulos.parts_3_to_6.reference_model import characteristics, step
-from replicate.papers.panagopoulos.parts_3_to_6.wording import number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -151,7 +148,7 @@ def relations() -> pd.DataFrame:
     """Evaluate the relations between printed numbers."""
     import pandas as pd
 
-    printed = printed_values("IV-table-1")
+    printed = paper.printed_numbers("IV-table-1")
     frame = pd.DataFrame(math.nan, index=list(settings.rows), columns=list(settings.columns))
     for column in settings.columns:
         ti = printed["Ti", column]
@@ -193,78 +190,36 @@ def evaluation() -> pd.DataFrame:
     return pd.DataFrame(math.nan, index=list(results.rows), columns=list(results.columns))
 
 
-claims = paper.claims("IV-claims", "Claims of paper IV that its own numbers decide")
-
-RECOMMENDED_SETTLING = 100.0  # caption of Table 2
-
-
-@claims.claim("all-met", "All of the specifications are met within the range of what is possible.", where="abstract")
-def all_met() -> Finding:
-    """Compare the achieved numbers of Table 2 with the recommended ones."""
-    printed = printed_values("IV-table-2")
-    times = {column: value for (row, column), value in printed.items() if row == "settling_time"}
-    late = [column for column, value in times.items() if value > RECOMMENDED_SETTLING]
-    low = printed["delay_margin", "low_step"], printed["delay_margin_recommended", "low_step"]
-    return Finding(
-        "fails" if late or low[0] < low[1] else "holds",
-        len(late),
-        f"By Table 2 itself, {len(late)} of {len(times)} settling times exceed the recommended "
-        f"{RECOMMENDED_SETTLING:g} s (the longest is {max(times.values()):g} s), and the delay margin at low load, "
-        f"{low[0]:g} s, is below the recommended {low[1]:g} s. What is possible cannot be judged without the plant.",
-    )
-
-
-@claims.claim("most-met", "The controller meets most of the specifications well.", where="sections 4 and 5")
-def most_met() -> Finding:
-    """Count what Table 2 meets."""
-    printed = printed_values("IV-table-2")
-    met = [value <= RECOMMENDED_SETTLING for (row, _), value in printed.items() if row == "settling_time"]
-    met += [
-        value >= printed["delay_margin_recommended", column]
-        for (row, column), value in printed.items()
-        if row == "delay_margin"
-    ]
-    return Finding(
-        "holds" if sum(met) > len(met) / 2 else "fails",
-        sum(met),
-        f"Of the {len(met)} numbers of Table 2 that have a recommendation beside them, {sum(met)} meet it. The "
-        "magnitude limits cannot be checked.",
-    )
+text = paper.table(
+    "IV-text",
+    "Numbers in the text and in captions",
+    rows=(
+        "Ms", "K2_low", "K2_high", "sampling", "settling_recommended", "limit_text", "limit_table", "limit_strict",
+        "load_high", "load_low", "load_very_low", "t_fault", "t_switch",
+    ),
+    columns=("value",),
+    labels={
+        "Ms": "design parameter $M_s$",
+        "K2_low": "root loci: smallest $K_2$",
+        "K2_high": "root loci: largest $K_2$",
+        "sampling": "sampling period (s)",
+        "settling_recommended": "recommended settling time (s), caption of Table 2",
+        "limit_text": "limit on the level, section 4 (±)",
+        "limit_table": "limit on the level, Table 2 (±)",
+        "limit_strict": "strict limit on the level, Figure 5 (±)",
+        "load_high": "high load (%)",
+        "load_low": "low load (%)",
+        "load_very_low": "saturation tests (%)",
+        "t_fault": "sensor fault at (s)",
+        "t_switch": "parameters of the plant switch at (s)",
+    },
+    caption="What the paper sets or was given. None of it is the result of a computation that could be repeated.",
+)  # fmt: skip
 
 
-@claims.claim("quarter", "$T_d \\approx T_i/4$.", where="section 3", printed="0.25")
-def quarter() -> Finding:
-    """Compare the printed derivative and integral times."""
-    printed = printed_values("IV-table-1")
-    shares = {load: printed["Td", load] / printed["Ti", load] for load in ("high_load", "low_load")}
-    return Finding(
-        "holds-partly",
-        shares["high_load"],
-        f"$T_d/T_i$ is {number(shares['high_load'], 3)} at high and {number(shares['low_load'], 3)} at low load. With "
-        "$T_d$ below $T_i/4$ the controller's zeros are real.",
-    )
+@text.reading("as-written", "Not computable", note=NO_PLANT)
+def text_numbers() -> pd.DataFrame:
+    """Return an empty table: nothing of it can be computed."""
+    import pandas as pd
 
-
-@claims.claim("ti-80-25", "Feedback of $N_{gl}$ lets $T_i$ fall from 80 s to 25 s at low load.", where="section 2")
-def ti_80_25() -> Finding:
-    """Compare the text with Table 1."""
-    printed = printed_values("IV-table-1")
-    pair = printed["Ti", "fault_low_load"], printed["Ti", "low_load"]
-    return Finding(
-        "holds" if pair == (80.0, 25.0) else "fails",
-        pair[0],
-        f"Table 1 says the same: {pair[0]:g} s when the sensor fails at low load (and $K_2 = 0$), {pair[1]:g} s "
-        "otherwise. Whether the loop allows it cannot be checked.",
-    )
-
-
-@claims.claim("settles-to-zero", "The reference model is of second order and settles to zero.", where="section 2")
-def settles_to_zero() -> Finding:
-    """Evaluate the step response late."""
-    late = max(float(step(ratio, 400.0 * max(1.0, ratio))) for ratio in RATIOS)
-    return Finding(
-        "holds" if late < 1e-12 else "fails",
-        round(late, 12),
-        "The factor $s$ in its numerator makes the final value of the step response zero. The area under it is always "
-        "$2\\tau_e$: the integral of the level's deviation that is hidden from the controller.",
-    )
+    return pd.DataFrame(math.nan, index=list(text.rows), columns=list(text.columns))

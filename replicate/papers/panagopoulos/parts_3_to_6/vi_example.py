@@ -16,7 +16,6 @@ from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
     Shaft,
     k_b_from,
 )
-from replicate.papers.panagopoulos.parts_3_to_6.printed_values import printed_values
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,7 +95,7 @@ def exact() -> pd.DataFrame:
 )
 def rounded_inputs() -> pd.DataFrame:
     """Evaluate k_b from the rounded characteristics."""
-    printed = printed_values("VI-example")
+    printed = paper.printed_numbers("VI-example")
     return _frame(EXAMPLE, printed["P_max", "value"] / printed["P_min", "value"])
 
 
