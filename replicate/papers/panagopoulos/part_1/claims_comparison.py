@@ -12,7 +12,7 @@ from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.settling import two_sided
 from replicate.papers.panagopoulos.part_1.simple_models import ultimate_point, ziegler_nichols
 from replicate.papers.panagopoulos.part_1.table_5 import authors_controller, overshoot_of_peak, responses
-from replicate.papers.panagopoulos.parts_3_to_6.wording import number
+from replicate.papers.panagopoulos.wording import number
 
 
 @cache

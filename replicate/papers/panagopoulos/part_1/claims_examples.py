@@ -20,7 +20,7 @@ from replicate.papers.panagopoulos.part_1.example_7 import smallest_a, smallest_
 from replicate.papers.panagopoulos.part_1.example_8 import FINITE, true_sigma
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, unstable
 from replicate.papers.panagopoulos.part_1.table_4 import FACTORS, filtered
-from replicate.papers.panagopoulos.parts_3_to_6.wording import number
+from replicate.papers.panagopoulos.wording import number
 
 LOW, HIGH = 1.4, 2.0
 

@@ -28,7 +28,7 @@ from replicate.papers.panagopoulos.part_1.designs import (
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, filtered_dead_time
 from replicate.papers.panagopoulos.part_1.table_4 import filtered
-from replicate.papers.panagopoulos.parts_3_to_6.wording import listed, number
+from replicate.papers.panagopoulos.wording import listed, number
 
 NINE = tuple(f"G{number}" for number in range(1, 10))
 ROUNDING = 1e-9

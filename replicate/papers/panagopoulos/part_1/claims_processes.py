@@ -17,7 +17,7 @@ from replicate.papers.panagopoulos.part_1.designs import (
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
-from replicate.papers.panagopoulos.parts_3_to_6.wording import listed, number
+from replicate.papers.panagopoulos.wording import listed, number
 
 LOW, HIGH = 1.4, 2.0
 ROUNDING = 1e-9

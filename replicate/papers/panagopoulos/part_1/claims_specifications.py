@@ -26,7 +26,7 @@ from replicate.papers.panagopoulos.part_1.errata import (
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.simple_models import ziegler_nichols
-from replicate.papers.panagopoulos.parts_3_to_6.wording import listed, number
+from replicate.papers.panagopoulos.wording import listed, number
 
 claims = paper.claims("I-claims", "Claims made in the text of paper I")
 

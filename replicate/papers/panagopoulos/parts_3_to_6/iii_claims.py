@@ -27,7 +27,7 @@ from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import (
     gamma_of_m,
     m_of_gamma,
 )
-from replicate.papers.panagopoulos.parts_3_to_6.wording import listed, number
+from replicate.papers.panagopoulos.wording import listed, number
 
 claims = paper.claims("III-claims", "Claims made in the text of paper III")
 

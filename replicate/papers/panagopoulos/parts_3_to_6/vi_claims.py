@@ -21,7 +21,7 @@ from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
     k_b_from,
 )
 from replicate.papers.panagopoulos.parts_3_to_6.damping_batch import OMEGA_P, batch, fit, impulse_iae, of
-from replicate.papers.panagopoulos.parts_3_to_6.wording import number
+from replicate.papers.panagopoulos.wording import number
 
 claims = paper.claims("VI-claims", "Claims made in the text of paper VI")
 
