@@ -10,6 +10,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from replicate.exhibits import Claims, Exhibit, NotComputable, Paper, Table
+from replicate.terminal.mathtext import readable
 
 
 def print_papers(papers: Iterable[Paper], console: Console) -> None:
@@ -18,7 +19,7 @@ def print_papers(papers: Iterable[Paper], console: Console) -> None:
     for paper in papers:
         kinds = Counter(exhibit.kind for exhibit in paper.exhibits.values())
         exhibits = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
-        grid.add_row(Text(paper.id), str(paper.year), Text(paper.title), exhibits)
+        grid.add_row(Text(paper.id), str(paper.year), Text(readable(paper.title)), exhibits)
     console.print(grid)
 
 
@@ -27,7 +28,7 @@ def print_exhibits(paper: Paper, console: Console) -> None:
     console.print(Text(paper.citation))
     grid = _grid("exhibit", "kind", "title", "")
     for exhibit in paper.exhibits.values():
-        grid.add_row(Text(exhibit.id), exhibit.kind, Text(exhibit.title), Text(_content(exhibit)))
+        grid.add_row(Text(exhibit.id), exhibit.kind, Text(readable(exhibit.title)), Text(_content(exhibit)))
     console.print(grid)
 
 

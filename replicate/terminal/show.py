@@ -20,14 +20,13 @@ from replicate.records import ClaimsResult, FigureResult, TableResult
 from replicate.report.numbers import shown
 from replicate.report.words import MATCHES, WORDS
 from replicate.terminal.colours import colour
+from replicate.terminal.mathtext import readable
 from replicate.units import errors_of
 
 _DIGITS = 9
 
 
-def print_exhibit(
-    outcome: Outcome, paper: str, exhibit: Exhibit, readings: Sequence[str], console: Console
-) -> None:
+def print_exhibit(outcome: Outcome, paper: str, exhibit: Exhibit, readings: Sequence[str], console: Console) -> None:
     """Print an exhibit.
 
     Parameters
@@ -35,7 +34,7 @@ def print_exhibit(
     readings
         Ids of the readings to show, for a table.
     """
-    console.print(Text.assemble((f"{paper}/{exhibit.id}", "bold"), f"  {exhibit.title}"))
+    console.print(Text.assemble((f"{paper}/{exhibit.id}", "bold"), f"  {readable(exhibit.title)}"))
     result = outcome.results.get((paper, exhibit.id))
     verdicts = [row for row in outcome.judgements[paper].verdicts if row.exhibit == exhibit.id]
     if isinstance(exhibit, NotComputable):
@@ -57,9 +56,7 @@ def print_exhibit(
             console.print(Text(f"failed{f' ({part})' if part else ''}: {why}", style="red"))
 
 
-def _comparison(
-    table: Table, readings: Sequence[str], results: list[ResultRow], verdicts: list[VerdictRow]
-) -> Grid:
+def _comparison(table: Table, readings: Sequence[str], results: list[ResultRow], verdicts: list[VerdictRow]) -> Grid:
     """Return one line per printed value; computed values have a digit or two more than the print."""
     grid = _grid("row", "", ">printed", *(f">{reading}" for reading in readings), "verdict")
     found = {(row.row, row.column, row.reading): row for row in results}
@@ -101,9 +98,9 @@ def _print_readings(table: Table, readings: Sequence[str], console: Console) -> 
     for id in readings:
         reading = table.readings[id]
         console.print()
-        console.print(Text.assemble((id, "bold"), f": {reading.title}"))
+        console.print(Text.assemble((id, "bold"), f": {readable(reading.title)}"))
         if reading.note:
-            console.print(Padding(Markdown(reading.note), (0, 0, 0, 2)))
+            console.print(_indented(reading.note))
 
 
 def _print_explanations(verdicts: list[VerdictRow], console: Console) -> None:
@@ -115,15 +112,16 @@ def _print_explanations(verdicts: list[VerdictRow], console: Console) -> None:
         console.print()
         for cell in cells:
             corrected = f", should be {cell.corrected}" if cell.corrected else ""
-            said = f" {cell.row} {cell.column}: {word} ({cause}){corrected}"
+            why = "" if cause == word else f" ({cause})"
+            said = f" {cell.row} {cell.column}: {word}{why}{corrected}"
             console.print(Text.assemble((WORDS[word].symbol, colour(word)), said))
         if explanation:
-            console.print(Padding(Markdown(explanation), (0, 0, 0, 2)))
+            console.print(_indented(explanation))
 
 
 def _print_figure(figure: Figure, result: FigureResult, console: Console) -> None:
     if figure.caption:
-        console.print(Text(figure.caption))
+        console.print(Text(readable(figure.caption)))
     if figure.stands_for:
         console.print(Text(f"stands for: {figure.stands_for}"))
     grid = _grid("panel", "curve", ">points", ">x from", ">to", ">y from", ">to")
@@ -138,18 +136,19 @@ def _print_claims(claims: Claims, verdicts: list[VerdictRow], console: Console) 
     for verdict in verdicts:
         claim = claims.claims[verdict.row]
         console.print()
-        console.print(
-            Text.assemble((claim.id, "bold"), "  ", _verdict(verdict), f"  {_short(verdict.computed)}")
-        )
+        console.print(Text.assemble((claim.id, "bold"), "  ", _verdict(verdict), f"  {_short(verdict.computed)}"))
         where = f" ({claim.where})" if claim.where else ""
-        console.print(Padding(Markdown(f"{claim.text}{where}"), (0, 0, 0, 2)))
-        console.print(Padding(Markdown(verdict.explanation), (0, 0, 0, 2)))
+        console.print(_indented(f"{claim.text}{where}"))
+        console.print(_indented(verdict.explanation))
+
+
+def _indented(text: str) -> Padding:
+    """Return a Markdown text with its formulas as plain characters."""
+    return Padding(Markdown(readable(text)), (0, 0, 0, 2))
 
 
 def _verdict(verdict: VerdictRow) -> Text:
-    return Text(
-        f"{WORDS[verdict.verdict].symbol} {WORDS[verdict.verdict].name}", style=colour(verdict.verdict)
-    )
+    return Text(f"{WORDS[verdict.verdict].symbol} {WORDS[verdict.verdict].name}", style=colour(verdict.verdict))
 
 
 def _short(computed: str) -> str:
