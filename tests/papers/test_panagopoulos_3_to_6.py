@@ -145,6 +145,23 @@ def test_filter_of_the_drying_section():
     assert np.abs(everywhere / (1.0 + 0.999 * found.never_above_one * low)).max() > 1.0
 
 
+@pytest.mark.parametrize("gains", [None, (5.2, 1.6, 5.4)])
+def test_filter_from_the_peak_on_the_default_grid(gains):
+    """|F G_sp| = 1 at the point of Matlab's 50-point grid with the largest |T|, with G_sp written out."""
+    k, ki, kd = gains or (5.21, 5.21 / 3.16, 5.21 * 1.02)
+    s = 1j * 10.0 ** (-2.0 + 4.0 * np.arange(50) / 49.0)
+    plant = 0.008 * (30.0 * s + 1.0) / (s * (5.0 * s + 1.0)) * np.exp(-2.0 * s)
+    loop = plant * (k + ki / s + kd * s)
+    top = np.abs(loop / (1.0 + loop)).argmax()
+    response = abs(plant[top] * (k + ki / s[top]) / (1.0 + loop[top]))
+    expected = np.sqrt(response**2 - 1.0) / abs(s[top])
+    assert industrial.setpoint_filters(gains).default_grid == pytest.approx(expected, rel=1e-12)
+    w = abs(s[top])
+    if gains is None:
+        assert industrial.beside_the_peak(w)[1] == pytest.approx(expected, rel=1e-12)
+        assert industrial.frequency_for_filter(expected) == pytest.approx(w, rel=1e-9)
+
+
 # ----------------------------------------------------------------------------------------------------------- VI
 
 

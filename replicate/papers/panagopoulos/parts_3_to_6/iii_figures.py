@@ -67,8 +67,8 @@ def circles(fig: Figure) -> None:
     "The weight $|W(i\\omega)|$ of Example 1",
     caption="$|W| = \\sqrt{|G_c|/|G|}$ for $G(s) = 1/(s+1)^4$ with $k = 0.76$, $k_i = 0.36$, with its asymptotes "
     "$\\sqrt{k_i/\\omega}$ and $\\sqrt{k}\\,\\omega^2$ (dashed).",
-    alt="Magnitude of the weight over frequency, both logarithmic: it falls with slope -1/2 to a minimum below one and "
-    "rises with slope 2 beyond.",
+    alt="Magnitude of the weight over frequency, both logarithmic: it falls with slope -1/2 to a minimum a little "
+    "above one and rises with slope 2 beyond.",
     size=(6.4, 3.6),
 )
 def weight(fig: Figure) -> None:

@@ -12,6 +12,7 @@ from scipy.optimize import brentq, minimize_scalar, root
 from replicate.loops import PI, PID, Loop, PIDDesign, Plant, design_pi, design_pid, search_range
 from replicate.loops.circles import Circle
 from replicate.loops.nyquist_constraints import LoopJet
+from replicate.papers.panagopoulos.part_2 import setpoint
 
 Array = NDArray[np.float64]
 
@@ -110,27 +111,38 @@ class SetpointFilter(NamedTuple):
 
     printed_formula: float
     corrected: float
+    default_grid: float
     eq_16: float
     eq_16_mended: float
     never_above_one: float
 
 
-def setpoint_filters(gains: tuple[float, float, float] | None = None) -> SetpointFilter:
-    """Evaluate the filter formulas of the supplement to paper II; ``gains`` (k, ki, kd) default to the printed ones.
+DEFAULT_GRID = np.logspace(-2.0, 2.0, 50)  # of Matlab, rad/s
 
-    With b = 1 the set-point response is |G_sp(i w)| = |ki + i w k| |T(i w)| / |ki + i w k - w^2 kd|, A the squared
-    denominator; the filter is to make it one where |T| has its peak Mp.
-    """
-    controller = drying_pid(0.0)
-    k, ki, kd = gains or (controller.k, controller.ki, controller.kd)
-    peak = Loop(DRYING, PID(k, ki, kd)).complementary_peak()
-    mp, w = peak.value, peak.frequency
-    a = k**2 * w**2 + (ki - w**2 * kd) ** 2
-    inside = (ki**2 - k**2 * w**2) * mp**2 - a  # the print has a minus sign in the first bracket ...
-    printed = float(np.sqrt(inside)) / (w * a**2) if inside > 0.0 else 0.0  # ... and A^2 in the denominator
-    corrected = float(np.sqrt((ki**2 + k**2 * w**2) * mp**2 - a)) / (w * float(np.sqrt(a)))
-    excess = float(np.sqrt(max(ki**2 * mp**2 / a - 1.0, 0.0)))
-    return SetpointFilter(printed, corrected, excess / w**2, excess / w, _never_above_one(k, ki, kd))
+
+def default_grid_peak(gains: tuple[float, float, float] | None = None) -> setpoint.Resonance:
+    """Return the peak of |T| as paper II's tables found it: the largest of the 50 values on ``logspace(-2, 2)``."""
+    from replicate.papers.panagopoulos.part_2 import tables  # where that reading is defined; registers exhibits
+
+    return tables.default_grid_peak(DRYING, _controller(gains))
+
+
+def _controller(gains: tuple[float, float, float] | None) -> PID:
+    return PID(*gains) if gains else drying_pid(0.0)
+
+
+def setpoint_filters(gains: tuple[float, float, float] | None = None) -> SetpointFilter:
+    """Evaluate the filter formulas of the supplement to paper II; ``gains`` (k, ki, kd) default to the printed ones."""
+    controller = _controller(gains)
+    peak = setpoint.Resonance.of(DRYING, controller)
+    return SetpointFilter(
+        printed_formula=setpoint.full_weight_filter_as_printed(controller, peak),
+        corrected=setpoint.full_weight_filter_corrected(controller, peak),
+        default_grid=setpoint.full_weight_filter_corrected(controller, default_grid_peak(gains)),
+        eq_16=setpoint.filter_as_printed(controller, peak),
+        eq_16_mended=setpoint.filter_corrected(controller, peak),
+        never_above_one=_never_above_one(controller.k, controller.ki, controller.kd),
+    )
 
 
 def _never_above_one(k: float, ki: float, kd: float) -> float:
@@ -152,19 +164,17 @@ def _never_above_one(k: float, ki: float, kd: float) -> float:
     return max(at_rest, *(needed(x) for x in grid))
 
 
-def frequency_for_filter(time_constant: float) -> tuple[float, float]:
-    """Return the frequency at which the corrected formula gives a time constant, and how far |T| is below Mp there."""
+def beside_the_peak(w: float) -> tuple[float, float]:
+    """Return how far |T| is below Mp at a frequency (a fraction), and the mended formula's time constant there."""
     controller = drying_pid(0.0)
-    k, ki, kd = controller.k, controller.ki, controller.kd
-    loop = Loop(DRYING, PID(k, ki, kd))
-    peak = loop.complementary_peak()
-
-    def excess(w: float) -> float:
-        value = complex(loop(1j * w))
-        size = abs(value / (1.0 + value))
-        a = k**2 * w**2 + (ki - w**2 * kd) ** 2
-        return float(np.sqrt((ki**2 + k**2 * w**2) * size**2 - a) / (w * np.sqrt(a))) - time_constant
-
-    w = brentq(excess, 0.8 * peak.frequency, peak.frequency, xtol=1e-14)
+    loop = Loop(DRYING, controller)
     value = complex(loop(1j * w))
-    return float(w), float(1.0 - abs(value / (1.0 + value)) / peak.value)
+    size = abs(value / (1.0 + value))
+    time_constant = setpoint.full_weight_filter_corrected(controller, setpoint.Resonance(w, size))
+    return round(1.0 - size / loop.complementary_peak().value, 12) + 0.0, time_constant
+
+
+def frequency_for_filter(time_constant: float) -> float:
+    """Return the frequency below the peak of |T| at which the mended formula gives a time constant."""
+    peak = Loop(DRYING, drying_pid(0.0)).complementary_peak().frequency
+    return float(brentq(lambda w: beside_the_peak(w)[1] - time_constant, 0.8 * peak, peak, xtol=1e-14))

@@ -9,9 +9,12 @@ from typing import TYPE_CHECKING
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.industrial import (
+    DEFAULT_GRID,
     DRYING,
     DRYING_PI,
     FILTER,
+    beside_the_peak,
+    default_grid_peak,
     drying_design,
     drying_pid,
     frequency_for_filter,
@@ -117,15 +120,28 @@ def corrected() -> pd.DataFrame:
     return _frame(setpoint_filters().corrected)
 
 
+@drying.reading(
+    "filter-default-grid",
+    "The same, with the peak of $|T|$ from Matlab's default grid",
+    note="$M_p$ is the largest of the 50 values on `logspace(-2,2)`, the reading that also explains filters of paper "
+    "II. The grid has only a dozen points in each decade, and the peak is flat: the largest value is nearly $M_p$, but "
+    "its frequency is well beside $\\omega_{mp}$.",
+)
+def default_grid() -> pd.DataFrame:
+    """Design, and evaluate the mended formula at the peak on the coarse grid."""
+    return _frame(setpoint_filters().default_grid)
+
+
 filters = paper.table(
     "V-drying-filter",
     "Drying section: what the filter time constant could be",
     printed=False,
-    rows=("printed_formula", "corrected", "eq_16", "eq_16_mended", "never_above_one"),
+    rows=("printed_formula", "corrected", "default_grid", "eq_16", "eq_16_mended", "never_above_one"),
     columns=("printed_settings", "optimum"),
     labels={
         "printed_formula": "formula for $b = 1$, as printed",
         "corrected": "the same, mended",
+        "default_grid": "mended, peak from Matlab's default grid",
         "eq_16": "(16), for $b = 0$, as printed",
         "eq_16_mended": "(16) with $\\omega_{mp}$, not its square",
         "never_above_one": "$|G_{sp}| \\le 1$ at all frequencies",
@@ -152,24 +168,40 @@ def all_filters() -> pd.DataFrame:
 
 near_peak = paper.table(
     "V-drying-peak",
-    "Drying section: the peak frequency that the printed filter would need",
+    "Drying section: where the peak was found",
     printed=False,
-    rows=("omega_mp", "omega_needed", "drop"),
-    columns=("value",),
+    rows=("below", "grid_peak", "needed", "exact", "above"),
+    columns=("omega", "drop", "Tf"),
     labels={
-        "omega_mp": "$\\omega_{mp}$",
-        "omega_needed": "$\\omega$ that gives 5.32 s",
-        "drop": "$1 - |T|/M_p$ there",
+        "below": "next grid point below",
+        "grid_peak": "largest $|T|$ on the grid",
+        "needed": "where $T_f$ is as printed",
+        "exact": "true peak",
+        "above": "next grid point above",
+        "omega": "$\\omega$",
+        "drop": "$1 - |T|/M_p$",
+        "Tf": "$T_f$ (mended formula)",
     },
-    caption="The peak of $|T|$ is so flat that a frequency well beside it has nearly the same height.",
+    units={"omega": "rad/s", "Tf": "s"},
+    caption="The peak of $|T|$ is flat: a frequency well beside it has nearly the same height, but another $T_f$. The "
+    "grid is `logspace(-2,2)`; the printed $T_f$ belongs to the point of it that is nearest to the peak, and to no "
+    "other.",
 )
 
 
-@near_peak.reading("as-written", "Mended formula, solved for the frequency")
+@near_peak.reading("as-written", "Mended formula at each frequency")
 def peak_frequency() -> pd.DataFrame:
-    """Solve the mended formula for the frequency."""
+    """Evaluate the mended formula at the true peak, at the grid's points, and solve it for the frequency."""
     import pandas as pd
 
-    frequency, drop = frequency_for_filter(FILTER)
-    values = {"omega_mp": [evaluation()["omega_mp"]], "omega_needed": [frequency], "drop": [drop]}
-    return pd.DataFrame.from_dict(values, orient="index", columns=["value"])
+    found = default_grid_peak()
+    step = DEFAULT_GRID[1] / DEFAULT_GRID[0]
+    frequencies = {
+        "below": found.frequency / step,
+        "grid_peak": found.frequency,
+        "needed": frequency_for_filter(FILTER),
+        "exact": evaluation()["omega_mp"],
+        "above": found.frequency * step,
+    }
+    rows = {name: [w, *beside_the_peak(w)] for name, w in frequencies.items()}
+    return pd.DataFrame.from_dict(rows, orient="index", columns=list(near_peak.columns))

@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SKETCH = "A sketch of the plant: there is nothing to compute."
-MEASURED = "The paper shows measurements at the mill. What is drawn is the paper's model with the printed "
-"settings, for {what}."
+MEASURED = (
+    "The paper shows measurements at the mill. What is drawn is the paper's model with the printed settings, for "
+    "{what}."
+)
 
 
 @paper.figure(

@@ -1,0 +1,40 @@
+"""V: what the paper gives and does not derive, the fitted models and the earlier settings."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from replicate.papers.panagopoulos import paper
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+models = paper.table(
+    "V-models",
+    "What the paper gives: the fitted models and the earlier settings",
+    rows=("K_p", "dead_time", "T_1", "T_2", "K_PI", "Ti_PI", "level", "outer_T"),
+    columns=("starch", "drying"),
+    labels={
+        "K_p": "gain",
+        "dead_time": "dead time (s)",
+        "T_1": "lag (s)",
+        "T_2": "lead (s)",
+        "K_PI": "$K$ of the earlier PI",
+        "Ti_PI": "$T_i$ of the earlier PI (s)",
+        "level": "operating point (% of range)",
+        "outer_T": "time constant from $r_2$ to $y_1$ (s)",
+        "starch": "starch boiler",
+        "drying": "drying section",
+    },
+    caption="$1.34\\,e^{-12.9s}/(43.3s+1)^2$ and $0.008\\,(30s+1)/(s(5s+1))\\,e^{-2s}$. These numbers are taken as "
+    "they stand: they were fitted or measured at the mill, and the data are not in the paper.",
+)
+
+
+@models.reading("as-written", "Not computable", note="The step responses to which the models were fitted are lost.")
+def given() -> pd.DataFrame:
+    """Return an empty table: nothing of it can be computed."""
+    import pandas as pd
+
+    return pd.DataFrame(math.nan, index=list(models.rows), columns=list(models.columns))
