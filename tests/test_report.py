@@ -224,6 +224,18 @@ def test_prose_places_exhibits_and_titles_are_escaped(make):
     assert text.count('<section class="exhibit"') == 4
 
 
+def test_the_story_stands_before_contents_and_exhibits(make):
+    page = Page(make()["synthetic.html"])
+    assert page.text.index("Gains follow from") < page.text.index("Contents") < page.text.index("The story")
+
+
+def test_the_overview_of_parts_quotes_the_first_paragraph_of_each(make):
+    pages = make(prefix="II-", notes="", notes_II="# Part two\n\nIts *abstract*.\n\nMore of it.\n")
+    assert "Its abstract." in Page(pages["synthetic.html"]).text
+    assert "More of it." not in Page(pages["synthetic.html"]).text
+    assert "More of it." in Page(pages["synthetic-II.html"]).text
+
+
 def test_two_runs_give_the_same_bytes(make, tmp_path):
     assert make() == make(out=tmp_path / "again")
 
