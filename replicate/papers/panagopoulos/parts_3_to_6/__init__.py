@@ -7,6 +7,8 @@ MODULES: tuple[str, ...] = (
     "iii_eq_5_14",
     "iii_table_1",
     "iii_claims",
+    "iii_claims_contour",
+    "iii_claims_example_2",
     "iv_steam_generator",
     "iv_claims",
     "v_figures",

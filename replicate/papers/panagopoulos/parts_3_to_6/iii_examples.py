@@ -114,7 +114,7 @@ class Robustness(NamedTuple):
 def robustness(weighting: str) -> Robustness:
     """Return margin and gap of Example 2 with the printed controller.
 
-    ``weighting`` is ``none``, ``favourable`` (8), ``smallest`` (the constant min |W|) or ``root`` (sqrt(W)).
+    ``weighting`` is one of `weights`.
     """
     weight = weights()[weighting]
     gap = nu_gap(PROCESS, TRUE_PROCESS, weight)
@@ -137,12 +137,21 @@ def robustness(weighting: str) -> Robustness:
 def weights() -> dict[str, Weight | None]:
     """Return the weights that are compared."""
     full = favourable_weight()
+    k, ki = PRINTED.k, PRINTED.ki
+    # |Gc|: the gap is then that of the two loop transfer functions
+    controller = Weight(lambda w: np.hypot(k, ki / w), lambda w: -(ki**2) / (w * (ki**2 + k**2 * w**2)))
     return {
         "none": None,
         "favourable": full,
         "smallest": Weight.constant(smallest_weight()[0]),
-        "root": Weight(lambda w: np.sqrt(full.magnitude(w)), lambda w: 0.5 * full.log_slope(w)),
+        "root": _power(full, 0.5),
+        "square": _power(full, 2.0),
+        "controller": controller,
     }
+
+
+def _power(weight: Weight, exponent: float) -> Weight:
+    return Weight(lambda w: weight.magnitude(w) ** exponent, lambda w: exponent * weight.log_slope(w))
 
 
 example_2 = paper.table(
@@ -210,19 +219,21 @@ comparison = paper.table(
     "III-weights",
     "Margin and gap of Example 2 under several weights",
     printed=False,
-    rows=("none", "favourable", "smallest", "root"),
+    rows=("none", "favourable", "controller", "smallest", "root", "square"),
     columns=("b", "nu_gap", "difference", "min_difference"),
     labels={
         "none": "no weight",
         "favourable": "$W$ of (8)",
         "smallest": "the constant $\\min|W|$",
         "root": "$\\sqrt{W}$",
+        "square": "$W^2$",
+        "controller": "$G_c$, the gap of $GG_c$ and $\\bar GG_c$",
         "nu_gap": "$\\delta_\\nu$",
         "difference": "$b - \\delta_\\nu$",
         "min_difference": "$\\min_\\omega(1/\\sigma - \\delta)$",
     },
-    caption="The paper prints $b = 0.32$ and $\\delta_\\nu \\approx 0.25$. The last two rows are conjectures "
-    "about how the second number may have been computed; the text supports neither.",
+    caption="The paper prints $b = 0.32$ and $\\delta_\\nu \\approx 0.25$. All rows but the "
+    "first two are conjectures about how the second number may have been computed; the text supports none.",
 )
 
 
