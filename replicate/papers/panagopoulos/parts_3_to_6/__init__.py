@@ -20,6 +20,7 @@ MODULES: tuple[str, ...] = (
     "vi_example",
     "vi_regression",
     "vi_claims",
+    "vi_claims_gain",
 )
 NUMBERED: tuple[str, ...] = (
     *(f"III-fig-{n}" for n in range(1, 7)),

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from replicate.papers.panagopoulos.parts_3_to_6.active_damping import Shaft
+from replicate.papers.panagopoulos.parts_3_to_6.active_damping import Shaft, damping_ratio, k_b_from
 from replicate.papers.panagopoulos.parts_3_to_6.modal import ModalSum
 
 OMEGA_P = (1.6, 3.0, 6.0, 12.0)
@@ -28,6 +28,8 @@ class Member(NamedTuple):
     iae: float
     iae_without: float
     iae_by_formula_6: float
+    iae_by_formula_10: float
+    damping: float  # smallest damping ratio of the inner loop with k_b by (10)
 
 
 class Line(NamedTuple):
@@ -66,9 +68,10 @@ def batch() -> tuple[Member, ...]:
         for zeta_p in ZETA_P:
             shaft = Shaft.as_in_eq_3(zeta_p, omega_p)
             k_b, iae = best_gain(shaft)
-            members.append(
-                Member(omega_p, zeta_p, shaft.ratio, k_b, iae, impulse_iae(shaft, 0.0), impulse_iae(shaft, 1.0))
-            )
+            by_ratio = k_b_from(shaft.ratio)
+            without, plain, refined = (impulse_iae(shaft, gain) for gain in (0.0, 1.0, by_ratio))
+            damping = damping_ratio(shaft.damped(by_ratio).poles())
+            members.append(Member(omega_p, zeta_p, shaft.ratio, k_b, iae, without, plain, refined, damping))
     return tuple(members)
 
 

@@ -69,16 +69,19 @@ members = paper.table(
     "The test batch and its best gains",
     printed=False,
     rows=tuple(f"{omega_p:g}, {zeta_p:g}" for omega_p in OMEGA_P for zeta_p in ZETA_P),
-    columns=("ratio", "k_b", "k_b_eq_10", "iae", "iae_eq_6", "iae_without"),
+    columns=("ratio", "k_b", "k_b_eq_10", "iae", "iae_eq_10", "iae_eq_6", "iae_without", "damping"),
     labels={
         "ratio": "$P_{max}/P_{min}$",
         "k_b": "best $k_b$",
         "k_b_eq_10": "by (10)",
         "iae": "IAE",
+        "iae_eq_10": "IAE, (10)",
         "iae_eq_6": "IAE, $k_b = 1$",
         "iae_without": "IAE without",
+        "damping": "damping, (10)",
     },
-    caption=f"Rows: $\\omega_p$, $\\zeta_p$. Batch: {BATCH}.",
+    caption=f"Rows: $\\omega_p$, $\\zeta_p$. Batch: {BATCH}. The last column is the smallest damping ratio of the "
+    "inner loop with $k_b$ by (10).",
 )
 
 
@@ -88,7 +91,9 @@ def best_gains() -> pd.DataFrame:
     import pandas as pd
 
     rows = {
-        f"{m.omega_p:g}, {m.zeta_p:g}": [m.ratio, m.k_b, k_b_from(m.ratio), m.iae, m.iae_by_formula_6, m.iae_without]
+        f"{m.omega_p:g}, {m.zeta_p:g}": [
+            m.ratio, m.k_b, k_b_from(m.ratio), m.iae, m.iae_by_formula_10, m.iae_by_formula_6, m.iae_without, m.damping,
+        ]
         for m in batch()
-    }
+    }  # fmt: skip
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(members.columns))
