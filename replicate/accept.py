@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Sequence
 from pathlib import Path
 
 from replicate.accepted import files_of, state_files
-from replicate.diff.changes import Change
-from replicate.diff.comparison import compare
+from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import ReplicateError
 from replicate.outcome import Outcome
 from replicate.staging import staged
@@ -19,7 +17,7 @@ _TITLE = "# What was accepted, and why\n"
 _LINES = 40
 
 
-def accept(outcome: Outcome, folder: Path, reason: str) -> list[Change]:
+def accept(outcome: Outcome, folder: Path, reason: str) -> Comparison:
     """Make the present state the accepted one.
 
     Exhibits that do not differ keep their files, picture included, byte for byte. The reason and what changed
@@ -32,8 +30,8 @@ def accept(outcome: Outcome, folder: Path, reason: str) -> list[Change]:
 
     Returns
     -------
-    list of Change
-        What is accepted; if it is empty, nothing was written.
+    Comparison
+        With what was accepted until now; if it has no changes, nothing was written.
 
     Raises
     ------
@@ -46,9 +44,10 @@ def accept(outcome: Outcome, folder: Path, reason: str) -> list[Change]:
     if outcome.failures:
         msg = f"nothing is accepted, because an exhibit could not be computed: {outcome.failures[0]}"
         raise ReplicateError(msg)
-    changes = compare(outcome, folder).changes
+    comparison = compare(outcome, folder)
+    changes = comparison.changes
     if not changes:
-        return []
+        return comparison
     with staged(folder) as fresh:
         for paper in dict.fromkeys(change.paper for change in changes):
             if (folder / paper).is_dir():
@@ -62,8 +61,8 @@ def accept(outcome: Outcome, folder: Path, reason: str) -> list[Change]:
                 for name, content in state_files(outcome, outcome.results[paper, exhibit]).items():
                     (fresh / paper / name).write_bytes(content)
         earlier = (folder / LOG).read_text(encoding="utf-8") if (folder / LOG).is_file() else _TITLE
-        (fresh / LOG).write_text(earlier + _entry(reason, changes), encoding="utf-8", newline="\n")
-    return changes
+        (fresh / LOG).write_text(earlier + _entry(reason, comparison), encoding="utf-8", newline="\n")
+    return comparison
 
 
 def require_reason(reason: str) -> str:
@@ -81,15 +80,20 @@ def require_reason(reason: str) -> str:
     return reason
 
 
-def _entry(reason: str, changes: Sequence[Change]) -> str:
+def _entry(reason: str, comparison: Comparison) -> str:
     """Return the entry of the log: no date, the history of the file has it."""
     first: dict[str, list[str]] = {}
-    for change in changes:
-        if change.kind == "new" and not change.where:
-            first.setdefault(change.paper, []).append(change.exhibit)
-    lines = [f"- {paper}: first accepted: {', '.join(exhibits)}" for paper, exhibits in first.items()]
-    others = [change for change in changes if change.exhibit not in first.get(change.paper, ())]
-    lines += [f"- {change}" for change in others[:_LINES]]
-    if len(others) > _LINES:
-        lines.append(f"- and {len(others) - _LINES} more")
-    return f"\n## {reason}\n\n" + "\n".join(lines) + "\n"
+    lines: list[str] = []
+    for diff in comparison.changed:
+        if _is_first(diff):
+            first.setdefault(diff.paper, []).append(diff.exhibit)
+        else:
+            lines += [f"{diff.name}: {text}" for text in diff.texts]
+    if len(lines) > _LINES:
+        lines = [*lines[:_LINES], f"and {len(lines) - _LINES} more"]
+    lines = [f"{paper}: first accepted: {', '.join(exhibits)}" for paper, exhibits in first.items()] + lines
+    return f"\n## {reason}\n\n" + "".join(f"- {line}\n" for line in lines)
+
+
+def _is_first(diff: ExhibitDiff) -> bool:
+    return any(change.kind == "new" and not change.where for change in diff.changes)

@@ -8,7 +8,6 @@ in ``<exhibit>.png``, small and never compared. Numbers have nine significant di
 
 from __future__ import annotations
 
-import csv
 import io
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,8 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
+from replicate.accepted_files import keyed, read_axes, read_cells, read_curves
 from replicate.errors import AcceptedStateError
 from replicate.outcome import Outcome
 from replicate.outputs import csv_text, curves_text, number_text
@@ -32,10 +30,6 @@ ENDINGS = (".csv", ".json", ".png")
 
 TABLE_COLUMNS = ("row", "column", "reading", "computed", "printed", "verdict")
 CLAIM_COLUMNS = ("row", "verdict", "computed")
-CURVE_COLUMNS = ("panel", "curve", "x", "y")
-
-_KEYS = {"row", "column", "reading"}
-_NEEDED = {"panel", "xlim", "ylim"}
 
 
 @dataclass(frozen=True)
@@ -61,7 +55,7 @@ def present_state(outcome: Outcome, result: Result) -> State:
     if isinstance(result, FigureResult):
         return figure_state(result.curves, result.axes)
     columns, rows = _rows(outcome, result)
-    return TableState(_cells([dict(zip(columns, row, strict=True)) for row in rows]))
+    return TableState(dict(keyed(columns, row) for row in rows))
 
 
 def figure_state(curves: pd.DataFrame, axes: Sequence[Mapping[str, Any]]) -> FigureState:
@@ -86,9 +80,18 @@ def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> St
         if not path.is_file():
             return path.name
     if kind is FigureResult:
-        return FigureState(_read_curves(data), _read_axes(axes))
-    columns = CLAIM_COLUMNS if kind is ClaimsResult else TABLE_COLUMNS
-    return TableState(_cells([dict(zip(columns, row, strict=True)) for _, row in _read_rows(data, columns)]))
+        return _read_figure(data, axes)
+    return TableState(read_cells(data, CLAIM_COLUMNS if kind is ClaimsResult else TABLE_COLUMNS))
+
+
+def _read_figure(data: Path, axes: Path) -> FigureState:
+    state = FigureState(read_curves(data), read_axes(axes))
+    described = {str(panel["panel"]) for panel in state.axes}
+    for panel, curve in state.curves:
+        if panel not in described:
+            msg = f"{data.parent.name}/{axes.name}: does not describe panel '{panel}', where curve '{curve}' is"
+            raise AcceptedStateError(msg)
+    return state
 
 
 def files_of(folder: Path, exhibit: str) -> list[Path]:
@@ -140,59 +143,3 @@ def _values(result: TableResult) -> Iterator[tuple[str, str, str, object]]:
         for row, values in zip(frame.index, frame.itertuples(index=False, name=None), strict=True):
             for column, value in zip(frame.columns, values, strict=True):
                 yield reading, str(row), str(column), value
-
-
-def _cells(lines: Sequence[dict[str, str]]) -> dict[tuple[str, ...], dict[str, str]]:
-    cells: dict[tuple[str, ...], dict[str, str]] = {}
-    for line in lines:
-        key = tuple(value for name, value in line.items() if name in _KEYS)
-        cells[key] = {name: value for name, value in line.items() if name not in _KEYS}
-    return cells
-
-
-def _read_rows(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
-    """Yield line numbers and rows of a CSV that must have exactly these columns."""
-    where = f"{path.parent.name}/{path.name}"
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        msg = f"{where}: the accepted state cannot be read: {error}"
-        raise AcceptedStateError(msg) from error
-    reader = csv.reader(io.StringIO(text, newline=""))
-    header = next(reader, [])
-    if header != list(columns):
-        msg = f"{where}:1: the columns are {','.join(header) or 'missing'}, needed: {','.join(columns)}"
-        raise AcceptedStateError(msg)
-    for row in reader:
-        if len(row) != len(columns):
-            msg = f"{where}:{reader.line_num}: has {len(row)} cells, needed: {len(columns)}"
-            raise AcceptedStateError(msg)
-        yield reader.line_num, row
-
-
-def _read_curves(path: Path) -> dict[tuple[str, str], Points]:
-    points: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for line, (panel, curve, *place) in _read_rows(path, CURVE_COLUMNS):
-        try:
-            x, y = (float(text) if text else np.nan for text in place)
-        except ValueError as error:
-            msg = f"{path.parent.name}/{path.name}:{line}: x and y are {','.join(place)}, needed: numbers"
-            raise AcceptedStateError(msg) from error
-        points.setdefault((panel, curve), []).append((x, y))
-    return {key: np.array(value) for key, value in points.items()}
-
-
-def _read_axes(path: Path) -> list[Mapping[str, Any]]:
-    where = f"{path.parent.name}/{path.name}"
-    try:
-        axes = json.loads(path.read_text(encoding="utf-8"))
-    except json.JSONDecodeError as error:
-        msg = f"{where}:{error.lineno}: is no JSON: {error.msg}"
-        raise AcceptedStateError(msg) from error
-    except (OSError, UnicodeDecodeError) as error:
-        msg = f"{where}: the accepted state cannot be read: {error}"
-        raise AcceptedStateError(msg) from error
-    if not isinstance(axes, list) or not all(isinstance(entry, dict) and entry.keys() >= _NEEDED for entry in axes):
-        msg = f"{where}: needed: a list of objects, each with {', '.join(sorted(_NEEDED))}"
-        raise AcceptedStateError(msg)
-    return axes

@@ -7,11 +7,9 @@ Here the comparison with the accepted state joins in, and the demand that someth
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
-from replicate.diff.changes import Change
-from replicate.diff.comparison import compare
+from replicate.diff.comparison import Comparison, compare
 from replicate.outcome import Outcome
 
 
@@ -22,19 +20,16 @@ def check(outcome: Outcome, accepted: Path) -> list[str]:
     ----------
     accepted
         The folder with the accepted state.
-
-    Raises
-    ------
-    AcceptedStateError
-        If an accepted file is damaged.
     """
+    return problems(outcome, compare(outcome, accepted))
+
+
+def problems(outcome: Outcome, comparison: Comparison) -> list[str]:
+    """Return one line for each problem of a run that has been compared with the accepted state."""
     judgement = outcome.judgement
-    problems = list(judgement.problems)
+    found = list(judgement.problems)
     if not any(row.match != "none" for row in judgement.results):
-        problems.append("no printed value was compared with a computed one")
-    return problems + [str(change) for change in _news(compare(outcome, accepted).changes)]
-
-
-def _news(changes: Sequence[Change]) -> list[Change]:
-    """Leave out exhibits that raised: judging has said so already."""
-    return [change for change in changes if change.kind != "failed"]
+        found.append("no printed value was compared with a computed one")
+    # Judging has named the exhibits that raised already.
+    compared = Comparison([exhibit for exhibit in comparison.exhibits if not exhibit.failed])
+    return found + compared.lines

@@ -7,24 +7,26 @@ the commands, so that ``replicate --help`` answers at once.
 
 from __future__ import annotations
 
+import io
+import signal
 import sys
+import threading
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from replicate.errors import ReplicateError, UnknownPaperError
+from replicate.errors import PaperDefinitionError, ReplicateError, UnknownPaperError
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
     from replicate.outcome import Outcome, Selection
 
-DIFFERS, BROKEN = 1, 2
+DIFFERS, BROKEN, TERMINATED = 1, 2, 143
 
 app = typer.Typer(
     name="replicate",
     help="Recompute what papers on PI and PID control print, compare, and say why where it differs.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -37,10 +39,8 @@ Accepted = Annotated[
     Path | None,
     typer.Option("--accepted", help="Folder of the accepted state; default: the project's own."),
 ]
-Papers = Annotated[list[str] | None, typer.Argument(metavar="[PAPER]...", help="Default: all papers.")]
-Names = Annotated[
-    list[str] | None, typer.Argument(metavar="[PAPER[/EXHIBIT]]...", help="Default: all papers.")
-]
+Papers = Annotated[list[str] | None, typer.Argument(metavar="PAPER", help="Default: all papers.")]
+Names = Annotated[list[str] | None, typer.Argument(metavar="PAPER[/EXHIBIT]", help="Default: all papers.")]
 
 BUILD = Path("build")
 
@@ -49,24 +49,45 @@ def main() -> None:
     """Run the command line; this is the console script ``replicate``."""
     arguments = sys.argv[1:]
     debug = "--debug" in arguments
+    _prepare()
     try:
-        app(args=[argument for argument in arguments if argument != "--debug"], prog_name="replicate")
+        status = app(
+            args=[argument for argument in arguments if argument != "--debug"],
+            prog_name="replicate",
+            standalone_mode=False,
+        )
     except Exception as error:
         if debug:
             raise
         print(f"replicate: {_one_line(error)}", file=sys.stderr)  # noqa: T201  -- the error is the output
         sys.exit(BROKEN)
+    sys.exit(status or 0)
+
+
+def _prepare() -> None:
+    """Let a terminal without Unicode show what it can, and a run that is told to end tidy up first."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
 
 
 def _one_line(error: Exception) -> str:
     text = " ".join(str(error).split())
     if isinstance(error, ReplicateError):
         return text
+    usage = getattr(error, "format_message", None)  # a wrong option or argument
+    if usage is not None:
+        context = getattr(error, "ctx", None)
+        hint = f" ({context.command_path} --help shows what is allowed)" if context else ""
+        return f"{' '.join(usage().split()).rstrip('.')}{hint}"
     return f"unexpected {type(error).__name__}: {text} (--debug shows where)"
 
 
 @app.callback(invoke_without_command=True)
 def _options(
+    context: typer.Context,
     debug: Annotated[bool, typer.Option("--debug", help="Show where an error comes from.")] = False,  # noqa: ARG001
     version: Annotated[bool, typer.Option("--version", help="Show the version and exit.")] = False,
 ) -> None:
@@ -76,11 +97,14 @@ def _options(
 
         typer.echo(f"replicate {replicate.__version__}")
         raise typer.Exit
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+        raise typer.Exit(BROKEN)
 
 
 @app.command(name="list")
 def list_(
-    paper: Annotated[str | None, typer.Argument(metavar="[PAPER]", help="Default: the papers.")] = None,
+    paper: Annotated[str | None, typer.Argument(metavar="PAPER", help="Default: the papers.")] = None,
 ) -> None:
     """List the papers, or the exhibits of one of them."""
     from replicate.discovery import find_paper, find_papers
@@ -102,7 +126,10 @@ def show(
     out: Out = BUILD,
     no_cache: NoCache = False,
 ) -> None:
-    """Show one exhibit: printed values, each reading's values, verdicts and explanations."""
+    """Show one exhibit: printed values, readings and verdicts.
+
+    With the explanations of those that do not hold.
+    """
     from replicate.discovery import find_exhibit, find_paper
     from replicate.exhibits import Table
     from replicate.terminal.console import console
@@ -133,7 +160,10 @@ def chart(
         Path | None, typer.Option("--out", help="File, .svg or .png; default: in build/charts.", dir_okay=False)
     ] = None,
 ) -> None:
-    """Draw a chart of a paper for parameters of your own, given as --NAME VALUE."""
+    """Draw a chart of a paper for parameters of your own.
+
+    They are given as --NAME VALUE; without any, the message names those of the chart.
+    """
     from replicate.charts import file_name, find_chart, read_parameters, write_chart
     from replicate.discovery import find_paper
 
@@ -173,17 +203,23 @@ def check(
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
-    """Check that every printed value holds or is explained, and that nothing has moved."""
-    from replicate.check import check as find_problems
+    """Check that every value holds or is explained.
+
+    And that nothing differs from the accepted state.
+    """
+    from replicate.check import problems as find_problems
+    from replicate.diff.comparison import compare
     from replicate.discovery import find_papers
 
     outcome = _recompute(find_papers(papers or ()), None, jobs, out, no_cache)
-    problems = find_problems(outcome, _accepted(accepted))
+    comparison = compare(outcome, _accepted(accepted))
+    problems = find_problems(outcome, comparison)
     for problem in problems:
         typer.echo(problem)
     compared = sum(row.match != "none" for row in outcome.judgement.results)
     typer.echo(f"problems: {len(problems)}; comparisons: {compared}; exhibits: {len(outcome.results)}")
-    _exit_if_broken(outcome)
+    if comparison.broken:
+        raise typer.Exit(BROKEN)
     raise typer.Exit(DIFFERS if problems else 0)
 
 
@@ -195,7 +231,10 @@ def diff(
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
-    """Say what differs from the accepted state, in words, and in pictures in build/diff/index.html."""
+    """Say what differs from the accepted state.
+
+    In words, and in pictures in build/diff/index.html. Exit status 1 if something does.
+    """
     from replicate.diff.comparison import compare
     from replicate.diff.outputs import write_diff
     from replicate.discovery import select
@@ -210,7 +249,7 @@ def diff(
         write_diff(comparison, outcome, fresh, jobs)
     print_comparison(comparison, console())
     typer.echo(f"pictures: {out / 'diff' / 'index.html'}")
-    if comparison.failed or not comparison.compared:
+    if comparison.broken or not comparison.compared:
         raise typer.Exit(BROKEN)
     raise typer.Exit(DIFFERS if comparison.changes else 0)
 
@@ -234,9 +273,10 @@ def accept(
     require_reason(reason)
     papers, selection = select(names or ())
     outcome = _recompute(papers, selection, jobs, out, no_cache)
-    changes = accept_state(outcome, _accepted(accepted), reason)
-    print_changes(changes, console())
-    typer.echo(f"changes accepted: {len(changes)}" if changes else "nothing differs from the accepted state")
+    comparison = accept_state(outcome, _accepted(accepted), reason)
+    print_changes(comparison, console())
+    changes = len(comparison.changes)
+    typer.echo(f"changes accepted: {changes}" if changes else "nothing differs from the accepted state")
 
 
 @app.command()
@@ -273,10 +313,14 @@ def handout(
 def new(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
 ) -> None:
-    """Make the package of a new paper in the current folder, ready to be filled in."""
+    """Make the package of a new paper in the current folder."""
+    from replicate.discovery import known_papers
     from replicate.scaffold import new_paper
     from replicate.terminal.console import console
 
+    if paper in known_papers():
+        msg = f"there is a paper '{paper}' already; choose another id"
+        raise PaperDefinitionError(msg)
     folder = new_paper(paper, Path())
     console().print(f"{folder}: made. Install it with `pip install -e {folder}`, then `replicate report {paper}`.")
 

@@ -51,17 +51,17 @@ def staged(target: Path) -> Iterator[Path]:
 
 def _swap(fresh: Path, target: Path, old: Path) -> None:
     """Move every entry of `fresh` into `target`, and everything back if one of the moves fails."""
-    moved: list[str] = []
+    names = sorted(entry.name for entry in fresh.iterdir())
     try:
-        for entry in sorted(fresh.iterdir()):
-            place = target / entry.name
+        for name in names:
+            place = target / name
             if place.exists():
-                place.rename(old / entry.name)
-            moved.append(entry.name)
-            entry.rename(place)
+                place.rename(old / name)
+            (fresh / name).rename(place)
     except BaseException:
-        for name in moved:
-            if (target / name).exists():
+        # Where everything is tells how far it came; an interruption may fall between any two steps.
+        for name in names:
+            if not (fresh / name).exists():
                 (target / name).rename(fresh / name)
             if (old / name).exists():
                 (old / name).rename(target / name)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import io
+import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,9 +17,8 @@ from PIL import Image
 
 from replicate.accept import LOG, accept
 from replicate.check import check
-from replicate.diff.changes import Change
 from replicate.diff.comparison import compare as compare_all
-from replicate.errors import AcceptedStateError, OutputError, ReplicateError
+from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.outcome import Outcome
 from replicate.records import FigureResult, Results
@@ -54,9 +55,7 @@ PICTURE, OTHER_FONTS = picture("red"), picture("blue")
 
 
 def figure(curves: Curves = BOTH, axes: list[dict[str, Any]] = AXES, png: bytes = PICTURE) -> FigureResult:
-    frames = [
-        pd.DataFrame({"panel": "panel 1", "curve": name, "x": x, "y": y}) for name, (x, y) in curves.items()
-    ]
+    frames = [pd.DataFrame({"panel": "panel 1", "curve": name, "x": x, "y": y}) for name, (x, y) in curves.items()]
     return FigureResult("toy", "fig-1", "<svg/>", png, pd.concat(frames), axes)
 
 
@@ -68,8 +67,8 @@ def outcome(folder: Path, drawn: FigureResult | None = None, **changes: Any) -> 
     return Outcome([toy], results, {"toy": judge(toy, results, printed=synthetic.printed())})
 
 
-def compare(present: Outcome, folder: Path) -> list[Change]:
-    return compare_all(present, folder).changes
+def compare(present: Outcome, folder: Path) -> list[str]:
+    return compare_all(present, folder).lines
 
 
 @pytest.fixture
@@ -84,10 +83,6 @@ def accepted(tmp_path: Path, data: Path) -> Path:
     return folder
 
 
-def words(changes: list[Change]) -> list[str]:
-    return [str(change) for change in changes]
-
-
 def test_what_is_stored(accepted: Path) -> None:
     assert sorted(path.name for path in (accepted / "toy").iterdir()) == [
         "claims.csv",
@@ -100,16 +95,14 @@ def test_what_is_stored(accepted: Path) -> None:
         "row,column,reading,computed,printed,verdict",
         "A,x,as-written,1,1.0,reproduced",
     ]
-    assert (
-        accepted / "toy/claims.csv"
-    ).read_text() == "row,verdict,computed\nbig,holds,3.1\nsmooth,fails,0.2\n"
+    assert (accepted / "toy/claims.csv").read_text() == "row,verdict,computed\nbig,holds,3.1\nsmooth,fails,0.2\n"
 
 
 def test_nothing_differs_from_itself(accepted: Path, data: Path) -> None:
     assert compare(outcome(data), accepted) == []
     assert check(outcome(data), accepted) == []
     before = (accepted / LOG).read_bytes()
-    assert accept(outcome(data), accepted, "again") == []
+    assert accept(outcome(data), accepted, "again").changes == []
     assert (accepted / LOG).read_bytes() == before
 
 
@@ -122,9 +115,7 @@ def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -
     }
     same = [
         outcome(data, figure(png=OTHER_FONTS)),
-        outcome(
-            data, figure({"output": (T, 1.0 - np.exp(-T) + noise), "input": (T, np.where(T < 3.0, 0.0, 1.0))})
-        ),
+        outcome(data, figure({"output": (T, 1.0 - np.exp(-T) + noise), "input": (T, np.where(T < 3.0, 0.0, 1.0))})),
         outcome(data, figure(resampled)),
         outcome(data, as_written=synthetic.frame(ax=1.0 + 1e-10)),
     ]
@@ -152,7 +143,7 @@ def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -
     ],
 )
 def test_changed_values_and_verdicts(accepted: Path, data: Path, changed: dict[str, Any], said: str) -> None:
-    assert said in words(compare(outcome(data, **changed), accepted))
+    assert said in compare(outcome(data, **changed), accepted)
 
 
 @pytest.mark.parametrize(
@@ -176,7 +167,7 @@ def test_changed_values_and_verdicts(accepted: Path, data: Path, changed: dict[s
     ],
 )
 def test_changed_curves(accepted: Path, data: Path, curves: dict[str, tuple[Any, Any]], said: str) -> None:
-    (first, *_) = words(compare(outcome(data, figure(curves)), accepted))
+    (first, *_) = compare(outcome(data, figure(curves)), accepted)
     assert first.startswith(f"toy/fig-1: {said}")
 
 
@@ -191,7 +182,7 @@ def test_changed_curves(accepted: Path, data: Path, curves: dict[str, tuple[Any,
 )
 def test_changed_axes(accepted: Path, data: Path, changed: dict[str, Any], said: str) -> None:
     axes = [{**AXES[0], **changed}]
-    assert f"toy/fig-1: {said}" in words(compare(outcome(data, figure(axes=axes)), accepted))
+    assert compare(outcome(data, figure(axes=axes)), accepted) == [f"toy/fig-1: {said}; 2 curves unchanged"]
 
 
 def test_missing_and_superfluous_files(accepted: Path, data: Path) -> None:
@@ -199,26 +190,105 @@ def test_missing_and_superfluous_files(accepted: Path, data: Path) -> None:
     (accepted / "toy/table-1.csv").unlink()
     (accepted / "toy/table-9.csv").write_text("row\n")
     present = outcome(data)
-    assert words(compare(present, accepted)) == [
+    assert compare(present, accepted) == [
         "toy/table-1: has no accepted state: toy/table-1.csv is missing",
         "toy/fig-1: has no accepted state: toy/fig-1.json is missing",
         "toy/table-9: was accepted, but is not computed any more",
     ]
     assert len(compare(replace(present, complete=False), accepted)) == 2
-    assert accept(present, accepted, "clean up")
+    assert accept(present, accepted, "clean up").changes
     assert compare(present, accepted) == []
     assert not (accepted / "toy/table-9.csv").exists()
 
 
 def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
     (accepted / "toy/fig-1.json").write_text("[{\n")
-    with pytest.raises(AcceptedStateError, match=r"^toy/fig-1.json:\d: is no JSON"):
-        compare(outcome(data), accepted)
+    present = outcome(data, as_written=synthetic.frame(ax=1.001))
+    found = compare_all(present, accepted)
+    assert found.broken
+    changed, damaged = found.lines  # the damage hides no other change
+    assert changed.startswith("toy/table-1: A x 1 -> 1.001")
+    assert damaged.startswith("toy/fig-1: its accepted state is damaged: toy/fig-1.json:2: is no JSON")
+    accept(present, accepted, "made whole")
+    assert compare(present, accepted) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('"xlim": [\n   0.0,', '"xlim": [\n   NaN,', "toy/fig-1.json: is no JSON: NaN is no number"),
+        ('"xlim": [\n   0.0,\n', '"xlim": [\n', "xlim of panel 'panel 1' is [10.0], needed: two different numbers"),
+        ('"xlim": [\n   0.0,', '"xlim": [\n   "0",', "xlim of panel 'panel 1' is [\"0\", 10.0], needed: two different"),
+        ('"xlim": [\n   0.0,', '"xlim": [\n   10.0,', "xlim of panel 'panel 1' is [10.0, 10.0], needed: two different"),
+        ('"xscale": "linear"', '"xscale": "log"', "xlim of panel 'panel 1' is not positive on a logarithmic axis"),
+        ('"title": ""', '"title": 5', "title of panel 'panel 1' is 5, needed: a text"),
+        ('"title": ""', '"legend": [null]', "toy/fig-1.json"),
+        ('"title": ""', '"points": "output"', "points of panel 'panel 1' is \"output\", needed: a list of texts"),
+        ('"title": ""', '"texts": [{"text": "peak"}]', "needed: a list of objects, each with text, x and y"),
+        ('"title": ""', '"thinned": {"output": "x"}', "needed: numbers by name"),
+        ('"title": ""', '"hidden": 1', "hidden of panel 'panel 1' is 1, needed: true or false"),
+        ('"panel": "panel 1"', '"panel": "panel 2"', "does not describe panel 'panel 1', where curve 'output' is"),
+        ("[\n {", "[" * 5000 + "{", "toy/fig-1.json"),
+    ],
+)
+def test_a_description_that_no_figure_has_is_damage(accepted: Path, data: Path, old: str, new: str, said: str) -> None:
+    path = accepted / "toy/fig-1.json"
+    text = path.read_text()
+    assert old in text
+    path.write_text(text.replace('"legend"', '"was"') if "legend" in new else text)
+    path.write_text(path.read_text().replace(old, new))
+    (line,) = compare(outcome(data), accepted)
+    assert line.startswith("toy/fig-1: its accepted state is damaged: toy/fig-1.json")
+    assert said in line
+
+
+def test_a_panel_described_twice_is_damage(accepted: Path, data: Path) -> None:
+    path = accepted / "toy/fig-1.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) * 2))
+    (line,) = compare(outcome(data), accepted)
+    assert "describes panel 'panel 1' twice" in line
+
+
+@pytest.mark.parametrize(
+    ("name", "cut", "said"),
+    [
+        ("fig-1.csv", lambda text: text[:-1], f":{2 * len(T) + 1}: ends in the middle of a line"),
+        ("fig-1.csv", lambda text: text + "panel 1,input,10,1.2", "ends in the middle of a line"),
+        ("fig-1.csv", lambda text: text[:-4], "has 3 cells, needed: 4"),
+        ("fig-1.csv", lambda text: text.replace("panel 1,output,", "panel 1,output,nan", 1), "needed: two numbers"),
+        ("fig-1.csv", lambda text: text + "panel 1,output,1,\n", "x and y are 1,, needed: two numbers, or nothing"),
+        ("fig-1.csv", lambda text: text + "panel 1,output,1,inf\n", "x and y are 1,inf, needed: two numbers"),
+        ("fig-1.csv", lambda text: text + '"panel 1,output,1,2\n', "is no CSV: unexpected end of data"),
+        ("table-1.csv", lambda text: text + text.splitlines()[1] + "\n", "'A x as-written' stands in line 2 already"),
+        ("claims.csv", lambda _: "", ":1: the columns are missing, needed: row,verdict,computed"),
+        ("claims.csv", lambda _: "row,verdict\n", ":1: the columns are row,verdict, needed: row,verdict,computed"),
+    ],
+)
+def test_half_a_file_is_damage(accepted: Path, data: Path, name: str, cut: Callable[[str], str], said: str) -> None:
+    path = accepted / "toy" / name
+    path.write_text(cut(path.read_text()))
+    (line,) = compare(outcome(data), accepted)
+    assert f"its accepted state is damaged: toy/{name}" in line
+    assert said in line
+
+
+def test_bytes_that_are_no_text_are_damage(accepted: Path, data: Path) -> None:
+    (accepted / "toy/claims.csv").write_bytes(b"row,verdict,computed\n\xff\xfe\x00\n")
+    (line,) = compare(outcome(data), accepted)
+    assert line.endswith("toy/claims.csv:2: is no text in UTF-8")
+
+
+def test_a_missing_picture_is_told_and_put_back(accepted: Path, data: Path) -> None:
+    (accepted / "toy/fig-1.png").unlink()
+    (line,) = compare(outcome(data), accepted)
+    assert line == "toy/fig-1: its picture for people, toy/fig-1.png, is missing; 2 curves unchanged"
+    accept(outcome(data), accepted, "picture")
+    assert (accepted / "toy/fig-1.png").is_file()
 
 
 def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None:
     present = outcome(data, figure(png=OTHER_FONTS), as_written=synthetic.frame(ax=1.001))
-    (change,) = accept(present, accepted, "a better\n solver")
+    (change,) = accept(present, accepted, "a better\n solver").changes
     assert change.exhibit == "table-1"
     with Image.open(accepted / "toy/fig-1.png") as kept:
         assert kept.size == (20, 10)
@@ -252,6 +322,32 @@ def test_accepting_is_all_or_nothing(accepted: Path, data: Path, monkeypatch: py
     changed = outcome(data, figure({"output": INPUT}), as_written=synthetic.frame(ax=1.5))
     with pytest.raises(OutputError, match="No space left"):
         accept(changed, accepted, "half")
+    assert {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.parametrize("when", ["before", "after"])
+@pytest.mark.parametrize("step", range(4))
+def test_an_interruption_between_any_two_steps(
+    accepted: Path, data: Path, monkeypatch: pytest.MonkeyPatch, step: int, when: str
+) -> None:
+    before = {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()}
+    rename = Path.rename
+    steps = 0
+
+    def interrupted(self: Path, target: Path) -> Path:
+        nonlocal steps
+        steps += 1
+        if steps == step + 1 and when == "before":
+            raise KeyboardInterrupt
+        moved = rename(self, target)
+        if steps == step + 1:
+            raise KeyboardInterrupt
+        return moved
+
+    monkeypatch.setattr(Path, "rename", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        accept(outcome(data, figure({"output": INPUT}), as_written=synthetic.frame(ax=1.5)), accepted, "half")
+    assert steps > step
     assert {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()} == before
 
 

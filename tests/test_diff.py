@@ -19,7 +19,7 @@ from replicate import plotstyle
 from replicate.accepted import FigureState, figure_state
 from replicate.capture import capture, read_figure
 from replicate.diff.axes import compare_axes
-from replicate.diff.cells import with_count
+from replicate.diff.comparison import ExhibitDiff
 from replicate.diff.curves import compare_curves
 from replicate.diff.distance import distances
 from replicate.diff.values import WINDOW, compare_values
@@ -58,7 +58,8 @@ def changes(before: Draw, after: Draw) -> list[str]:
     old, new = state(before), state(after)
     found = compare_curves("toy", "fig-1", (old.curves, old.axes), (new.curves, new.axes))
     axes = compare_axes("toy", "fig-1", old.axes, new.axes)
-    return [change.text for change in (*axes, *with_count(found.changes, found.unchanged, "curve"))]
+    unchanged = found.unchanged if found.changes else 0  # of other curves, when it is about curves
+    return ExhibitDiff("toy", "fig-1", "figure", [*axes, *found.changes], unchanged).texts
 
 
 OUTPUT, INPUT = ("output", T, response(T)), ("input", *STEP)
@@ -97,6 +98,15 @@ def test_a_shifted_jump_is_named() -> None:
     assert changes(BOTH, plot(OUTPUT, later)) == [
         "curve 'input' moved: its jump at t = 3 is now at 3.05 (0.5 % of the axis); 1 curve unchanged"
     ]
+
+
+def test_a_delayed_square_wave_is_told_in_one_breath() -> None:
+    at = np.repeat(np.arange(1.0, 9.0), 2)
+    levels = np.tile([0.0, 1.0, 1.0, 0.0], 4)
+    before, after = (plot(("wave", np.r_[0.0, at + late, 10.0], np.r_[0.0, levels, 0.0])) for late in (0.0, 0.05))
+    (said,) = changes(before, after)
+    assert said.startswith("curve 'wave' moved: its jump at t = 1 is now at 1.05 (0.5 % of the axis); its jump at t = 2 ")
+    assert said.endswith("(0.5 % of the axis); and 6 more jumps, by at most 0.5 % of the axis")
 
 
 def test_a_shifted_jump_does_not_hide_a_moved_level() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import re
 import xml.etree.ElementTree as ET
@@ -12,6 +13,12 @@ from pathlib import Path
 
 import pytest
 from installed_paper import contents
+from rich.console import Console
+
+from replicate.accepted import TableState
+from replicate.diff.changes import Change
+from replicate.diff.comparison import Comparison, ExhibitDiff
+from replicate.terminal.differences import print_changes
 
 Run = Callable[..., tuple[int, str, str]]
 VOID = {"br", "hr", "img", "input", "link", "meta"}
@@ -131,19 +138,29 @@ def test_a_deleted_baseline(diff: Run, name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        ("fig-1.csv", "panel,curve,x,y\na,b,1,2\na,b,1,two\n", "lab/fig-1.csv:3: x and y are 1,two, needed: numbers"),
+        (
+            "fig-1.csv",
+            "panel,curve,x,y\na,b,1,2\na,b,1,two\n",
+            "lab/fig-1.csv:3: x and y are 1,two, needed: two numbers",
+        ),
         ("fig-1.csv", "panel,curve,x\n", "lab/fig-1.csv:1: the columns are panel,curve,x, needed: panel,curve,x,y"),
         ("fig-1.json", '[{"panel": "a"}]', "lab/fig-1.json: needed: a list of objects, each with panel, xlim, ylim"),
         ("table-1.csv", "row,column,reading,computed,printed,verdict\n1,2\n", "lab/table-1.csv:2: has 2 cells"),
     ],
 )
-def test_a_damaged_baseline(diff: Run, name: str, text: str, said: str) -> None:
-    before = contents(Path("build"))
+def test_a_damaged_baseline(diff: Run, replicate: Run, name: str, text: str, said: str) -> None:
     (Path("accepted/lab") / name).write_text(text)
-    status, out, err = diff()
-    assert (status, out) == (2, "")
-    assert f"replicate: {said}" in err
-    assert contents(Path("build")) == before
+    edit("claims.csv", lambda rows: rows.pop())
+    status, out, _ = diff()
+    assert status == 2
+    assert f"its accepted state is damaged: {said}" in out
+    assert "lab/claims: root is new" in out  # damage to one file hides no change in another
+    assert out.splitlines()[-2].endswith("; damaged in the accepted state: 1")
+    assert said in next(junit().iter("error")).get("message", "")
+    assert said.partition(":")[0] in index()
+    assert replicate("check", "lab", "--accepted", "accepted", "-j1")[0] == 2
+    assert replicate("accept", "lab", "--reason", "whole", "--accepted", "accepted", "-j1")[0] == 0
+    assert diff()[0] == 0
 
 
 def test_nothing_to_compare(diff: Run, replicate: Run) -> None:
@@ -252,11 +269,65 @@ def test_a_flood_of_changes_is_cut_short(diff: Run) -> None:
 
     edit("table-1.csv", many)
     _, out, _ = diff()
-    lines = out.splitlines()
-    assert len(lines) < 20
-    assert "lab/table-1: 39 more changes not listed here, and" in lines
-    assert lines[-3].endswith("; 8 values unchanged")
+    *lines, count, _ = out.splitlines()
+    assert len(lines) == 20
+    assert lines[-1].endswith("; 30 more changes not listed here; 8 values unchanged")
+    assert count.startswith("50 changes")
     assert len(json.loads(Path("build/diff.json").read_text())["changes"]) == 50
+
+
+def screen(*exhibits: ExhibitDiff) -> list[str]:
+    """Return the lines that the terminal shows."""
+    console = Console(file=io.StringIO(), width=100)
+    print_changes(Comparison(list(exhibits)), console)
+    assert isinstance(console.file, io.StringIO)
+    return console.file.getvalue().splitlines()
+
+
+def table(exhibit: str, changes: list[Change], paper: str = "lab") -> ExhibitDiff:
+    return ExhibitDiff(paper, exhibit, "table", changes, 7, TableState({}), TableState({}))
+
+
+def value(name: str, size: float, exhibit: str = "table-1") -> Change:
+    return Change("lab", exhibit, "value", f"{name} moved", name, size=size)
+
+
+def test_of_many_changes_the_screen_shows_those_that_matter_most() -> None:
+    small = [value(f"small-{number}", 1e-5) for number in range(60)]
+    verdict = Change("lab", "table-1", "verdict", "verdict near -> differs", size=1e-6)
+    changes = [*small[:30], value("large", -0.4), *small[30:], verdict]
+    lines = screen(table("table-1", changes), table("table-2", [value("alone", 1e-5, "table-2")]))
+    assert len(lines) == 20
+    assert "lab/table-1: large moved" in lines
+    assert "lab/table-1: verdict near -> differs; 43 more changes not listed here; 7 values unchanged" in lines
+    assert lines[-1] == "lab/table-2: alone moved; 7 values unchanged"
+
+
+def test_of_many_exhibits_the_screen_shows_the_worst_and_counts_the_others() -> None:
+    names = [f"table-{number}" for number in range(90)]
+    lines = screen(*(table(name, [value("x", number / 100.0, name)]) for number, name in enumerate(names)))
+    assert len(lines) == 20
+    assert lines[0] == "lab/table-71: x moved; 7 values unchanged"
+    assert lines[-1] == "further: 71 exhibits with smaller changes, not listed here: 71 of lab"
+
+
+def test_a_paper_without_accepted_state_is_one_line() -> None:
+    new = [
+        ExhibitDiff(paper, f"fig-{number}", "figure", [Change(paper, f"fig-{number}", "new", "has no accepted state")])
+        for paper in ("lab", "barn")
+        for number in range(8 if paper == "lab" else 1)
+    ]
+    assert screen(*new) == [
+        "lab: 8 exhibits have no accepted state: fig-0, fig-1, fig-2, fig-3, fig-4, fig-5 and 2 more",
+        "barn/fig-0: has no accepted state",
+    ]
+
+
+def test_the_page_tells_a_verdict_once(diff: Run) -> None:
+    edit("table-1.csv", other_verdict)
+    edit("table-1.csv", lambda rows: [row.__setitem__(3, "1.6") for row in rows if row[:2] == ["3", "root"]])
+    assert diff()[1].count("verdict near -> reproduced") == 1
+    assert index().count(" → ") == 1
 
 
 def test_accepting_what_differs(diff: Run, replicate: Run) -> None:

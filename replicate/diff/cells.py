@@ -7,7 +7,7 @@ The columns of the accepted CSV are compared by what they hold: ``computed`` as 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from replicate.diff.changes import Change, Kind, moved, relative, same_number
 from replicate.exhibits import AS_WRITTEN
@@ -111,18 +111,3 @@ def compare_cells(before: Cells, after: Cells) -> tuple[list[CellChange], int]:
             unchanged += 1
     changes.sort(key=lambda change: change.kind != "verdict")
     return changes, unchanged
-
-
-def with_count(changes: list[Change], unchanged: int, what: str) -> list[Change]:
-    """Return the changes, the last of which also says how many of the same kind there were not.
-
-    Examples
-    --------
-    >>> [str(change) for change in with_count([Change("khan", "fig-4", "curve", "moved")], 8, "curve")]
-    ['khan/fig-4: moved; 8 curves unchanged']
-    """
-    if not changes or not unchanged:
-        return changes
-    last = changes[-1]
-    count = f"{unchanged} {what}{'s' if unchanged > 1 else ''} unchanged"
-    return [*changes[:-1], replace(last, text=f"{last.text}; {count}")]

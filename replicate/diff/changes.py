@@ -13,7 +13,7 @@ ABSOLUTE = 1e-10
 
 _DIGITS = (6, 7, 8, 9)
 
-Kind = Literal["value", "verdict", "printed", "curve", "axes", "new", "removed", "failed"]
+Kind = Literal["value", "verdict", "printed", "curve", "axes", "new", "removed", "failed", "damaged"]
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,11 @@ from typing import Literal
 
 from replicate.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
 from replicate.diff.axes import compare_axes
-from replicate.diff.cells import CellChange, compare_cells, with_count
+from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
 from replicate.diff.curves import Pair, compare_curves
 from replicate.discovery import known_papers
+from replicate.errors import AcceptedStateError
 from replicate.outcome import Outcome
 from replicate.records import ClaimsResult, FigureResult, Result
 from replicate.units import errors_of
@@ -67,6 +68,25 @@ class ExhibitDiff:
         """Whether it could not be computed."""
         return any(change.kind == "failed" for change in self.changes)
 
+    @property
+    def damaged(self) -> bool:
+        """Whether its accepted state cannot be read."""
+        return any(change.kind == "damaged" for change in self.changes)
+
+    @property
+    def same(self) -> str:
+        """How many of its values, claims or curves did not change, in words; empty if that says nothing."""
+        if not self.changes or not self.unchanged:
+            return ""
+        what = {"table": "value", "claims": "claim", "figure": "curve"}[self.kind or "table"]
+        return f"{self.unchanged} {what}{'s' if self.unchanged > 1 else ''} unchanged"
+
+    @property
+    def texts(self) -> list[str]:
+        """What changed, in words; the last sentence also says how much did not."""
+        texts = [change.text for change in self.changes]
+        return [*texts[:-1], f"{texts[-1]}; {self.same}"] if self.same else texts
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -95,9 +115,14 @@ class Comparison:
         return sum(exhibit.compared for exhibit in self.exhibits)
 
     @property
-    def failed(self) -> bool:
-        """Whether an exhibit could not be computed."""
-        return any(exhibit.failed for exhibit in self.exhibits)
+    def lines(self) -> list[str]:
+        """The changes of all exhibits in words, one line each."""
+        return [f"{exhibit.name}: {text}" for exhibit in self.exhibits for text in exhibit.texts]
+
+    @property
+    def broken(self) -> bool:
+        """Whether an exhibit could not be computed, or its accepted state not be read."""
+        return any(exhibit.failed or exhibit.damaged for exhibit in self.exhibits)
 
 
 def compare(outcome: Outcome, folder: Path) -> Comparison:
@@ -107,12 +132,8 @@ def compare(outcome: Outcome, folder: Path) -> Comparison:
     ----------
     folder
         The accepted folder, one folder per paper in it. If the run was complete, an accepted exhibit that no
-        longer exists is a change, too.
-
-    Raises
-    ------
-    AcceptedStateError
-        If an accepted file is damaged.
+        longer exists is a change, too. So is an accepted file that is damaged: it keeps no other exhibit from
+        being compared.
     """
     exhibits = [_compare(outcome, result, folder) for result in outcome.results.values()]
     if outcome.complete:
@@ -133,20 +154,25 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         ]
         return ExhibitDiff(paper, exhibit, kind, failed)
     after = present_state(outcome, result)
-    before = read_state(folder, paper, exhibit, type(result))
+    try:
+        before = read_state(folder, paper, exhibit, type(result))
+    except AcceptedStateError as error:
+        damaged = Change(paper, exhibit, "damaged", f"its accepted state is damaged: {error}")
+        return ExhibitDiff(paper, exhibit, kind, [damaged], after=after)
     if isinstance(before, str):
         missing = Change(paper, exhibit, "new", f"has no accepted state: {paper}/{before} is missing")
         return ExhibitDiff(paper, exhibit, kind, [missing], after=after)
     if isinstance(before, FigureState) and isinstance(after, FigureState):
         found = compare_curves(paper, exhibit, (before.curves, before.axes), (after.curves, after.axes))
-        changes = with_count(found.changes, found.unchanged, "curve")
-        changes = [*compare_axes(paper, exhibit, before.axes, after.axes), *changes]
+        changes = [*compare_axes(paper, exhibit, before.axes, after.axes), *found.changes]
+        picture = f"{paper}/{exhibit}.png"
+        if not (folder / picture).is_file():
+            changes.append(Change(paper, exhibit, "new", f"its picture for people, {picture}, is missing", "picture"))
         return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs)
     assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
     assert isinstance(after, TableState)  # noqa: S101
     cells, unchanged = compare_cells(before.cells, after.cells)
     changes = [cell.change(paper, exhibit) for cell in cells]
-    changes = with_count(changes, unchanged, "claim" if kind == "claims" else "value")
     return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells)
 
 

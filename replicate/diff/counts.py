@@ -15,6 +15,7 @@ def summary(comparison: Comparison) -> str:
     """
     total, changes = len(comparison.exhibits), len(comparison.changes)
     failed = sum(exhibit.failed for exhibit in comparison.exhibits)
+    damaged = sum(exhibit.damaged for exhibit in comparison.exhibits)
     parts = []
     if not comparison.compared:
         parts.append("nothing was compared")
@@ -25,4 +26,6 @@ def summary(comparison: Comparison) -> str:
         parts.append(f"nothing differs from the accepted state; exhibits compared: {comparison.compared}")
     if failed:
         parts.append(f"could not be computed: {failed}")
+    if damaged:
+        parts.append(f"damaged in the accepted state: {damaged}")
     return "; ".join(parts)

@@ -86,8 +86,9 @@ def junit(comparison: Comparison) -> str:
         for exhibit in comparison.exhibits:
             if exhibit.paper == paper:
                 outcome = "failure" if exhibit.changes else ""
-                text = "\n".join(change.text for change in exhibit.changes)
-                add_case(suite, f"diff.{paper}", exhibit.exhibit, "error" if exhibit.failed else outcome, text)
+                broken = exhibit.failed or exhibit.damaged
+                text = "\n".join(exhibit.texts)
+                add_case(suite, f"diff.{paper}", exhibit.exhibit, "error" if broken else outcome, text)
         count_cases(suite)
     return xml_text(root)
 
@@ -106,9 +107,10 @@ def _lines(comparison: Comparison) -> Iterator[str]:
         yield ""
         yield f"### {exhibit.name}"
         yield ""
-        yield from (f"- {_escaped(change.text)}" for change in exhibit.changes[:_LINES_PER_EXHIBIT])
+        yield from (f"- {_escaped(text)}" for text in exhibit.texts[:_LINES_PER_EXHIBIT])
         if len(exhibit.changes) > _LINES_PER_EXHIBIT:
-            yield f"- and {len(exhibit.changes) - _LINES_PER_EXHIBIT} more"
+            same = f"; {exhibit.same}" if exhibit.same else ""
+            yield f"- and {len(exhibit.changes) - _LINES_PER_EXHIBIT} more{same}"
     if len(changed) > _EXHIBITS:
         yield ""
         yield f"And {len(changed) - _EXHIBITS} more exhibits."

@@ -97,5 +97,5 @@ def _row(cell: CellChange) -> CellRow:
         cell,
         *values,
         f"{'+' if size > 0 else '−'}{percent(abs(size))}" if small and size is not None else "",
-        verdicts if verdicts[0] != verdicts[1] else ("", ""),
+        verdicts if "verdict" in cell.columns or not cell.columns else ("", ""),
     )

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 # Consecutive points no further apart along x than this, and further along y, are a jump.
 _JUMP_WIDTH, _JUMP_HEIGHT = 1e-6, 1e-3
+# A square wave that is delayed moves all its jumps.
+_MOST_JUMPS = 2
 # A curve that moved sideways where it is steep: the change of value exaggerates by more than this factor.
 _STEEP = 5.0
 
@@ -83,6 +85,7 @@ def _values(pair: Pair, found: ValueDifference) -> list[tuple[str, float]]:
     x = symbol(pair.axes, "x")
     old, new = (_jumps(in_units(points, pair.axes)) for points in (pair.before, pair.after))
     if len(old) == len(new):
+        jumps: list[tuple[str, float]] = []
         for was, now in zip(old, new, strict=True):
             low, high = min(was, now), max(was, now)
             between = (found.x >= low - pair.tolerance) & (found.x <= high + pair.tolerance)
@@ -90,7 +93,13 @@ def _values(pair: Pair, found: ValueDifference) -> list[tuple[str, float]]:
                 alarm &= ~between
                 ends = [_number(from_units(value, pair.axes, "x")) for value in (was, now)]
                 words = f"its jump at {x} = {ends[0]} is now at {ends[1]} ({percent(high - low)} of the axis)"
-                parts.append((f"{'moved: ' if not parts else ''}{words}", high - low))
+                jumps.append((f"{'moved: ' if not jumps else ''}{words}", high - low))
+        parts += jumps[:_MOST_JUMPS]
+        if len(jumps) > _MOST_JUMPS:
+            furthest = max(size for _, size in jumps)
+            count = len(jumps) - _MOST_JUMPS
+            words = f"and {count} more jump{'s' if count > 1 else ''}, by at most {percent(furthest)} of the axis"
+            parts.append((words, furthest))
     size = np.where(alarm, np.abs(found.after - found.before), -1.0)
     worst = int(np.argmax(size))
     if size[worst] > 0.0:

@@ -9,8 +9,11 @@ from __future__ import annotations
 import os
 
 from rich.console import Console
+from rich.table import Table as Grid
 
 WIDTH = 100
+
+_ENDLESS = 10_000
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -19,3 +22,12 @@ def console(*, stderr: bool = False) -> Console:
     if not made.is_terminal and "COLUMNS" not in os.environ:
         made.width = WIDTH
     return made
+
+
+def print_whole(grid: Grid, console: Console) -> None:
+    """Print a table as wide as it is: a number that is cut short is no number."""
+    width = console.width
+    wide = console.options.update(max_width=_ENDLESS)
+    console.width = max(width, console.measure(grid, options=wide).maximum)
+    console.print(grid)
+    console.width = width

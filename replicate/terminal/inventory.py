@@ -18,7 +18,7 @@ def print_papers(papers: Iterable[Paper], console: Console) -> None:
     grid = _grid("paper", "year", "title", "exhibits")
     for paper in papers:
         kinds = Counter(exhibit.kind for exhibit in paper.exhibits.values())
-        exhibits = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+        exhibits = ", ".join(_counted(count, kind) for kind, count in kinds.items())
         grid.add_row(Text(paper.id), str(paper.year), Text(readable(paper.title)), exhibits)
     console.print(grid)
 
@@ -36,12 +36,19 @@ def _content(exhibit: Exhibit) -> str:
     if isinstance(exhibit, Table):
         return f"readings: {', '.join(exhibit.readings)}"
     if isinstance(exhibit, Claims):
-        return f"{len(exhibit.claims)} claims"
+        return _counted(len(exhibit.claims), "claim")
     return "not computable" if isinstance(exhibit, NotComputable) else ""
+
+
+def _counted(count: int, kind: str) -> str:
+    """Return a number of things; claims come as one exhibit, whose kind is a plural already."""
+    if kind == "claims":
+        return "claims" if count == 1 else f"{count} sets of claims"
+    return f"{count} {kind}{'s' if count != 1 else ''}"
 
 
 def _grid(*headings: str) -> Grid:
     grid = Grid(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for heading in headings:
-        grid.add_column(heading, no_wrap=heading in {"paper", "exhibit"})
+        grid.add_column(heading, no_wrap=heading in {"paper", "exhibit"}, overflow="fold")
     return grid

@@ -20,6 +20,7 @@ from replicate.records import ClaimsResult, FigureResult, TableResult
 from replicate.report.numbers import shown
 from replicate.report.words import MATCHES, WORDS
 from replicate.terminal.colours import colour
+from replicate.terminal.console import print_whole
 from replicate.terminal.mathtext import readable
 from replicate.units import errors_of
 
@@ -42,7 +43,7 @@ def print_exhibit(outcome: Outcome, paper: str, exhibit: Exhibit, readings: Sequ
     elif isinstance(exhibit, Table) and isinstance(result, TableResult):
         if verdicts:
             results = [row for row in outcome.judgements[paper].results if row.exhibit == exhibit.id]
-            console.print(_comparison(exhibit, readings, results, verdicts))
+            print_whole(_comparison(exhibit, readings, results, verdicts), console)
         else:
             _print_frames(result, readings, console)
         _print_readings(exhibit, readings, console)
@@ -91,7 +92,7 @@ def _print_frames(result: TableResult, readings: Sequence[str], console: Console
         grid = _grid("row", *(f">{column}" for column in frame.columns))
         for row, values in zip(frame.index, frame.itertuples(index=False, name=None), strict=True):
             grid.add_row(str(row), *(number_text(value, _DIGITS) for value in values))
-        console.print(grid)
+        print_whole(grid, console)
 
 
 def _print_readings(table: Table, readings: Sequence[str], console: Console) -> None:
@@ -129,7 +130,7 @@ def _print_figure(figure: Figure, result: FigureResult, console: Console) -> Non
         x, y = points["x"].to_numpy(), points["y"].to_numpy()
         ends = (np.nanmin(x), np.nanmax(x), np.nanmin(y), np.nanmax(y))
         grid.add_row(str(panel), str(curve), str(int(np.isfinite(x).sum())), *(f"{end:.5g}" for end in ends))
-    console.print(grid)
+    print_whole(grid, console)
 
 
 def _print_claims(claims: Claims, verdicts: list[VerdictRow], console: Console) -> None:
@@ -161,7 +162,6 @@ def _grid(*headings: str) -> Grid:
     grid = Grid(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for heading in headings:
         numeric = heading.startswith(">")
-        # Where space is short, numbers may wrap at the sign of their match; words stay whole.
         justify: JustifyMethod = "right" if numeric else "left"
-        grid.add_column(Text(heading.removeprefix(">")), justify=justify, no_wrap=not numeric)
+        grid.add_column(Text(heading.removeprefix(">")), justify=justify, no_wrap=True)
     return grid
