@@ -87,7 +87,8 @@ def label_locus(axes: Axes, locus: Locus, u: float, text: str, color: Any, **sty
     paper = mpl.rcParams["legend.facecolor"]  # the colour of the page in the project's style
     (point,), (slope,) = locus.curve(np.array([u]))
     angle = float(np.degrees(np.arctan2(slope[1], slope[0])))
-    if not -90.0 < angle <= 90.0:
+    # never upside down, and steep labels all read upwards
+    if not -80.0 < angle <= 100.0:
         angle -= 180.0 * np.sign(angle)
     box = {
         "boxstyle": "round,pad=0.12,rounding_size=0.3",
