@@ -105,7 +105,9 @@ def test_a_delayed_square_wave_is_told_in_one_breath() -> None:
     levels = np.tile([0.0, 1.0, 1.0, 0.0], 4)
     before, after = (plot(("wave", np.r_[0.0, at + late, 10.0], np.r_[0.0, levels, 0.0])) for late in (0.0, 0.05))
     (said,) = changes(before, after)
-    assert said.startswith("curve 'wave' moved: its jump at t = 1 is now at 1.05 (0.5 % of the axis); its jump at t = 2 ")
+    assert said.startswith(
+        "curve 'wave' moved: its jump at t = 1 is now at 1.05 (0.5 % of the axis); its jump at t = 2 "
+    )
     assert said.endswith("(0.5 % of the axis); and 6 more jumps, by at most 0.5 % of the axis")
 
 
