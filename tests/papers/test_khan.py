@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 import mpmath as mp
@@ -13,7 +14,9 @@ from scipy.special import lambertw
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.khan import (
     appendix,
+    appendix_coefficients,
     break_point,
+    bryant,
     closed_form,
     coefficients_7,
     fits,
@@ -23,6 +26,7 @@ from replicate.papers.khan import (
     sweep,
     transcription,
 )
+from replicate.papers.khan import paper as khan
 
 FOLDER = Path(processes.__file__).parent
 
@@ -89,6 +93,47 @@ def test_fit_by_hand():
     c = -0.43035 + 0.04611 + 58.842 * np.exp(-1 / 1.159)
     d = -2.221 + 0.05809 - 0.8723 * np.exp(1 / 1.6229)
     assert fits.overshoot_fit(1.0, 1.0) == pytest.approx(a + b + c * np.exp(d), rel=1e-14)
+
+
+def test_other_cases_by_hand():
+    # one point of each, written out from the page
+    case_1 = (
+        -0.5 + (38.943 + 78.182 * np.exp(-0.25 / 0.60834)) * (0.6 - 0.00938 - 0.3706 * np.exp(-0.25 / 1.10974)) ** 1.5
+    )
+    case_2 = (-49.49 + 55.46 * 0.25 - 33.507 * 0.0625) + (99.572 - 71.6378 * 0.25 + 38.6303 * 0.0625)
+    case_4 = (0.0578 - 0.005653 * 4 - 58.493 * np.exp(-4 / 1.1135)) + 2 * (
+        15.424 - 0.637 * 4 + 61.7669 * np.exp(-4 / 2.3895)
+    )
+    rise_time = (0.39955 - 0.035512 * 2 + 9.4069 * np.exp(-2.2294 * 2)) * np.exp(
+        -1 / (-0.14406 + 0.16277 * 2 + 0.34998 * np.exp(-0.45502 * 2))
+    ) + (0.17204 - 0.005396 * 2 + 1.0779 * np.exp(-0.45261 * 2)) * np.exp(
+        -1 / (-1.3604 + 1.2889 * 2 + 3.08798 * np.exp(-0.37192 * 2))
+    )
+    assert fits.overshoot_fit(0.25, 0.6) == pytest.approx(case_1, rel=1e-14)
+    assert fits.overshoot_fit(0.25, 1.0) == pytest.approx(case_2, rel=1e-14)
+    assert fits.overshoot_fit(4.0, 2.0) == pytest.approx(case_4, rel=1e-14)
+    assert float(fits.rise_time_fit(2.0, 1.0)) == pytest.approx(rise_time, rel=1e-14)
+
+
+@pytest.mark.parametrize("zeta", [0.05, 0.3, 0.6, 0.9, 0.999])
+def test_gain_for_a_damping_ratio_is_that_of_lambert_w(zeta):
+    pole = complex(lambertw(-bryant.gain_for_damping(zeta), 0))
+    assert -pole.real / abs(pole) == pytest.approx(zeta, rel=1e-9)
+    # the Pade model's characteristic polynomial, by numpy
+    k = bryant.gain_for_damping_pade(zeta)
+    root = np.roots([0.5, 1.0 - 0.5 * k, k])[0]
+    assert -root.real / abs(root) == pytest.approx(zeta, rel=1e-9)
+
+
+def test_appendix_fits_follow_the_optimum():
+    # case II and J_opt at points between those of the fit, case I against numpy's own straight line
+    a, b, c = (appendix_coefficients.equal_steps()["value"][f"KP_II_{letter}"] for letter in "abc")
+    for p in (1.0, 3.3, 14.1):
+        assert a + b * p + c * np.sqrt(p) == pytest.approx(appendix.optimum(p)[0], rel=0.02)
+    p = np.linspace(0.01, 0.2, appendix_coefficients.POINTS)
+    line = np.polynomial.Polynomial.fit(p, [appendix.optimum(x)[1] for x in p.tolist()], 1).convert().coef
+    found = [appendix_coefficients.equal_steps()["value"][f"KI_I_{letter}"] for letter in "ab"]
+    assert found == pytest.approx(line, rel=1e-4)
 
 
 def test_restored_7a_meets_7b():
@@ -243,6 +288,12 @@ def test_only_three_shifted_decimal_points_meet_7b():
     a, b, c = (frame[f"7a_KI_{letter}"] for letter in "abc")
     assert (a, b, c) == (-0.0525, 0.4104, -0.00024)
     assert a * 0.04 + b * 0.2 + c == pytest.approx(ki, rel=6e-4)
+
+
+def test_summary_quotes_the_restored_coefficients():
+    quoted = re.findall(r"-?0\.\d+", khan.summary.replace("- 0", "-0"))
+    restored = coefficients_7.implied()["value"]
+    assert [float(text) for text in quoted] == [restored[f"7a_{gain}_{x}"] for gain in ("KP", "KI") for x in "abc"]
 
 
 def test_tables_against_a_frequency_grid_and_an_ode_solver():

@@ -42,10 +42,8 @@ paper = Paper(
         "example-2",
         *(f"fig-{number}" for number in range(1, 9)),
     ),
-    summary="A PID rule for unstable plants with dead time. Every setting and the fitted cubic come out at all "
-    "printed digits, and every design is stable with the exact dead time. Use the reduced gain of Table 2 above a "
-    "dead time of half a time constant: near 0.9 the gain of Table 1 leaves hardly any margin. The printed maximum "
-    "sensitivities are not those of the printed controller; they belong to another place of the derivative filter "
-    "and to the tolerance of a norm routine. And the specified distance from the critical point is not kept, "
+    summary="A PID rule for unstable plants with dead time: it cancels the pole of a Padé model and is to keep a "
+    "specified distance from the critical point. The settings come out at all printed digits and are stable. The "
+    "printed maximum sensitivities are not those of the printed controller, and the specified distance is not kept, "
     "because a square root was taken with the wrong sign.",
 )

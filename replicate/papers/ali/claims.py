@@ -70,6 +70,7 @@ def minimum_distance() -> Finding:
     "y-starts-at-1.2",
     "(9) is solved with $y = 1.2$, which is incremented by 0.1.",
     where="section 2, below (10)",
+    printed="1.2",
 )
 def y_starts() -> Finding:
     largest = max(1.0 - math.sqrt(float(x) / 2.0) for x in TABLE_1)  # |b|/T, above which q is imaginary
@@ -157,7 +158,7 @@ def all_stable() -> Finding:
         f"{stable} of {len(loops)} loops ({len(DESIGNS)} designs: the rows of both tables and those with "
         "$T_i$ from (11); in (2), "
         "with the filter on D only and without filter) are stable with the exact dead time; the rightmost "
-        "pole of all is at Re $p$ = {number(rightmost)}.",
+        f"pole of all is at Re $p$ = {number(rightmost)}.",
     )
 
 

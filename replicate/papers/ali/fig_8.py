@@ -22,4 +22,4 @@ if TYPE_CHECKING:
 )
 def draw(fig: Figure) -> None:
     """Draw Figure 8."""
-    draw_load_controls(fig, visioli("load", 6.0), limits=(-4.5, 3.4))
+    draw_load_controls(fig, visioli("load", 6.0), limits=(-6.0, 5.4))

@@ -23,9 +23,8 @@ appendix_j = paper.table(
     "The closed-form ISE against the integral",
     kind="formula",
     printed=False,
-    caption="$J = \\int_0^\\infty e^2\\,dt$ of the unit set-point step for $h = 1$: the Appendix' formula, and "
-    "the integral of "
-    "the exact response.",
+    caption="$J = \\int_0^\\infty e^2\\,dt$ of the unit set-point step for $h = 1$: the Appendix' formula, and the "
+    "integral of the exact response.",
     labels={"formula": "formula", "integral": "integral", "ratio": "ratio"},
 )
 appendix_fit = paper.table(
@@ -33,13 +32,13 @@ appendix_fit = paper.table(
     "The ISE-optimal gains against the printed curve fits",
     kind="formula",
     printed=False,
-    caption="The true optimum for $h = 1$, the printed fits with their errors in per cent, the ISE lost by "
-            "using them, and "
-    "the estimate $J_{opt} = 1.577h + 0.025ph^2 - 0.209\\sqrt{ph^3}$.",
+    caption="The true optimum for $h = 1$, the printed fits with their errors in per cent, the ISE lost by using them, "
+    "and the estimate $J_{opt} = 1.577h + 0.025ph^2 - 0.209\\sqrt{ph^3}$.",
     labels={
         "KP_opt": "$K_P$, optimum", "KI_opt": "$K_I$, optimum", "KP_fit": "$K_P$, fit", "KI_fit": "$K_I$, fit",
-        "KP_error": "error (%)", "KI_error": "error (%) ", "J_opt": "$J$, optimum", "J_fit": "$J$ of the fit",
-        "J_loss": "loss (%)", "J_estimate": "$J_{opt}$, estimate", "J_error": "error (%)  ",
+        "KP_error": "$K_P$, error (%)", "KI_error": "$K_I$, error (%)", "J_opt": "$J$, optimum",
+        "J_fit": "$J$ of the fit", "J_loss": "loss of the fit (%)", "J_estimate": "$J_{opt}$, estimate",
+        "J_error": "estimate, error (%)",
     },
 )  # fmt: skip
 

@@ -17,9 +17,8 @@ breakpoint_table = paper.table(
     "Break point and first visible overshoot",
     printed=False,
     caption="$K_b h$ by the paper's formula; the gain at which the two rightmost poles, "
-    "$s h = -ph + W(-Kh\\,e^{ph})$ on the branches 0 and $-1$, coincide; the gains at which the overshoot "
-    "reaches 0.01, "
-    "0.1 and 1 per cent.",
+    "$s h = -ph + W(-Kh\\,e^{ph})$ on the branches 0 and $-1$, coincide; the gains at which the overshoot reaches "
+    "0.01, 0.1 and 1 per cent.",
     labels={"formula": "$K_b h$", "double_pole": "double pole", "visible_0.01": "0.01 %", "visible_0.1": "0.1 %",
             "visible_1": "1 %"},
 )  # fmt: skip

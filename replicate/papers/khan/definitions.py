@@ -82,6 +82,11 @@ def _paper(rule: str, variant: str) -> Version:
     return lambda h: gains(rule, 1.0, h, variant)
 
 
+def _two_digits(h: float) -> tuple[float, float]:
+    kp, ki = (float(f"{gain:.2g}") for gain in gains("CC", 1.0, h))
+    return kp, ki
+
+
 VERSIONS: dict[str, dict[str, Version]] = {
     "Proposed": {
         "(7): (7a) restored, (7b) printed": _paper("Proposed", RESTORED),
@@ -103,6 +108,7 @@ VERSIONS: dict[str, dict[str, Version]] = {
         "CC: decimals 3.33, 0.33, 2.2": _classical("cohen-coon", "decimals-033"),
         "CC: decimals 3.33, 0.31, 2.22": _classical("cohen-coon", "decimals-031"),
         "CC: Åström and Hägglund": _classical("cohen-coon", "astrom-hagglund"),
+        "CC: original fractions, gains to two digits": _two_digits,
     },
 }
 

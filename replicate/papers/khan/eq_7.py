@@ -18,9 +18,8 @@ eq_7 = paper.table(
     "The proposed gains over both cases",
     kind="formula",
     printed=False,
-    caption="$K_P h$ and $K_I h^2$ of (7a) and (7b). The two cases meet at $ph = 0.2$, where both are given; "
-    "the jump is "
-    "the relative difference of (7a) from (7b).",
+    caption="$K_P h$ and $K_I h^2$ of (7a) and (7b). The two cases meet at $ph = 0.2$, where both are given; the jump "
+    "is the relative difference of (7a) from (7b).",
     labels={"KPh": "$K_P h$", "KIh2": "$K_I h^2$"},
 )
 
@@ -76,6 +75,10 @@ def draw(fig: Figure) -> None:
             ("7a", low, PRINTED, "--", "(7a) as printed"),
         ):
             axes.plot(ph, [case_gains(case, x, 1.0, variant)[index] for x in ph], style, label=name)
-        axes.set(xscale="log", yscale="log", xlabel="$ph$", ylabel=label, title=label)
+        axes.set(xscale="log", yscale="log", xlabel="$ph$", ylabel=label)
+        ticks = (0.4, 0.6, 1.0, 2.0, 4.0) if index == 0 else (0.01, 0.1, 1.0, 10.0)
+        axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_yticks([], minor=True)
+        axes.set_xticks((0.01, 0.1, 0.2, 1.0, 10.0), ["0.01", "0.1", "0.2", "1", "10"])
         axes.axvline(0.2, color="0.6", lw=0.8, ls=":")
         axes.legend()

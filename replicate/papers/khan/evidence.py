@@ -45,7 +45,7 @@ cohen_coon = paper.table(
     "Cohen-Coon at $ph = 1$: what was tried",
     printed=False,
     columns=("KP", "KI", *QUANTITIES, "met_ph1", "met_ph0.1"),
-    caption="Published versions of the rule at $ph = 1$, and how many of the four printed numbers each meets, there "
+    caption="Versions of the rule at $ph = 1$, and how many of the four printed numbers each meets, there "
     "and at $ph = 0.1$. The first row is the print.",
     labels={"KP": "$K_P$", "KI": "$K_I$", "Mp": "$M_P$ (%)", "ts": "$t_s$", "td": "$t_d$", "Ms": "$M_s$",
             "met_ph1": "met at $ph = 1$", "met_ph0.1": "met at $ph = 0.1$"},
@@ -89,7 +89,7 @@ def scaled() -> pd.DataFrame:
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(scaling.columns))
 
 
-@cohen_coon.reading("as-written", "Published versions of the rule")
+@cohen_coon.reading("as-written", "Versions of the rule")
 def cohen_coon_versions() -> pd.DataFrame:
     """Evaluate every version at ph = 1 and count the cells it meets."""
     printed = paper.printed_cells("table-2")

@@ -33,7 +33,7 @@ def draw(fig: Figure) -> None:
     axes.axhline(y.final, color="0.5", lw=0.8, ls="--")
     axes.plot([peak.time], [peak.value], "o")
     axes.annotate("$M_P$", (peak.time, peak.value), xytext=(4, 4), textcoords="offset points")
-    axes.annotate("$y_{ss}$", (10.0, y.final), xytext=(-18, 4), textcoords="offset points")
+    axes.annotate("$y_{ss}$", (0.0, y.final), xytext=(5, 4), textcoords="offset points")
     axes.plot([low, high], [0.1 * y.final, 0.9 * y.final], "s", ms=4)
     axes.vlines([low, high], 0.0, [0.1 * y.final, 0.9 * y.final], color="0.5", lw=0.8, ls=":")
     axes.annotate("", (high, 0.02), (low, 0.02), arrowprops={"arrowstyle": "<->", "lw": 0.9})

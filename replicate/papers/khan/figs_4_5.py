@@ -52,7 +52,7 @@ def overshoot(fig: Figure) -> None:
             exact = sweep(ph, kh)
             axes.plot(kh, exact.overshoot, color=f"C{index}", ls="-", lw=2.0, label=f"$ph = {ph:g}$")
             axes.plot(kh, overshoot_fits(exact.ph, kh), **_fit_line(axes), label=f"fit, $ph = {ph:g}$")
-        axes.set(xlabel="$Kh$", xlim=(0.0, None), ylim=(0.0, 120.0))
+        axes.set(xlabel="$Kh$", xlim=(0.0, None), ylim=(0.0, 125.0))
         _legend(axes, "lower right")
     fig.axes[0].set_ylabel("overshoot (%)")
 

@@ -2,24 +2,34 @@
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.papers.khan import paper
+
 Array = NDArray[np.float64]
 Coefficients = dict[str, Any]
 
 CASES = ("I", "II", "III", "IV")
+CASE_1 = ("offset", "a", "b", "c", "d", "e", "f")  # offset + (a + b e^(-ph/c)) (Kh - d - e e^(-ph/f))^1.5
 
 
 @cache
 def printed_coefficients() -> Coefficients:
-    """Return the printed coefficients, by case."""
-    return tomllib.loads((files(__package__) / "fit_coefficients.toml").read_text(encoding="utf-8"))
+    """Return the printed coefficients by case: those of case I by name, of the others by function of ph.
+
+    In cases III and IV a function is x0 + x1 ph + x2 e^(ph/x3), in (3) the last is a rate, e^(x3 ph); in case II it is
+    a polynomial, constant first.
+    """
+    found: Coefficients = {}
+    for (row, _), number in paper.printed_numbers("refit-coefficients").items():
+        case, part = row.split()
+        found.setdefault(case, {}).setdefault(part, []).append(number)
+    one = found["case-1"]
+    return found | {"case-1": dict(zip(CASE_1, one["amplitude"] + one["shift"], strict=True))}
 
 
 def case_of(ph: float, kh: float) -> str | None:

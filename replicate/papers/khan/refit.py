@@ -12,14 +12,26 @@ from scipy.optimize import least_squares
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.fit_quality import quality, usual
-from replicate.papers.khan.fits import CASES, Coefficients, cases_of, m_of_case, printed_coefficients, rise_time_fit
+from replicate.papers.khan.fits import (
+    CASE_1,
+    CASES,
+    Coefficients,
+    cases_of,
+    m_of_case,
+    printed_coefficients,
+    rise_time_fit,
+)
 from replicate.papers.khan.smooth import smooth_overshoot
 from replicate.papers.khan.sweep import Sweep
 
 Array = NDArray[np.float64]
 
 NAMES = {"case-1": "case I", "case-2": "case II", "case-3": "case III", "case-4": "case IV", "rise-time": "rise time"}
-PARTS = ("amplitude", "shift", "constant", "slope", "A", "B", "C", "D")
+PARTS = {
+    "case-1": ("amplitude", "shift"), "case-2": ("constant", "slope"), "case-3": tuple("ABCD"), "case-4": tuple("AB"),
+    "rise-time": tuple("ABCD"),
+}  # fmt: skip
+SIZES = {"case-1": (4, 3), "case-2": (3, 3), "case-3": (4,) * 4, "case-4": (4,) * 2, "rise-time": (4,) * 4}
 
 refit = paper.table(
     "refit",
@@ -42,16 +54,14 @@ refit = paper.table(
 )
 coefficients = paper.table(
     "refit-coefficients",
-    "The coefficients of the refits beside the paper's",
-    printed=False,
-    columns=(*(f"x{k}" for k in range(4)), *(f"x{k}_refit" for k in range(4))),
-    caption="Left the four coefficients of each function of $ph$ as printed, right as refitted to three digits. Case "
-    "I: offset and the three of the amplitude, then the three of the shift. Case II: polynomials. Cases III, IV and "
-    "the rise time: $x_0 + x_1\\,ph + x_2 e^{ph/x_3}$, for the rise time $e^{x_3 ph}$. In case III those of $D$ "
-    "describe almost a parabola and mean little one by one.",
-    labels={f"{case}, {part}": f"{name}: {part}" for case, name in NAMES.items() for part in PARTS}
-    | {f"x{k}": f"$x_{k}$" for k in range(4)}
-    | {f"x{k}_refit": f"$x_{k}$, refit" for k in range(4)},
+    "The coefficients of the fits, printed and refitted",
+    rows=tuple(f"{case} {part}" for case, parts in PARTS.items() for part in parts),
+    columns=tuple(f"x{k}" for k in range(4)),
+    caption="The coefficients of each function of $ph$, as printed and as refitted to three digits. Case I: "
+    "$x_0 + (x_1 + x_2 e^{-ph/x_3})$ in the amplitude, $x_0 + x_1 e^{-ph/x_2}$ in the shift. Case II: polynomials. "
+    "Cases III and IV: $x_0 + x_1\\,ph + x_2 e^{ph/x_3}$; for the rise time $e^{x_3 ph}$.",
+    labels={f"{case} {part}": f"{NAMES[case]}: {part}" for case, parts in PARTS.items() for part in parts}
+    | {f"x{k}": f"$x_{k}$" for k in range(4)},
 )
 better = paper.table(
     "better-fit",
@@ -109,18 +119,15 @@ def show_better() -> pd.DataFrame:
     return pd.DataFrame(columns).reindex(order)
 
 
-_CASE_1 = ("offset", "a", "b", "c", "d", "e", "f")
-
-
 def _flat(c: Coefficients, case: str) -> Array:
     part = c[case]
-    keys = _CASE_1 if case == "case-1" else tuple(part)
+    keys = CASE_1 if case == "case-1" else tuple(part)
     return np.concatenate([np.atleast_1d(part[key]) for key in keys])
 
 
 def _with(c: Coefficients, case: str, x: Array) -> Coefficients:
     if case == "case-1":
-        new: dict[str, object] = dict(zip(_CASE_1, x.tolist(), strict=True))
+        new: dict[str, object] = dict(zip(CASE_1, x.tolist(), strict=True))
     else:
         parts = np.split(x, len(c[case]))
         new = {key: part.tolist() for key, part in zip(c[case], parts, strict=True)}
@@ -239,15 +246,10 @@ def compare() -> pd.DataFrame:
 
 @coefficients.reading("as-written", "Least squares on exact data")
 def compare_coefficients() -> pd.DataFrame:
-    """List the coefficients beside the paper's, one function of ph per row."""
+    """List the refitted coefficients, one function of ph per row."""
     rows: dict[str, dict[str, float]] = {}
-    for case, (start, found, _, _) in refitted().items():
-        names = ("amplitude", "shift") if case == "case-1" else tuple(printed_coefficients()[case])
-        sizes = (4, 3) if case == "case-1" else [len(part) for part in printed_coefficients()[case].values()]
-        ends = np.cumsum(sizes)
-        for name, size, end in zip(names, sizes, ends, strict=True):
-            old, new = start[end - size : end], found[end - size : end]
-            rows[f"{case}, {name}"] = {f"x{k}": float(x) for k, x in enumerate(old)} | {
-                f"x{k}_refit": significant(float(x), 3) for k, x in enumerate(new)
-            }
+    for case, (_, found, _, _) in refitted().items():
+        parts = np.split(found, np.cumsum(SIZES[case])[:-1])
+        for name, part in zip(PARTS[case], parts, strict=True):
+            rows[f"{case} {name}"] = {f"x{k}": significant(float(x), 3) for k, x in enumerate(part)}
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(coefficients.columns))
