@@ -106,15 +106,19 @@ def _options(
 def list_(
     paper: Annotated[str | None, typer.Argument(metavar="PAPER", help="Default: the papers.")] = None,
 ) -> None:
-    """List the papers, or the exhibits of one of them."""
+    """List the papers, or the exhibits of one of them.
+
+    Of each exhibit: whether it is done, and if it cannot be computed, why.
+    """
     from replicate.discovery import find_paper, find_papers
+    from replicate.resources import accepted_dir
     from replicate.terminal.console import console
     from replicate.terminal.inventory import print_exhibits, print_papers
 
     if paper is None:
         print_papers(find_papers(), console())
     else:
-        print_exhibits(find_paper(paper), console())
+        print_exhibits(find_paper(paper), console(), accepted_dir())
 
 
 @app.command()

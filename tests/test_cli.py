@@ -45,6 +45,31 @@ def test_list(replicate: Run) -> None:
         assert part in out
 
 
+def test_list_says_what_is_done_and_what_cannot_be_and_why(capsys: pytest.CaptureFixture[str]) -> None:
+    """On the thesis, against the printed CSV and the definitions themselves."""
+    from replicate.discovery import find_paper
+    from replicate.exhibits import NotComputable
+    from replicate.resources import accepted_dir
+    from replicate.terminal.console import console
+    from replicate.terminal.inventory import print_exhibits
+
+    paper = find_paper("panagopoulos")
+    print_exhibits(paper, console(), accepted_dir())
+    inventory, _, missing = capsys.readouterr().out.partition("What cannot be computed, and why")
+    lines = {line.split()[0]: line for line in inventory.splitlines() if line and not line.startswith(" ")}
+    assert set(paper.numbered) <= set(lines)
+    for exhibit in paper.exhibits.values():
+        if isinstance(exhibit, NotComputable):
+            assert "not computable" in lines[exhibit.id]
+            assert exhibit.id in missing
+            assert " ".join(exhibit.reason.split()) in " ".join(missing.split())
+    assert "done" in lines["I-table-1"]
+    assert "partly" in lines["V-drying"]
+    # V-drying prints two settling times and two mean squares that were measured
+    assert "V-drying (4 of 9 printed values)" in missing
+    assert "{{" not in missing
+
+
 def test_show_a_table(replicate: Run) -> None:
     status, out, err = replicate("show", "lab", "table-1", "-j1")
     assert status == 0

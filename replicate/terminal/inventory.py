@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
+from pathlib import Path
 
 from rich.console import Console
+from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from replicate.exhibits import Claims, Exhibit, NotComputable, Paper, Table
+from replicate.exhibits import Claims, Exhibit, Paper, Table
+from replicate.terminal.gaps import reasons, standing
 from replicate.terminal.mathtext import readable
 
 
@@ -23,21 +26,27 @@ def print_papers(papers: Iterable[Paper], console: Console) -> None:
     console.print(grid)
 
 
-def print_exhibits(paper: Paper, console: Console) -> None:
-    """Print one line per exhibit: id, kind, title, and what there is to see."""
+def print_exhibits(paper: Paper, console: Console, accepted: Path) -> None:
+    """Print one line per exhibit (id, kind, status, title, readings), then what is missing and why."""
     console.print(Text(paper.citation))
-    grid = _grid("exhibit", "kind", "title", "")
+    grid = _grid("exhibit", "kind", "status", "title", "readings")
     for exhibit in paper.exhibits.values():
-        grid.add_row(Text(exhibit.id), exhibit.kind, Text(readable(exhibit.title)), Text(_content(exhibit)))
+        status = standing(paper, exhibit, accepted)
+        grid.add_row(Text(exhibit.id), exhibit.kind, status, Text(readable(exhibit.title)), Text(_content(exhibit)))
     console.print(grid)
+    missing = reasons(paper, accepted)
+    if missing:
+        console.print(Text("\nWhat cannot be computed, and why", style="bold"))
+    for reason, exhibits in missing.items():
+        console.print(Padding(Text(f"{', '.join(exhibits)}: {readable(reason)}"), (0, 0, 0, 2)))
 
 
 def _content(exhibit: Exhibit) -> str:
     if isinstance(exhibit, Table):
-        return f"readings: {', '.join(exhibit.readings)}"
+        return ", ".join(exhibit.readings) if len(exhibit.readings) > 1 else ""
     if isinstance(exhibit, Claims):
         return _counted(len(exhibit.claims), "claim")
-    return "not computable" if isinstance(exhibit, NotComputable) else ""
+    return ""
 
 
 def _counted(count: int, kind: str) -> str:
@@ -50,5 +59,10 @@ def _counted(count: int, kind: str) -> str:
 def _grid(*headings: str) -> Grid:
     grid = Grid(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
     for heading in headings:
-        grid.add_column(heading, no_wrap=heading in {"paper", "exhibit"}, overflow="fold")
+        grid.add_column(
+            heading,
+            no_wrap=heading in {"paper", "exhibit", "kind", "status"},
+            overflow="fold",
+            min_width=28 if heading == "title" else None,
+        )
     return grid
