@@ -1,6 +1,7 @@
 """Ali and Majhi against sympy, mpmath, python-control and closed forms, which share no code with it."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import control
@@ -10,7 +11,7 @@ import pytest
 import sympy as sp
 
 from replicate.loops import Loop
-from replicate.papers.ali import paper, tuning
+from replicate.papers.ali import iste, paper, tuning
 from replicate.papers.ali.equations import Point, equation_5, equation_9
 from replicate.papers.ali.examples import example_1, example_2, total_variation
 from replicate.papers.ali.structures import (
@@ -390,6 +391,37 @@ def test_visioli_load_setting_is_unstable_in_2_and_stable_in_parallel_form(exhib
                 characteristic(structure, example_2()["visioli-load"], mp.mpf("0.2")), mp.mpc(row["pole_re"], 10.0)
             )
         assert float(pole.real) == pytest.approx(row["pole_re"], rel=1e-9)
+
+
+@pytest.mark.parametrize(("form", "kind"), [("series", "setpoint"), ("series", "load"), ("parallel", "load")])
+def test_iste_by_parseval(form, kind):
+    # the transform of t e(t) is -dE/ds, so the ISTE is the integral of |dE/dw|^2 over all w, over 2 pi
+    settings, theta = Settings(4.0, 0.9, 0.11), 0.2
+
+    def error(w):
+        s = 1j * w
+        delay = np.exp(-theta * s)
+        if form == "series":
+            controller = (1 + 1 / (s * settings.Ti)) * (1 + s * settings.Td) / (1 + s * settings.Td / 10)
+        else:
+            controller = 1 + 1 / (s * settings.Ti) + s * settings.Td
+        loop = settings.Kp * controller * delay / (s - 1)
+        return (1 if kind == "setpoint" else delay / (s - 1)) / s / (1 + loop)
+
+    w, step = np.linspace(1e-3, 400.0, 400_001), 1e-5
+    slope = (error(w + step) - error(w - step)) / (2 * step)
+    total = np.trapezoid(np.abs(slope) ** 2, w) / np.pi
+    assert iste.iste(Loop(plant(theta), iste.FORMS[form](settings)), kind) == pytest.approx(total, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["setpoint", "load"])
+def test_settings_of_smallest_iste_cannot_be_bettered_nearby(kind):
+    found = iste.best("parallel", kind)
+    lowest = iste.iste(Loop(plant(0.2), iste.parallel(found)), kind)
+    for name in ("Kp", "Ti", "Td"):
+        for factor in (0.97, 1.03):
+            moved = replace(found, **{name: factor * getattr(found, name)})
+            assert iste.iste(Loop(plant(0.2), iste.parallel(moved)), kind) > lowest
 
 
 def test_total_variation_counts_moves_and_jumps():

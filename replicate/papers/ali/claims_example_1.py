@@ -110,9 +110,7 @@ def larger_overshoot_load() -> Finding:
     return Finding(
         "holds" if all(p.proposed > p.competitor for p in pairs.values()) else "fails",
         pairs["series"].proposed - pairs["series"].competitor,
-        "Peak of the load response: "
-        + "; ".join(f"{p} ({FORMS[s]})" for s, p in pairs.items())
-        + ".",
+        "Peak of the load response: " + "; ".join(f"{p} ({FORMS[s]})" for s, p in pairs.items()) + ".",
     )
 
 
@@ -130,11 +128,7 @@ def shorter_settling() -> Finding:
     return Finding(
         "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
         pairs["setpoint", "series"].competitor / pairs["setpoint", "series"].proposed,
-        "Settling to 2 %: "
-        + "; ".join(
-            f"{KINDS[kind]}, {p} ({FORMS[s]})" for (kind, s), p in pairs.items()
-        )
-        + ".",
+        "Settling to 2 %: " + "; ".join(f"{KINDS[kind]}, {p} ({FORMS[s]})" for (kind, s), p in pairs.items()) + ".",
     )
 
 

@@ -58,9 +58,7 @@ def less_overshoot() -> Finding:
     return Finding(
         "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
         pairs["ideal"].competitor - pairs["ideal"].proposed,
-        "Overshoot in per cent: "
-        + "; ".join(f"{p} ({VISIOLI[s]})" for s, p in pairs.items())
-        + ".",
+        "Overshoot in per cent: " + "; ".join(f"{p} ({VISIOLI[s]})" for s, p in pairs.items()) + ".",
     )
 
 

@@ -49,9 +49,7 @@ def true_ms() -> Finding:
     )
 
 
-@claims.claim(
-    "ms-grows", "$M_s$ increases with $\\theta/T$.", where="section 2, below Table 1"
-)
+@claims.claim("ms-grows", "$M_s$ increases with $\\theta/T$.", where="section 2, below Table 1")
 def ms_grows() -> Finding:
     peaks = [true_peak("table-1", x) for x in TABLE_1]
     steps = [later / earlier for earlier, later in pairwise(peaks)]
@@ -104,9 +102,7 @@ def reduced_gain() -> Finding:
     )
 
 
-@claims.claim(
-    "ti-from-table-1", "The $T_i$ of Table 2 are those of Table 1.", where="section 2, below Table 2"
-)
+@claims.claim("ti-from-table-1", "The $T_i$ of Table 2 are those of Table 1.", where="section 2, below Table 2")
 def ti_from_table_1() -> Finding:
     missing = [row for row in table_2.rows if row not in table_1.rows]
     x = Fraction(missing[0])
@@ -138,9 +134,7 @@ def cubic_claim() -> Finding:
     )
 
 
-@claims.claim(
-    "cubic-time-unit", "(11) gives $T_i$ for a plant with any time constant $T$.", where="section 2, (11)"
-)
+@claims.claim("cubic-time-unit", "(11) gives $T_i$ for a plant with any time constant $T$.", where="section 2, (11)")
 def cubic_time_unit() -> Finding:
     # Twice as slow a plant: T = 2 and theta = 1.4 is Example 1 with another unit of time.
     slow, x = 2.0, Fraction(7, 10)

@@ -200,9 +200,7 @@ def _count(restored: bool) -> pd.DataFrame:
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(equations.columns))
 
 
-@equations.reading(
-    "as-written", "As it stands on the page", note="(5) with its bracket as scanned; (10) as printed."
-)
+@equations.reading("as-written", "As it stands on the page", note="(5) with its bracket as scanned; (10) as printed.")
 def as_written() -> pd.DataFrame:
     """Check the equations as they stand."""
     return _count(restored=False)

@@ -160,8 +160,7 @@ READINGS = {
     AS_WRITTEN: (
         "series",
         "All controllers in the printed form (2)",
-        ("Every setting read as $K_p(1+1/sT_i)(1+sT_d)/(1+s\\alpha T_d)$ with $\\alpha = 0.1$, acting on the "
-        "error."),
+        ("Every setting read as $K_p(1+1/sT_i)(1+sT_d)/(1+s\\alpha T_d)$ with $\\alpha = 0.1$, acting on the error."),
     ),
     "filter-on-d": (
         "d-filter",
@@ -176,8 +175,10 @@ READINGS = {
     "ideal-on-output": (
         "ideal-on-output",
         "Parallel form, derivative on the output",
-        ("As *ideal*, but the derivative does not see the set point: the same loop and the same load "
-        "response, without derivative kick."),
+        (
+            "As *ideal*, but the derivative does not see the set point: the same loop and the same load "
+            "response, without derivative kick."
+        ),
     ),
 }
 

@@ -88,10 +88,12 @@ def add_readings(table: Table) -> None:
             series,
             exact_peak,
             designed,
-            ("The specified sensitivity $M_s^* = 1/y$ runs over 1.2, 1.3, ... (the text says that $y$ does, "
-            "but by (7) and (8) $y = 1/|S|$, and with $y \\ge 1.2$ there is no real $q$), up to the first "
-            "value for which (9) has real roots; $q > 0$, and $T_i$ is the larger root. $M_s$ is that of the "
-            "controller printed in (2), $\\alpha = 0.1$, with unrounded settings and the exact dead time."),
+            (
+                "The specified sensitivity $M_s^* = 1/y$ runs over 1.2, 1.3, ... (the text says that $y$ does, "
+                "but by (7) and (8) $y = 1/|S|$, and with $y \\ge 1.2$ there is no real $q$), up to the first "
+                "value for which (9) has real roots; $q > 0$, and $T_i$ is the larger root. $M_s$ is that of the "
+                "controller printed in (2), $\\alpha = 0.1$, with unrounded settings and the exact dead time."
+            ),
         ),
         (
             "authors",
@@ -99,12 +101,14 @@ def add_readings(table: Table) -> None:
             d_filter,
             pade_norm,
             tabulated,
-            ("Reconstructed from the printed digits. The derivative filter acts on the derivative term alone, "
-            "$K_p(1+1/sT_i)(1 + sT_d/(1+s\\alpha T_d))$; the dead time is a third-order Padé approximation; "
-            "and $M_s$ is the lower bound at which Bruinsma and Steinbuch's algorithm stops at a relative "
-            "tolerance of 0.01, the documented default of MATLAB's `norm(sys, inf)`, started from the "
-            "peaking frequencies of the closed loop's "
-            f"modes. Settings: {gain} and the printed $T_i$."),
+            (
+                "Reconstructed from the printed digits. The derivative filter acts on the derivative term alone, "
+                "$K_p(1+1/sT_i)(1 + sT_d/(1+s\\alpha T_d))$; the dead time is a third-order Padé approximation; "
+                "and $M_s$ is the lower bound at which Bruinsma and Steinbuch's algorithm stops at a relative "
+                "tolerance of 0.01, the documented default of MATLAB's `norm(sys, inf)`, started from the "
+                "peaking frequencies of the closed loop's "
+                f"modes. Settings: {gain} and the printed $T_i$."
+            ),
         ),
         (
             "pade-3",
@@ -112,8 +116,10 @@ def add_readings(table: Table) -> None:
             d_filter,
             pade_peak,
             tabulated,
-            ("As *authors*, but the peak of $|S|$ is exact. The difference between the two is the tolerance "
-            "of the norm routine alone."),
+            (
+                "As *authors*, but the peak of $|S|$ is exact. The difference between the two is the tolerance "
+                "of the norm routine alone."
+            ),
         ),
         (
             "filter-on-d",
@@ -121,8 +127,10 @@ def add_readings(table: Table) -> None:
             d_filter,
             exact_peak,
             designed,
-            ("As written, except that the derivative filter acts on the derivative term alone. The difference "
-            "to the first reading is the place of the filter alone."),
+            (
+                "As written, except that the derivative filter acts on the derivative term alone. The difference "
+                "to the first reading is the place of the filter alone."
+            ),
         ),
     )
     for id, title, structure, peak, settings, note in readings:

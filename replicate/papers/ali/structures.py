@@ -60,9 +60,7 @@ def unfiltered(settings: Settings) -> PID:
 
 
 def _parallel(settings: Settings, c: float) -> PID:
-    return PID.ideal(
-        settings.Kp, settings.Ti, settings.Td, b=1.0, c=c, derivative_filter=ALPHA * settings.Td
-    )
+    return PID.ideal(settings.Kp, settings.Ti, settings.Td, b=1.0, c=c, derivative_filter=ALPHA * settings.Td)
 
 
 Structure = Callable[[Settings], PID]
