@@ -292,6 +292,13 @@ def test_simple_models_have_closed_forms():
     assert delayed.time_constant == pytest.approx(model.time_constant, rel=1e-9)
     assert delayed.dead_time == pytest.approx(model.dead_time + 15.0, rel=1e-10)
     # the tangent at the inflexion, t = 2: slope 2 e^{-2}, height 1 - 5 e^{-2}
+    for plant in ("G1", "G2", "G3"):  # mean and variance of the impulse response
+        with mp.workdps(30):
+            _, slope, half_curvature = mp.taylor(lambda s, g=FORMULAS[plant]: mp.log(g(s)), 0, 2)
+            time_constant = mp.sqrt(2 * half_curvature)
+        model = simple_models.moments(plant)
+        assert model.time_constant == pytest.approx(float(time_constant), rel=1e-9)
+        assert model.dead_time == pytest.approx(float(-slope - time_constant), rel=1e-9)
     tangent = simple_models.tangent("G1")
     assert tangent.time_constant == pytest.approx(math.exp(2.0) / 2.0, rel=1e-10)
     assert tangent.dead_time == pytest.approx(2.0 - (1 - 5 * math.exp(-2.0)) * math.exp(2.0) / 2.0, rel=1e-9)

@@ -14,7 +14,7 @@ from replicate.papers.panagopoulos import paper
 paper.load()
 
 from replicate.papers.panagopoulos.part_2 import example, feasible, filters, noise_figures, setpoint  # noqa: E402
-from replicate.papers.panagopoulos.part_2.designs import optimal, printed  # noqa: E402
+from replicate.papers.panagopoulos.part_2.designs import optimal, pid_design, printed  # noqa: E402
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number  # noqa: E402
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split  # noqa: E402
 from replicate.papers.panagopoulos.part_2.setpoint_formulas import weight_peak  # noqa: E402
@@ -172,3 +172,10 @@ def test_largest_gain_of_four_lags() -> None:
     g = 1.0 / (1.0 + 1j * w) ** 4
     left = -g.real / np.abs(g) ** 2 - 1.0 / (1.4 * np.abs(g))
     assert largest_gain(PLANTS["G4"], 1.4) == pytest.approx(left.max(), rel=1e-8)
+
+
+@pytest.mark.parametrize("row", ["G4 Ms=1.4", "G8 Ms=2.0"])
+def test_an_idle_phase_constraint_moves_no_optimum(row: str) -> None:
+    stated, without = pid_design(row), pid_design(row, "curvature")
+    assert [part.kind for part in stated.active] == ["sensitivity", "curvature"]
+    assert stated.ki == pytest.approx(without.ki, rel=1e-8)

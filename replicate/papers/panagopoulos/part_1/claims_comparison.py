@@ -32,23 +32,17 @@ def _overshoot(plant: str, method: str, claimed: int) -> Finding:
     )
 
 
-@claims.claim(
-    "overshoot-g1-zn", "Ziegler–Nichols on $G_1$ overshoots by 36 %.", where="section 6", printed="36"
-)
+@claims.claim("overshoot-g1-zn", "Ziegler–Nichols on $G_1$ overshoots by 36 %.", where="section 6", printed="36")
 def overshoot_g1() -> Finding:
     return _overshoot("G1", "ZN", 36)
 
 
-@claims.claim(
-    "overshoot-g2-zn", "Ziegler–Nichols on $G_2$ overshoots by 47 %.", where="section 6", printed="47"
-)
+@claims.claim("overshoot-g2-zn", "Ziegler–Nichols on $G_2$ overshoots by 47 %.", where="section 6", printed="47")
 def overshoot_g2() -> Finding:
     return _overshoot("G2", "ZN", 47)
 
 
-@claims.claim(
-    "overshoot-g3-lambda", "Lambda tuning on $G_3$ overshoots by 21 %.", where="section 6", printed="21"
-)
+@claims.claim("overshoot-g3-lambda", "Lambda tuning on $G_3$ overshoots by 21 %.", where="section 6", printed="21")
 def overshoot_g3() -> Finding:
     return _overshoot("G3", "Lambda", 21)
 

@@ -140,9 +140,7 @@ def no_fast_solution() -> Finding:
     )
 
 
-@claims.claim(
-    "a-at-least-3", "For $M_s = 2$ the unstable plant needs $a \\geq 3$.", where="example 7", printed="3"
-)
+@claims.claim("a-at-least-3", "For $M_s = 2$ the unstable plant needs $a \\geq 3$.", where="example 7", printed="3")
 def a_at_least_3() -> Finding:
     below, above = (design_pi(unstable(a), ms=HIGH).status for a in (2.99, 3.01))
     return Finding(

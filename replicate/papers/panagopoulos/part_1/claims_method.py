@@ -99,9 +99,7 @@ def monotone() -> Finding:
     )
 
 
-@claims.claim(
-    "positive-gains", "In the interval (21) both $k$ and $k_i$ are positive.", where="section 3.3, remark 2"
-)
+@claims.claim("positive-gains", "In the interval (21) both $k$ and $k_i$ are positive.", where="section 3.3, remark 2")
 def positive_gains() -> Finding:
     smallest = math.inf
     for plant, ms in theorem_1.ROWS.values():

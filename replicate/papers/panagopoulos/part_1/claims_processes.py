@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from replicate.exhibits import Finding
 from replicate.loops import Loop
+from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
 from replicate.papers.panagopoulos.part_1.designs import (
     BOUNDS,
@@ -89,21 +90,24 @@ def larger_overshoot() -> Finding:
     where="section 5.1, Table 1",
 )
 def settling_shorter() -> Finding:
-    ratios: dict[str, dict[str, float]] = {"one": {}, "five": {}, "two": {}}
+    ratios: dict[str, dict[str, float]] = {"print": {}, "one": {}, "five": {}, "two": {}}
     for plant in SIX:
         slow, fast = load_response(plant, LOW), load_response(plant, HIGH)
         dead_time = PLANTS[plant].dead_time
         ratios["one"][plant] = one_sided(fast, dead_time) / one_sided(slow, dead_time)
         ratios["five"][plant] = two_sided(fast) / two_sided(slow)
         ratios["two"][plant] = two_sided(fast, 0.02) / two_sided(slow, 0.02)
+    times = paper.printed_numbers("I-table-1")
+    ratios["print"] = {p: times[f"{p} Ms={HIGH}", "ts"] / times[f"{p} Ms={LOW}", "ts"] for p in SIX}
     shorter = {kind: sum(value < 0.8 for value in found.values()) for kind, found in ratios.items()}
     worst = max(ratios["five"], key=lambda plant: ratios["five"][plant])
     return Finding(
         "holds" if shorter["five"] == len(SIX) else "holds-partly",
         ratios["five"][worst],
-        f"Shorter by a fifth or more in {shorter['one']} of {len(SIX)} plants if only what is above $+5$ % counts, as "
-        f"in the printed numbers; in {shorter['five']} with a band of $\\pm 5$ % (the ratios are "
-        f"{listed(ratios['five'], 3)}); in {shorter['two']} with $\\pm 2$ % ({listed(ratios['two'], 3)}). The faster "
+        f"The printed times are shorter by a fifth or more for {shorter['print']} of {len(SIX)} plants. Exact ones are "
+        f"for {shorter['one']} if only what is above $+5$ % of a unit load counts, which is what the print goes with; "
+        f"for {shorter['five']} with a band of $\\pm 5$ % (the ratios are "
+        f"{listed(ratios['five'], 3)}); for {shorter['two']} with $\\pm 2$ % ({listed(ratios['two'], 3)}). The faster "
         "loops swing below zero, and the one-sided definition does not see it.",
     )
 
@@ -115,8 +119,7 @@ def settling_shorter() -> Finding:
 )
 def ie_iae_falls() -> Finding:
     ratio = {
-        plant: [1.0 / design(plant, ms).ki / load_response(plant, ms).iae() for ms in (LOW, HIGH)]
-        for plant in SIX
+        plant: [1.0 / design(plant, ms).ki / load_response(plant, ms).iae() for ms in (LOW, HIGH)] for plant in SIX
     }
     fall = {plant: high - low for plant, (low, high) in ratio.items()}
     return Finding(

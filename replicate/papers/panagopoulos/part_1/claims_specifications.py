@@ -37,9 +37,7 @@ ROUNDING = 1e-9
 # sections 1 and 2
 
 
-@claims.claim(
-    "zn-damping", "Ziegler–Nichols gives a relative damping of about 0.2.", where="section 1", printed="0.2"
-)
+@claims.claim("zn-damping", "Ziegler–Nichols gives a relative damping of about 0.2.", where="section 1", printed="0.2")
 def zn_damping() -> Finding:
     damping = {}
     for plant in ("G1", "G2", "G3"):
@@ -129,9 +127,7 @@ def msp_below_mp() -> Finding:
     where="section 2.2, Figure 1",
 )
 def ms_parameter() -> Finding:
-    responses = {
-        ms: Loop(PLANTS["G1"], design_pi(PLANTS["G1"], ms=ms).controller).step() for ms in (1.2, 1.4, 2.0)
-    }
+    responses = {ms: Loop(PLANTS["G1"], design_pi(PLANTS["G1"], ms=ms).controller).step() for ms in (1.2, 1.4, 2.0)}
     rise = [response.rise_time() for response in responses.values()]
     overshoot = [response.overshoot() for response in responses.values()]
     ordered = rise == sorted(rise, reverse=True) and overshoot == sorted(overshoot)

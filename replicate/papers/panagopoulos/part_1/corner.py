@@ -51,9 +51,7 @@ def corner_limit(ms: float) -> float:
         if not others:
             return -1.0
         minima = (
-            minimize_scalar(
-                distance, bounds=(FREQUENCIES[i - 1], FREQUENCIES[i + 1]), options={"xatol": 1e-12}
-            ).fun
+            minimize_scalar(distance, bounds=(FREQUENCIES[i - 1], FREQUENCIES[i + 1]), options={"xatol": 1e-12}).fun
             for i in others
         )
         return float(1.0 / min(minima) - ms)

@@ -27,9 +27,7 @@ def draw_circle(axes: Axes, circle: Circle, **style: Any) -> None:
     """Draw a circle that the Nyquist curve must not enter."""
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     defaults: dict[str, Any] = {"color": "0.55", "linewidth": 1.0, "linestyle": "-"}
-    axes.plot(
-        -circle.center + circle.radius * np.cos(angle), circle.radius * np.sin(angle), **{**defaults, **style}
-    )
+    axes.plot(-circle.center + circle.radius * np.cos(angle), circle.radius * np.sin(angle), **{**defaults, **style})
 
 
 def nyquist_axes(axes: Axes, window: tuple[float, float, float, float] = (-2.0, 1.0, -2.0, 1.0)) -> None:
@@ -43,9 +41,7 @@ def nyquist_axes(axes: Axes, window: tuple[float, float, float, float] = (-2.0, 
     axes.set_ylabel("$\\mathrm{Im}\\,L$")
 
 
-def experiment(
-    axes: Sequence[Axes], loop: Loop, until: float, load_at: float, load: float = 1.0, **style: Any
-) -> None:
+def experiment(axes: Sequence[Axes], loop: Loop, until: float, load_at: float, load: float = 1.0, **style: Any) -> None:
     """Draw output and control signal: a set-point step at 0, a load step later; jumps are drawn as jumps."""
     response = loop.respond(load=load, load_at=load_at, until=until)
     for part, signal in zip(axes, (response.output, response.control), strict=False):

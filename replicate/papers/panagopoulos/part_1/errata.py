@@ -111,9 +111,7 @@ def corrected() -> pd.DataFrame:
     return _table(corrected_circle)
 
 
-@errata.reading(
-    "geometry", "The smallest circle around both", note="From the end points of the circles, no formula."
-)
+@errata.reading("geometry", "The smallest circle around both", note="From the end points of the circles, no formula.")
 def geometry() -> pd.DataFrame:
     """Enclose the two circles."""
     return _table(geometric_circle)

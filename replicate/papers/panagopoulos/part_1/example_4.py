@@ -32,11 +32,7 @@ example_4 = paper.table(
         "gain_slow": "gain of the slow mode",
         "gain_total": "gain of $G_{10}$",
         "gain_G11": "gain of $G_{11}$",
-        **{
-            f"{key}_{ms}": f"${s}(G_{{11}})/{s}(G_{{10}})$, $M_s = {ms}$"
-            for ms in (1.4, 2.0)
-            for key, s in _SYMBOLS
-        },
+        **{f"{key}_{ms}": f"${s}(G_{{11}})/{s}(G_{{10}})$, $M_s = {ms}$" for ms in (1.4, 2.0) for key, s in _SYMBOLS},
         VALUE: "Value",
     },
 )

@@ -83,9 +83,7 @@ def as_written() -> pd.DataFrame:
     return _values("w_mp")
 
 
-@example_7.reading(
-    "authors", "$b$ at $\\omega_0$", note="Equation (25) at $\\omega_0$, the peak of the sensitivity."
-)
+@example_7.reading("authors", "$b$ at $\\omega_0$", note="Equation (25) at $\\omega_0$, the peak of the sensitivity.")
 def authors() -> pd.DataFrame:
     """Compute the example with the set-point weight's other frequency."""
     return _values("w_0")

@@ -38,9 +38,7 @@ def draw(fig: Figure) -> None:
             loop = Loop(PLANTS[PLANT], PI(found.k, found.ki))
             color = f"C{number}"
             curve(grid[0, column], loop, w, color=color, label=f"$M_{symbol} = {bound}$")
-            draw_circle(
-                grid[0, column], Circle.of(**{f"m{symbol}": bound}), color=color, linewidth=0.9, linestyle=":"
-            )
+            draw_circle(grid[0, column], Circle.of(**{f"m{symbol}": bound}), color=color, linewidth=0.9, linestyle=":")
             experiment(grid[1:, column], loop, UNTIL, LOAD_AT, color=color)
         nyquist_axes(grid[0, column], (-3.0, 1.0, -2.0, 1.0))
         grid[0, column].legend(loc="lower left")

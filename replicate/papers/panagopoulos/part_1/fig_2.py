@@ -83,7 +83,5 @@ def _panel(axes: Axes, plant: str, frequencies: np.ndarray, reach: tuple[float, 
         axes.plot(*ellipse(plant, w), color="C0", linestyle="-", linewidth=0.6, alpha=0.6)
     gains = np.unique(np.append(np.linspace(*reach, 601), design(plant, MS).k))
     axes.plot(gains, largest_gain(plant, gains), color="C1", linestyle="-", linewidth=2.2)
-    axes.plot(
-        [design(plant, MS).k], [design(plant, MS).ki], marker="o", color="C1", linestyle="none", markersize=6
-    )
+    axes.plot([design(plant, MS).k], [design(plant, MS).ki], marker="o", color="C1", linestyle="none", markersize=6)
     axes.set_xlim(*reach)

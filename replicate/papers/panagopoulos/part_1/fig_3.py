@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+# G3 and G5 lie over each other, G1 and G6 have similar colours
+LINES = {"G5": (0, (4.0, 3.0)), "G6": (0, (6.0, 2.0, 1.5, 2.0))}
+
+
 @paper.figure(
     "I-fig-3",
     "Nyquist curves of the loops with $G_1$ to $G_6$",
@@ -32,7 +36,7 @@ def draw(fig: Figure) -> None:
     for axes, ms in zip(both, (1.4, 2.0), strict=True):
         draw_circle(axes, Circle.of(ms))
         for plant in SIX:
-            curve(axes, loop(plant, ms), w, label=label(plant))
+            curve(axes, loop(plant, ms), w, label=label(plant), linestyle=LINES.get(plant, "-"))
         nyquist_axes(axes)
         axes.set_title(f"$M_s = {ms}$")
     handles, labels = both[0].get_legend_handles_labels()

@@ -34,7 +34,5 @@ def draw(fig: Figure) -> None:
     for a in PARAMETERS:
         plant = f"G14 a={a}"
         loop = Loop(PLANTS[plant], controller(plant, MS, "w_0"))
-        rows.append(
-            Row(f"$a = {a}$", [Line(loop, MS, "")], UNTIL[a], (0.02, 400.0), window=(-3.5, 1.0, -2.25, 2.25))
-        )
+        rows.append(Row(f"$a = {a}$", [Line(loop, MS, "")], UNTIL[a], (0.02, 400.0), window=(-3.5, 1.0, -2.25, 2.25)))
     draw_rows(fig, rows)

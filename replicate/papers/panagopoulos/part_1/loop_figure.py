@@ -34,6 +34,7 @@ class Row:
     until: float
     frequencies: tuple[float, float]
     load_at: float = 0.0  # half time if 0
+    load: float = 1.0
     window: tuple[float, float, float, float] = (-2.0, 1.0, -2.0, 1.0)
 
 
@@ -46,7 +47,7 @@ def draw_rows(fig: Figure, rows: Sequence[Row]) -> None:
         w = np.geomspace(*row.frequencies, 6000)
         for line in row.lines:
             curve(axes[0], line.loop, w, label=line.label, **line.style)
-            experiment(axes[1:], line.loop, row.until, row.load_at or 0.5 * row.until, **line.style)
+            experiment(axes[1:], line.loop, row.until, row.load_at or 0.5 * row.until, row.load, **line.style)
         nyquist_axes(axes[0], row.window)
         time_axes(axes[1:], row.until)
         axes[1].tick_params(labelbottom=True)

@@ -57,9 +57,7 @@ PLANTS = MappingProxyType(
         ),
         "G11": Plant([150.0], _FILTERED_LAG),  # (28)
         **{f"G12 a={a}": resonant(a) for a in (0.0, 0.1, 0.2, 0.5, 1.0, 2.0)},
-        "G13": Plant(
-            _product([1.0, 6.0], [1.0, 6.0]), _product([1.0, 0.0], [1.0, 1.0], [1.0, 1.0], [1.0, 36.0])
-        ),
+        "G13": Plant(_product([1.0, 6.0], [1.0, 6.0]), _product([1.0, 0.0], [1.0, 1.0], [1.0, 1.0], [1.0, 36.0])),
         **{f"G14 a={a:g}": unstable(a) for a in (4.0, 8.0)},
     }
 )

@@ -1,6 +1,6 @@
 """What the two other methods of section 6 know of a plant: the ultimate point, and gain, time constant and dead time.
 
-The paper does not say how it finds the model ``e^{-sL}/(1 + sT)`` for lambda tuning. Four usual ways are here.
+The paper does not say how it finds the model ``e^{-sL}/(1 + sT)`` for lambda tuning. Five usual ways are here.
 
 References
 ----------
@@ -18,9 +18,7 @@ from replicate.loops import PI, Loop, Signal
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
 SMALL_GAIN = 0.1  # stable for every plant that the ultimate point is asked of
-SETTLED = (
-    60.0  # time constants (all plants here have a slowest one of 1) after which a step response is at rest
-)
+SETTLED = 60.0  # time constants (all plants here have a slowest one of 1) after which a step response is at rest
 LAMBDA = 3.0  # closed-loop over open-loop time constant, section 6
 
 
@@ -83,9 +81,18 @@ def tangent_and_63(plant: str) -> FirstOrder:
     return FirstOrder(step_response(plant).first_reach(1.0 - math.exp(-1.0)) - dead_time, dead_time)
 
 
+def moments(plant: str) -> FirstOrder:
+    """Return the model whose impulse response has the plant's mean T + L and variance T^2, for a numerator of 1."""
+    model = PLANTS[plant]
+    _, linear, square = (float(c) for c in (model.den / model.den[-1])[:-4:-1])  # 1 + a1 s + a2 s^2 + ...
+    time_constant = math.sqrt(linear**2 - 2.0 * square)
+    return FirstOrder(time_constant, model.dead_time + linear - time_constant)
+
+
 METHODS: dict[str, Callable[[str], FirstOrder]] = {
     "area": area_method,
     "two-points": two_points,
     "tangent": tangent,
     "tangent-63": tangent_and_63,
+    "moments": moments,
 }

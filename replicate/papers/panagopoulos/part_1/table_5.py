@@ -120,9 +120,7 @@ def overshoot_of_peak(step: Signal) -> float:
 )
 def authors() -> pd.DataFrame:
     """Compute the table by the rules that its numbers follow."""
-    table = _table(
-        authors_controller, overshoot_of_peak, lambda load, plant: one_sided(load, PLANTS[plant].dead_time)
-    )
+    table = _table(authors_controller, overshoot_of_peak, lambda load, plant: one_sided(load, PLANTS[plant].dead_time))
     for row, (_, method) in ROWS.items():
         if method == "Lambda":
             table.loc[row, ["k", "Ti", "ki"]] = math.nan
@@ -135,19 +133,16 @@ identification = paper.table(
     printed=False,
     rows=tuple(f"{plant} {symbol}" for plant in ("G1", "G2", "G3") for symbol in ("T", "L")),
     columns=(*METHODS, "implied"),
-    caption="Time constant $T$ and dead time $L$ by four usual methods, and the values that the printed gains "
-    "imply ($T = T_i$, $L = 1/k_i - 3T$). No method gives them; the area method is closest. $G_1$ and $G_3$ "
+    caption="Time constant $T$ and dead time $L$ by five usual methods, and the values that the printed gains "
+    "imply ($T = T_i$, $L = 1/k_i - 3T$). No method gives all of them; the area method is closest. $G_1$ and $G_3$ "
     "differ by a dead time only, so any method would give both the same $T$; the print does not.",
     labels={
-        **{
-            f"{plant} {symbol}": f"{label(plant)}, ${symbol}$"
-            for plant in ("G1", "G2", "G3")
-            for symbol in ("T", "L")
-        },
+        **{f"{plant} {symbol}": f"{label(plant)}, ${symbol}$" for plant in ("G1", "G2", "G3") for symbol in ("T", "L")},
         "area": "Area method",
         "two-points": "28 % and 63 %",
         "tangent": "Tangent",
         "tangent-63": "Tangent and 63 %",
+        "moments": "Two moments",
         "implied": "Implied by the print",
     },
 )
@@ -155,7 +150,7 @@ identification = paper.table(
 
 @identification.reading("as-written", "Exact step responses")
 def models() -> pd.DataFrame:
-    """Identify the three plants in four ways."""
+    """Identify the three plants in five ways."""
     import pandas as pd
 
     rows: dict[str, list[float]] = {}

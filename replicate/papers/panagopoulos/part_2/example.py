@@ -37,13 +37,12 @@ def pole_numbers(controller: PID) -> dict[str, float]:
 
 example = paper.table(
     "IIs-example",
-    "Two controllers for $1/(s+1)^4$",
+    "Two controllers for four equal lags",
     kind="example",
     rows=tuple(CONTROLLERS),
     columns=("IAE", "p", "zeta1", "omega1", "zeta2", "omega2"),
-    caption=r"$(k, k_i, k_d) = (1.00, 0.50, 1.00)$ and $(1.00, 0.98, 3.00)$: integrated absolute error after a "
-    r"unit load "
-    "step, the real closed-loop pole, and relative damping and frequency of the two pairs.",
+    caption=r"$G = 1/(s+1)^4$ with $(k, k_i, k_d) = (1.00, 0.50, 1.00)$ and $(1.00, 0.98, 3.00)$: integrated absolute "
+    "error after a unit load step, the real closed-loop pole, and relative damping and frequency of the two pairs.",
     labels=ROW_LABELS
     | {
         "p": "real pole",

@@ -29,8 +29,7 @@ table = paper.table(
     rows=filters.ROWS,
     columns=filters.COLUMNS,
     caption=r"$G = 1/(s+1)^4$, $M_s = 1.4$, designed for $F_yG$ with filters of order $n$. IAE is that of the "
-    r"output $y$ "
-    "after a unit load step.",
+    r"output $y$ after a unit load step. Without filter $M_n$ is infinite, printed as $\infty$.",
     labels=LABELS,
 )
 

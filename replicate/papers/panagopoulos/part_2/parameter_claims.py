@@ -47,9 +47,7 @@ def errata_optimal() -> Finding:
     )
 
 
-@claims.claim(
-    "table-1-feasible", "The controllers of Table 1 satisfy the curvature constraint.", where="II, Table 1"
-)
+@claims.claim("table-1-feasible", "The controllers of Table 1 satisfy the curvature constraint.", where="II, Table 1")
 def table_1_feasible() -> Finding:
     rows = [row for row in ROWS if split(row)[0] in REGULAR]
     found = {
@@ -75,9 +73,7 @@ def gain_larger() -> Finding:
     "ti-constant", "The integral time is fairly constant for all processes except $G_1$.", where="II, section 4"
 )
 def integral_time() -> Finding:
-    ratios = {
-        n: optimal(row_of(n, 1.4)).integral_time / optimal(row_of(n, 2.0)).integral_time for n in PROCESSES
-    }
+    ratios = {n: optimal(row_of(n, 1.4)).integral_time / optimal(row_of(n, 2.0)).integral_time for n in PROCESSES}
     verdict, kept, total = share(ratios[n] < 1.25 for n in PROCESSES if n != "G1")
     return Finding(
         verdict,
@@ -86,21 +82,14 @@ def integral_time() -> Finding:
     )
 
 
-@claims.claim(
-    "td-larger", "The derivative time is usually larger for $M_s = 1.4$ than for 2.0.", where="II, section 4"
-)
+@claims.claim("td-larger", "The derivative time is usually larger for $M_s = 1.4$ than for 2.0.", where="II, section 4")
 def derivative_time() -> Finding:
     def larger(of: Mapping[str, tuple[float, float]]) -> int:
         return sum(low > high for low, high in of.values())
 
-    exact = {
-        n: (optimal(row_of(n, 1.4)).derivative_time, optimal(row_of(n, 2.0)).derivative_time) for n in PROCESSES
-    }
+    exact = {n: (optimal(row_of(n, 1.4)).derivative_time, optimal(row_of(n, 2.0)).derivative_time) for n in PROCESSES}
     tables = [
-        {
-            n: (printed(t, row_of(n, 1.4)).derivative_time, printed(t, row_of(n, 2.0)).derivative_time)
-            for n in PROCESSES
-        }
+        {n: (printed(t, row_of(n, 1.4)).derivative_time, printed(t, row_of(n, 2.0)).derivative_time) for n in PROCESSES}
         for t in (SUPERSEDED, REPLACEMENT)
     ]
     count = larger(exact)
@@ -113,13 +102,9 @@ def derivative_time() -> Finding:
     )
 
 
-@claims.claim(
-    "complex-zeros", "All designs with $M_s = 2.0$ have complex controller zeros.", where="II, section 4"
-)
+@claims.claim("complex-zeros", "All designs with $M_s = 2.0$ have complex controller zeros.", where="II, section 4")
 def complex_zeros() -> Finding:
-    ratios = {
-        n: optimal(row_of(n, 2.0)).integral_time / optimal(row_of(n, 2.0)).derivative_time for n in PROCESSES
-    }
+    ratios = {n: optimal(row_of(n, 2.0)).integral_time / optimal(row_of(n, 2.0)).derivative_time for n in PROCESSES}
     errata = {n: printed(REPLACEMENT, row_of(n, 2.0)) for n in PROCESSES}
     verdict, kept, total = share(value < 4.0 for value in ratios.values())
     also = sum(c.integral_time < 4.0 * c.derivative_time for c in errata.values())

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from replicate.loops import PID, Loop, Plant
+from replicate.loops import PID, Loop
+from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
+from replicate.papers.panagopoulos.part_2.processes import PLANTS
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_as_printed, weight
 
 COLUMNS = ("k", "Ti", "Td", "b", "Tsp", "IE", "IE/IAE", "w0", "ts", "Mp")
@@ -45,18 +47,19 @@ class Properties:
     Mp: float
 
     @classmethod
-    def of(cls, plant: Plant, controller: PID) -> Properties:
-        """Compute them for a stable loop.
+    def of(cls, process: str, controller: PID) -> Properties:
+        """Compute them for a stable loop around one of the eight processes.
 
         Raises
         ------
         UnstableLoopError
             If the loop is unstable.
         """
+        plant = PLANTS[process]
         loop = Loop(plant, controller)
         sensitivity = loop.sensitivity_peak()
         peak = Resonance.of(plant, controller)
-        load = loop.load_step()
+        load = load_experiment(process, controller).output
         return cls(
             controller.k,
             controller.integral_time,

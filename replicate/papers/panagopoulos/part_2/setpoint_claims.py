@@ -36,9 +36,7 @@ def eq_15() -> Finding:
     )
 
 
-@claims.claim(
-    "eq-16-gives-one", "$T_{sp}$ of (16) gives $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.", where="IIs, (16)"
-)
+@claims.claim("eq-16-gives-one", "$T_{sp}$ of (16) gives $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.", where="IIs, (16)")
 def eq_16() -> Finding:
     gains, right = [], []
     for row in ROWS:
@@ -70,8 +68,7 @@ def filter_b_one() -> Finding:
         if time == 0.0:
             continue
         plain, with_filter = (
-            Loop(PLANTS[name], PID(c.k, c.ki, c.kd, b=1.0, setpoint_filter=value)).step()
-            for value in (0.0, time)
+            Loop(PLANTS[name], PID(c.k, c.ki, c.kd, b=1.0, setpoint_filter=value)).step() for value in (0.0, time)
         )
         slower.append(with_filter.rise_time() > plain.rise_time())
         ratio[row] = with_filter.settling_time() / plain.settling_time()
@@ -85,9 +82,7 @@ def filter_b_one() -> Finding:
     )
 
 
-@claims.claim(
-    "weight-helps", "The chosen set-point weight makes the overshoot acceptable.", where="IIs, section 3"
-)
+@claims.claim("weight-helps", "The chosen set-point weight makes the overshoot acceptable.", where="IIs, section 3")
 def weight_helps() -> Finding:
     found = {}
     for row in ROWS:

@@ -11,6 +11,7 @@ from replicate.loops import Loop, Signal
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import printed
 from replicate.papers.panagopoulos.part_2.fig_2_3 import with_setpoint
+from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.tables import REPLACEMENT, SUPERSEDED, one_sided_settling
@@ -49,11 +50,11 @@ class Definition:
 @cache
 def deviation(table: str, row: str, signal: SignalName) -> Signal:
     """Return a signal minus its final value."""
-    plant = PLANTS[split(row)[0]]
+    process, _ = split(row)
     if signal == "set-point y":
-        response = Loop(plant, with_setpoint(row, printed(table, row))).step()
+        response = Loop(PLANTS[process], with_setpoint(row, printed(table, row))).step()
     else:
-        both = Loop(plant, printed(table, row)).respond(setpoint=0.0, load=1.0)
+        both = load_experiment(process, printed(table, row))
         response = both.output if signal == "load y" else both.control
     coefficients = response.coefficients.copy()
     coefficients[:, 0] -= response.final

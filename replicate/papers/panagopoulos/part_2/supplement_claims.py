@@ -23,9 +23,7 @@ W = np.geomspace(0.01, 100.0, 4001)
     where="IIs, section 1",
 )
 def smooth_then_edge() -> Finding:
-    kinds = {
-        kd: found.smooth for kd in np.arange(0.0, 3.3, 0.1) if (found := feasible.best(float(kd))) is not None
-    }
+    kinds = {kd: found.smooth for kd in np.arange(0.0, 3.3, 0.1) if (found := feasible.best(float(kd))) is not None}
     changes = [kd for kd, after in zip(list(kinds), list(kinds)[1:], strict=False) if kinds[kd] != kinds[after]]
     return Finding(
         "holds" if len(changes) == 1 and kinds[min(kinds)] else "fails",
@@ -50,9 +48,7 @@ def lower_surface() -> Finding:
     )
 
 
-@claims.claim(
-    "envelope-of-vertices", "The envelope of the vertices shows the region.", where="IIs, section 1, Fig. 3"
-)
+@claims.claim("envelope-of-vertices", "The envelope of the vertices shows the region.", where="IIs, section 1, Fig. 3")
 def envelope() -> Finding:
     excess = {}
     for kd in (1.0, 2.0, 3.0):
@@ -83,9 +79,7 @@ def example_ms() -> Finding:
     )
 
 
-@claims.claim(
-    "iae-degrades", "With $k_d = 3$ the peak is reduced and the IAE is larger.", where="IIs, section 1"
-)
+@claims.claim("iae-degrades", "With $k_d = 3$ the peak is reduced and the IAE is larger.", where="IIs, section 1")
 def iae_degrades() -> Finding:
     load = {key: Loop(G4, c).load_step() for key, c in CONTROLLERS.items()}
     iae = {key: y.iae() for key, y in load.items()}

@@ -11,6 +11,7 @@ import numpy as np
 from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
+from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected
@@ -28,13 +29,13 @@ GAINS = ("k", "Ti", "Td")
 @cache
 def design_properties(row: str, problem: Problem = "stated") -> Properties:
     """Return the properties of a design."""
-    return Properties.of(PLANTS[split(row)[0]], optimal(row, problem))
+    return Properties.of(split(row)[0], optimal(row, problem))
 
 
 @cache
 def printed_properties(table: str, row: str) -> Properties:
     """Return the properties that follow from the gains a table prints."""
-    return Properties.of(PLANTS[split(row)[0]], printed(table, row))
+    return Properties.of(split(row)[0], printed(table, row))
 
 
 def default_grid_peak(plant: Plant, controller: PID) -> Resonance:
@@ -52,9 +53,9 @@ ONE_SIDED = 0.05  # as in paper I: the last time above +5 % of the step, undersh
 @cache
 def one_sided_settling(table: str, row: str) -> float:
     """Return the settling time by paper I's definition, from the end of the dead time, for the printed gains."""
-    plant = PLANTS[split(row)[0]]
-    crossings = Loop(plant, printed(table, row)).load_step().crossings(ONE_SIDED)
-    return float(crossings[-1]) - plant.dead_time if crossings.size else 0.0
+    process, _ = split(row)
+    crossings = load_experiment(process, printed(table, row)).output.crossings(ONE_SIDED)
+    return float(crossings[-1]) - PLANTS[process].dead_time if crossings.size else 0.0
 
 
 def _frame(rows: dict[str, dict[str, float]]) -> pd.DataFrame:
