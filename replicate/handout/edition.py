@@ -97,9 +97,7 @@ def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
     text = "\n".join(line for line, _ in lines)
     try:
         tree = json.loads(
-            pypandoc.convert_text(
-                text, "json", format=_FORMAT, extra_args=["--fail-if-warnings", "--columns=10000"]
-            )
+            pypandoc.convert_text(text, "json", format=_FORMAT, extra_args=["--fail-if-warnings", "--columns=10000"])
         )
     except RuntimeError as error:
         words = " ".join(str(error).split())
@@ -177,4 +175,4 @@ def _placed(blocks: Blocks, placing: Placing) -> Blocks:
 def _with_legend(words: list[Element], thing: Placed) -> list[Element]:
     if not thing.legend:
         return words
-    return [*words, *([{"t": "Space"}] if words else []), *thing.legend, string(".")]
+    return [*words, *([{"t": "Space"}] if words else []), *thing.legend]

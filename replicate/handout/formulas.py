@@ -65,9 +65,7 @@ def convert(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
 
 def _written(formulas: Sequence[Formula], target: str) -> list[str]:
     """Write each formula in a paragraph of its own, and cut the result at the marks between them."""
-    document = "\n\n".join(
-        f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas
-    )
+    document = "\n\n".join(f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas)
     options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
     text = str(pypandoc.convert_text(document, target, format="markdown", extra_args=options))
     parts = [part.strip() for part in text.replace("\r\n", "\n").split("\ue004")[1:]]
@@ -95,9 +93,7 @@ def located(error: FormulaError, lines: Sequence[tuple[str, int]], source: str) 
     lines
         The text that was converted, with the line of the source that each line stems from.
     """
-    return TemplateError(
-        f"{source}:{line_of(error.tex, lines)}: pandoc cannot convert ${error.tex}$: {error}"
-    )
+    return TemplateError(f"{source}:{line_of(error.tex, lines)}: pandoc cannot convert ${error.tex}$: {error}")
 
 
 def line_of(text: str, lines: Sequence[tuple[str, int]]) -> int:

@@ -16,6 +16,18 @@ from replicate.report.numbers import aligned
 from replicate.report.tables import Cell, TableView, Value, table_view
 from replicate.report.words import MATCHES, VERDICTS
 
+# What the signs say to a reader who has not seen the report; a verdict of no more words is its own name.
+_MATCHES = {
+    "equal": "equal to the printed digits",
+    "near": "within 1 % or two units of the last digit",
+    "differs": "neither",
+}
+_VERDICTS = {
+    "reproduced": "reproduced as the paper says",
+    "reconstructed": "reconstructed under another reading",
+    "discrepant": "differs for a known cause",
+}
+
 
 @dataclass(frozen=True)
 class Choice:
@@ -94,7 +106,7 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
 
 
 def legend(view: TableView, choice: Choice) -> list[Element]:
-    """Return what the signs in the shown cells mean, as inline content."""
+    """Return what bold type and the signs in the shown cells mean, as sentences of inline content."""
     if choice.transposed:
         view = _transposed(view)
     columns, rows = choice.columns or view.columns, choice.rows or [row for row, _ in view.rows]
@@ -104,15 +116,33 @@ def legend(view: TableView, choice: Choice) -> list[Element]:
         for key, cell in zip(view.columns, cells, strict=True)
         if row in rows and key in columns
     ]
-    found = {cell.verdict.verdict for cell in shown if cell.verdict}
+    readings = choice.readings or {reading.id for reading in view.readings}
+    matches = {
+        value.match.kind for cell in shown for value in cell.values if cell.verdict and value.reading.id in readings
+    }
+    verdicts = {cell.verdict.verdict for cell in shown if cell.verdict}
+    signs = [
+        (span([string(sign)], "sign", "bare", kind), _MATCHES[kind])
+        for kind, (sign, _) in MATCHES.items()
+        if kind in matches and kind in _MATCHES
+    ]
+    badges = [
+        (span([string(word.symbol)], "badge", "bare", word.id), _VERDICTS.get(word.id, word.name))
+        for word in VERDICTS.values()
+        if word.id in verdicts
+    ]
+    return [*inlines("Bold: as printed."), *_listed(signs), *_listed(badges)]
+
+
+def _listed(signs: Sequence[tuple[Element, str]]) -> list[Element]:
+    """Return signs and their meanings as a sentence, each sign on one line with the first word after it."""
     out: list[Element] = []
-    for word in VERDICTS.values():
-        if word.id in found:
-            out += [
-                *([string(","), {"t": "Space"}] if out else []),
-                span([string(word.symbol)], "badge", word.id),
-                string(f"\N{NO-BREAK SPACE}{word.name.replace(' ', chr(0xA0))}"),
-            ]
+    for place, (sign, meaning) in enumerate(signs):
+        first, _, rest = meaning.partition(" ")
+        end = "." if place == len(signs) - 1 else ","
+        words = inlines(f"{rest}{end}") if rest else []
+        out += [{"t": "Space"}, sign, string(f"\N{NO-BREAK SPACE}{first}{'' if rest else end}")]
+        out += [{"t": "Space"}, *words] if words else []
     return out
 
 
@@ -129,8 +159,7 @@ def _lined_up(rows: Sequence[tuple[str, list[Cell]]]) -> list[tuple[str, list[Ce
         for column in columns
     ]
     return [
-        (row, [replace(cell, texts=lined) for cell, lined in zip(cells, texts, strict=True)])
-        for row, cells in rows
+        (row, [replace(cell, texts=lined) for cell, lined in zip(cells, texts, strict=True)]) for row, cells in rows
     ]
 
 
@@ -148,9 +177,11 @@ def _rounded(rows: Sequence[tuple[str, list[Cell]]], choice: Choice) -> list[tup
 
 
 def _short(value: Value, digits: int) -> Value:
-    if not value.full:
-        return value
-    return replace(value, text=f"{float(value.full.replace(MINUS, '-')):.{digits}g}".replace("-", MINUS))
+    """Return a value with so many digits, a zero at the end among them; a whole number is a count and stays."""
+    number = value.full.replace(MINUS, "-")
+    if not number.strip("-").isdigit():
+        number = f"{float(number):#.{digits}g}".removesuffix(".") if number else ""
+    return replace(value, text=number.replace("-", MINUS))
 
 
 def _heads(
@@ -160,11 +191,10 @@ def _heads(
     printed: bool,
     label: Callable[[str], list[Element]],
 ) -> list[Any]:
-    under = ([inlines("printed")] if printed else []) + [inlines(title) for title in titles]
+    under = [span(inlines("printed"), "over-badge")] if printed else []
+    under += [span(inlines(title), "over-sign") if printed else span(inlines(title)) for title in titles]
     groups = [
-        _cell(
-            [*label(key), *_unit(table, key)], "AlignCenter" if len(under) > 1 else "AlignRight", len(under)
-        )
+        _cell([*label(key), *_unit(table, key)], "AlignCenter" if len(under) > 1 else "AlignRight", len(under))
         for key in columns
     ]
     first = _row([_cell([], "AlignLeft"), *groups])
@@ -172,7 +202,7 @@ def _heads(
         return [first]
     return [
         first,
-        _row([_cell([], "AlignLeft"), *(_cell(text, "AlignRight") for _ in columns for text in under)]),
+        _row([_cell([], "AlignLeft"), *(_cell([head], "AlignRight") for _ in columns for head in under)]),
     ]
 
 

@@ -92,9 +92,7 @@ class Placing:
             return Exercises()
         found = getattr(importlib.import_module(f"{self.paper.package}.handout"), "exercises", None)
         if not isinstance(found, Exercises):
-            msg = (
-                f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exercises.Exercises"
-            )
+            msg = f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exercises.Exercises"
             raise PaperDefinitionError(msg)
         return found
 

@@ -25,7 +25,7 @@ TEMPLATE = "handout.typ"
 
 # Functions of the template, by the class of a Div or Span.
 _BLOCKS = {"lead", "key", "exercise", "solution"}
-_SPANS = {"number", "tool", "printed", "computed"}
+_SPANS = {"number", "tool", "printed", "computed", "over-badge", "over-sign"}
 _LONG = 15  # rows; a table with more of them may break across pages, and repeats its head
 _SIGNS = {"badge", "sign"}  # these also say which verdict or match they stand for
 
@@ -101,14 +101,13 @@ def _for_typst(element: Element, document: Document) -> list[Element] | None:
             kind, tex = element["c"]
             displayed = kind["t"] == "DisplayMath"
             formula = document.formulas[displayed, tex]
-            call = (
-                f"#formula({quoted(formula.words)}, {formula.typst}{', block: true' if displayed else ''});"
-            )
+            call = f"#formula({quoted(formula.words)}, {formula.typst}{', block: true' if displayed else ''});"
             return [raw_inline("typst", call)]
         case "Span":
             found = classes(element)
             if found and found[0] in _SIGNS:
-                call = f"{found[0]}({quoted(found[-1])})"
+                bare = ", bare: true" if "bare" in found else ""  # in a sentence, not behind a number
+                call = f"{found[0]}({quoted(found[-1])}{bare})"
             elif found and found[0] in _SPANS:
                 call = found[0]
             else:
@@ -124,12 +123,15 @@ def _block(element: Element, document: Document) -> Blocks | None:
     if "drawing" in found:
         drawing = document.drawings[attribute(element, "name")]
         call = f"#drawing({quoted(f'{drawing.name}.svg')}, {quoted(drawing.alt)}, {drawing.width:g})["
+        if not content:
+            return [raw_block("typst", f"{call}]")]
         return [raw_block("typst", call), *content, raw_block("typst", "]")]
     if "exhibit" in found:
         table, *caption = content
         long = "true" if len(table["c"][4][0][3]) > _LONG else "false"
+        group = max(cell[3] for cell in table["c"][3][1][0][1])  # columns under one head
         return [
-            raw_block("typst", f"#exhibit({long})["),
+            raw_block("typst", f"#exhibit({long}, {group})["),
             table,
             raw_block("typst", "]["),
             *caption,
@@ -139,9 +141,7 @@ def _block(element: Element, document: Document) -> Blocks | None:
         return list(content)
     known = [name for name in found if name in _BLOCKS]
     if not known:
-        msg = (
-            f"{document.paper.id}/{FILE}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
-        )
+        msg = f"{document.paper.id}/{FILE}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
         raise TemplateError(msg)
     return [raw_block("typst", f"#{known[0]}["), *content, raw_block("typst", "]")]
 

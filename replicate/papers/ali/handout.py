@@ -76,7 +76,7 @@ def best_gain() -> Answer:
     "Maximum sensitivity over the window of stable gains",
     alt="Maximum sensitivity over the gain for theta/T = 0.9, a curve that rises steeply towards both ends of the "
     "window of stable gains. The gain of Table 2 lies right of its bottom, that of Table 1 on the steep right flank.",
-    size=(5.8, 2.1),
+    size=(5.8, 1.6),
 )
 def window(fig: Figure) -> None:
     """Draw the maximum sensitivity over the gain, with the gains of the two tables."""

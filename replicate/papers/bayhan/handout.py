@@ -11,8 +11,8 @@ from scipy import optimize
 
 from replicate.exercises import Answer, Exercises
 from replicate.loops import Loop
-from replicate.papers.bayhan.evidence import in_steps
-from replicate.papers.bayhan.pole_assignment import kp
+from replicate.papers.bayhan import paper
+from replicate.papers.bayhan.evidence import in_steps, six_digits
 from replicate.papers.bayhan.processes import EXAMPLE_41, RULES, competing_rules, controllers
 from replicate.papers.bayhan.readings import AUTHORS
 from replicate.papers.bayhan.toolchain import sampled_response, sampled_specifications
@@ -54,17 +54,18 @@ def who_suffers() -> Answer:
     found = controllers(EXAMPLE_41)
     others = [rule for rule in RULES if rule != "PA"]
     return {
+        "gains": ", ".join(f"{found[rule].k:.3f}" for rule in others),
+        "smallest": min(others, key=lambda rule: found[rule].k),
         "more": ", ".join(rule for rule in others if found[rule].k < 1.0),
         "less": ", ".join(rule for rule in others if found[rule].k > 1.0),
     }
 
 
-@exercises.answer("zero-gain")
-def zero_gain() -> Answer:
-    """Return the a at which the proportional gain of the pole assignment changes its sign."""
-    process = EXAMPLE_41
-    root = optimize.brentq(lambda a: float(kp(process.K, process.L, process.tau, a)), 0.1, 0.85, xtol=1e-14)
-    return {"a": float(root)}
+@exercises.answer("exact-double-pole")
+def exact_double_pole() -> Answer:
+    """Return the gains that give the loop with the exact dead time, K = tau = L = 1, a double pole at -a."""
+    a = EXAMPLE_41.a
+    return {"Kp": (3 * a - 1 - a**2) * math.exp(-a), "Ki": a**2 * (2 - a) * math.exp(-a)}
 
 
 @exercises.answer("pade-phase")
@@ -89,11 +90,14 @@ def sample_counts() -> Answer:
 
 @exercises.answer("misprint")
 def misprint() -> Answer:
-    """Return the authors' delay time of the rule IAESPC in steps of its sample grid."""
+    """Return the authors' delay time of the rule IAESPC, in steps of its sample grid, and where it leaves the print."""
     found = controllers(EXAMPLE_41, AUTHORS.convention, AUTHORS.variant)["IAESPC"]
     response = sampled_response(EXAMPLE_41, found.k, found.ki)
     assert response is not None  # noqa: S101  -- for the type checker; the row is printed, so it is stable
-    return {"steps": sampled_specifications(EXAMPLE_41, found)["delay_time"] / response.spacing}
+    delay = sampled_specifications(EXAMPLE_41, found)["delay_time"]
+    text, print_ = six_digits(delay), paper.printed_cells("table-2")["IAESPC", "delay_time"]
+    wrong, right = next((old, new) for old, new in zip(print_, text, strict=True) if old != new)
+    return {"steps": delay / response.spacing, "text": text, "wrong": wrong, "right": right}
 
 
 @exercises.figure(
@@ -101,7 +105,7 @@ def misprint() -> Answer:
     "Settling time over the free parameter",
     alt="Settling time of the pole assignment over a. It falls to a flat minimum above the paper's choice, "
     "next to the value from which on the second inequality fails, and rises again.",
-    size=(5.6, 1.4),
+    size=(5.6, 1.5),
 )
 def settling_over_a(fig: Figure) -> None:
     """Draw the settling time of the pole assignment over a for Example 4.1."""
@@ -113,8 +117,8 @@ def settling_over_a(fig: Figure) -> None:
     axes.axvline(EXAMPLE_41.a, color="C1", linestyle="--", linewidth=1.2)
     axes.axvline(limit, color="C3", linestyle=":", linewidth=1.2)
     top = max(times)
-    axes.set_ylim(0.0, top)
-    axes.annotate("the paper's choice", (EXAMPLE_41.a, 0.88 * top), (-4, 0), textcoords="offset points", ha="right")
-    axes.annotate("second inequality fails", (limit, 0.88 * top), (4, 0), textcoords="offset points")
+    axes.set_ylim(0.0, 1.1 * top)
+    axes.annotate("the paper's choice", (EXAMPLE_41.a, 0.95 * top), (-4, 0), textcoords="offset points", ha="right")
+    axes.annotate("second inequality fails", (limit, 0.95 * top), (4, 0), textcoords="offset points")
     axes.set_xlabel("$a$")
     axes.set_ylabel("settling time")

@@ -11,18 +11,31 @@ from numpy.typing import NDArray
 
 from replicate.exercises import Answer, Exercises
 from replicate.loops import PI, Loop
-from replicate.papers.khan.processes import PRINTED, RESTORED, case_gains, plant
+from replicate.papers.khan import paper
+from replicate.papers.khan.processes import PRINTED, RESTORED, case_gains, loop, plant, settling_after_load
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 exercises = Exercises()
 
+LOAD_AT = 100.0  # when the load of Table I enters
+
 
 @exercises.answer("double-root")
 def double_root() -> Answer:
     """Return K_b h, at which two real poles of proportional control meet, by ph."""
     return {str(ph): math.exp(-(1 + ph)) for ph in (0, 1, 3)}
+
+
+@exercises.answer("wrong-digit")
+def wrong_digit() -> Answer:
+    """Return the digit that is wrong in Haalman's load settling time, which Bryant's row prints, and the right one."""
+    text = paper.printed_cells("table-1")["Bryant", "td"]
+    settled = settling_after_load(loop("Haalman", 1.0, 10.0), LOAD_AT)
+    right = f"{settled:.{len(text.partition('.')[2])}f}"
+    ((wrong, good),) = [(old, new) for old, new in zip(text, right, strict=True) if old != new]  # one, or it is no slip
+    return {"wrong": wrong, "right": good}
 
 
 @cache
@@ -47,7 +60,7 @@ def margins() -> Answer:
     alt="Two panels over ph from 0.01 to 0.2: gain margin and sensitivity peak. The dashed curves of the printed "
     "formula part from the solid ones of the restored formula as ph grows, but stay inside the claimed limits, "
     "which are dotted.",
-    size=(6.4, 2.3),
+    size=(6.4, 1.7),
 )
 def printed_and_restored(fig: Figure) -> None:
     """Draw gain margin and M_s of rule (7a) over its range, in both versions."""

@@ -13,7 +13,7 @@ from replicate.exercises import Answer, Exercises
 from replicate.loops import Signal
 from replicate.papers.krajewski.fig_6 import TAUS
 from replicate.papers.krajewski.normalised_loop import lag, loop, point
-from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, printed_coefficients
+from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, hyperbola_fit, printed_coefficients, upper_ends
 from replicate.papers.krajewski.table_1_errors import residuals, single_digit_slips
 
 if TYPE_CHECKING:
@@ -23,19 +23,25 @@ exercises = Exercises()
 
 TAU, CROSSOVER = 0.5, 1.5  # the last exercise
 
+_COUNTS = {0: "none", 1: "one", 2: "two", 3: "three"}  # small numbers in running text
+
 
 @exercises.answer("slips")
 def slips() -> Answer:
     """Return how many single wrong digits explain the column of 75 degrees, and the first of them."""
     found = single_digit_slips("75")
     tau, right, wrong = found[0]
-    return {"count": float(len(found)), "tau": tau, "right": right, "wrong": wrong}
+    return {"count": _COUNTS.get(len(found), str(len(found))), "tau": tau, "right": right, "wrong": wrong}
 
 
 @exercises.answer("at-0.3")
 def at_a_third() -> Answer:
-    """Return the printed hyperbola of 45 degrees at tau = 0.3."""
-    return {"printed": float(hyperbola(printed_coefficients("45"), 0.3))}
+    """Return the printed hyperbola of 45 degrees at tau = 0.3, and how far below the exact end it and the fit are."""
+    ends = upper_ends("45")
+    exact = float(ends[list(TAUS).index(0.3)])
+    printed = float(hyperbola(printed_coefficients("45"), 0.3))
+    fitted = float(hyperbola(hyperbola_fit(ends), 0.3))
+    return {"printed": printed, "below": exact - printed, "fit_below": exact - fitted}
 
 
 @exercises.figure(
