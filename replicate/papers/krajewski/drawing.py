@@ -87,8 +87,9 @@ def label_locus(axes: Axes, locus: Locus, u: float, text: str, color: Any, **sty
     paper = mpl.rcParams["legend.facecolor"]  # the colour of the page in the project's style
     (point,), (slope,) = locus.curve(np.array([u]))
     angle = float(np.degrees(np.arctan2(slope[1], slope[0])))
-    # never upside down, and steep labels all read upwards
-    if not -80.0 < angle <= 100.0:
+    # never upside down, and steep labels all read upwards: as seen on the page, where the axes' scales differ
+    scale = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+    if not -80.0 < np.degrees(np.arctan2(slope[1] / scale[1], slope[0] / scale[0])) <= 100.0:
         angle -= 180.0 * np.sign(angle)
     box = {
         "boxstyle": "round,pad=0.12,rounding_size=0.3",
