@@ -9,6 +9,7 @@ from pathlib import Path
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from replicate.loops import PI, Loop, Plant
@@ -317,6 +318,16 @@ def test_tables_against_a_frequency_grid_and_an_ode_solver():
     assert closed.step().overshoot() == pytest.approx(y.max() - 1.0, abs=1e-4)
     outside = np.flatnonzero(np.abs(y - 1.0) > 0.02)[-1] * dt
     assert closed.step().settling_time() == pytest.approx(outside, abs=5e-3)
+
+
+def test_a_hundredth_of_the_band_moves_the_slow_settling_times_by_more_than_they_are_off():
+    # Ziegler-Nichols at ph = 10: the tail is one exponential, whose rate is a real root of the characteristic equation
+    kp, ki = 0.09, 0.09 / 30.0
+    rate = brentq(lambda a: -a * (1.0 - a) + (-kp * a + ki) * np.exp(10.0 * a), 1e-4, 1e-2)
+    printed = khan.printed_numbers("table-1")
+    y = processes.loop("ZN", 1.0, 10.0)
+    for column, signal in (("ts", y.step()), ("td", y.load_step())):
+        assert 0.01 / rate > abs(signal.settling_time(0.02) - printed["ZN", column])
 
 
 def test_meets_rounds_and_truncates():
