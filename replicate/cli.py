@@ -43,6 +43,7 @@ Papers = Annotated[list[str] | None, typer.Argument(metavar="PAPER", help="Defau
 Names = Annotated[list[str] | None, typer.Argument(metavar="PAPER[/EXHIBIT]", help="Default: all papers.")]
 
 BUILD = Path("build")
+MOST_FAILURES = 12
 
 
 def main() -> None:
@@ -222,6 +223,7 @@ def check(
         typer.echo(problem)
     compared = sum(row.match != "none" for row in outcome.judgement.results)
     typer.echo(f"problems: {len(problems)}; comparisons: {compared}; exhibits: {len(outcome.results)}")
+    _tell_failures(outcome)
     if comparison.broken:
         raise typer.Exit(BROKEN)
     raise typer.Exit(DIFFERS if problems else 0)
@@ -250,8 +252,8 @@ def diff(
         papers, selection = select(names or ())
         outcome = _recompute(papers, selection, jobs, out, no_cache)
         comparison = compare(outcome, _accepted(accepted))
+        print_comparison(comparison, console())  # before anything else can go wrong
         write_diff(comparison, outcome, fresh, jobs)
-    print_comparison(comparison, console())
     typer.echo(f"pictures: {out / 'diff' / 'index.html'}")
     if comparison.broken or not comparison.compared:
         raise typer.Exit(BROKEN)
@@ -320,19 +322,23 @@ def new(
     """Make the package of a new paper in the current folder."""
     from replicate.discovery import known_papers
     from replicate.scaffold import new_paper
-    from replicate.terminal.console import console
 
     if paper in known_papers():
         msg = f"there is a paper '{paper}' already; choose another id"
         raise PaperDefinitionError(msg)
     folder = new_paper(paper, Path())
-    console().print(f"{folder}: made. Install it with `pip install -e {folder}`, then `replicate report {paper}`.")
+    typer.echo(
+        f"{folder}: made. What to do next:\n"
+        f"  pip install -e {folder}\n"
+        f"  replicate report {paper}\n"
+        f"  replicate accept {paper} --accepted figures --reason 'first'   # what check and diff compare with"
+    )
 
 
 def _recompute(
     papers: list[Paper], selection: Selection | None, jobs: int | None, out: Path, no_cache: bool
 ) -> Outcome:
-    """Compute and judge with progress on standard error, and say what failed."""
+    """Compute and judge with progress on standard error."""
     from replicate.outcome import recompute
     from replicate.terminal.console import console
     from replicate.terminal.progress import progress_on
@@ -340,13 +346,19 @@ def _recompute(
     errors = console(stderr=True)
     with progress_on(errors) as progress:
         cache = None if no_cache else out / "cache"
-        outcome = recompute(papers, selection, jobs=jobs, cache_dir=cache, progress=progress)
-    for failure in outcome.failures:
-        errors.print(f"failed: {failure}", markup=False)
-    return outcome
+        return recompute(papers, selection, jobs=jobs, cache_dir=cache, progress=progress)
+
+
+def _tell_failures(outcome: Outcome) -> None:
+    """Say on standard error what raised; a fault in the core makes everything fail, and the first lines tell."""
+    for failure in outcome.failures[:MOST_FAILURES]:
+        typer.echo(f"failed: {failure}", err=True)
+    if len(outcome.failures) > MOST_FAILURES:
+        typer.echo(f"failed: {len(outcome.failures) - MOST_FAILURES} more", err=True)
 
 
 def _exit_if_broken(outcome: Outcome) -> None:
+    _tell_failures(outcome)
     if outcome.failures:
         raise typer.Exit(BROKEN)
 

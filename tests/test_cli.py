@@ -171,6 +171,15 @@ def test_a_run_that_is_told_to_end_tidies_up(replicate: Run, monkeypatch: pytest
     assert not list(Path("build").glob(".partial*"))
 
 
+def test_when_everything_fails_the_first_lines_tell(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    failures = [f"lab/table-{number}: ValueError: no" for number in range(40)]
+    monkeypatch.setattr("replicate.outcome.failures", lambda _: failures)
+    status, _, err = replicate("report", "lab", "-j1")
+    told = [line for line in err.splitlines() if line.startswith("failed: ")]
+    assert status == 2
+    assert told == [*(f"failed: {failure}" for failure in failures[:12]), "failed: 28 more"]
+
+
 def test_a_new_paper_needs_an_id_of_its_own(replicate: Run) -> None:
     status, _, err = replicate("new", "lab")
     assert (status, err) == (2, "replicate: there is a paper 'lab' already; choose another id\n")

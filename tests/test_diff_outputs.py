@@ -174,9 +174,10 @@ def test_nothing_to_compare(diff: Run, replicate: Run) -> None:
 
 def test_an_exhibit_that_raises(diff: Run, replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LAB_BREAKS", "1")
-    status, out, _ = replicate("diff", "lab", "--accepted", "accepted", "-j1", "--no-cache")
+    status, out, err = replicate("diff", "lab", "--accepted", "accepted", "-j1", "--no-cache")
     assert status == 2
     assert "lab/table-1: as-written: could not be computed: ValueError: the kettle is empty" in out
+    assert "the kettle is empty" not in err  # once is enough
     assert diff("lab/fig-1")[0] == 0
     assert junit().find("testsuite/testcase") is not None
 
@@ -261,6 +262,15 @@ def test_files_for_machines(diff: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     assert failure.get("message") == change["text"]
     assert summary.read_text() == "earlier\n" + Path("build/diff.md").read_text()
     assert "### lab/fig-1\n\n- curve 'output' moved" in summary.read_text()
+
+
+def test_words_are_there_when_the_summary_cannot_be_written(diff: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    edit("fig-1.csv", lift)
+    monkeypatch.setenv("GITHUB_STEP_SUMMARY", "nowhere/summary.md")
+    status, out, err = diff()
+    assert status == 2
+    assert out.startswith("lab/fig-1: curve 'output' moved")
+    assert err.splitlines()[-1].startswith("replicate: GITHUB_STEP_SUMMARY: nowhere/summary.md: cannot be written")
 
 
 def test_a_flood_of_changes_is_cut_short(diff: Run) -> None:

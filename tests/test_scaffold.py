@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 import sys
 
 import pytest
@@ -24,6 +25,14 @@ def test_a_new_paper_holds(tmp_path, monkeypatch):
     assert outcome.failures == []
     assert outcome.judgement.problems == []
     assert [v.verdict for v in outcome.judgement.verdicts] == ["reproduced", "reproduced", "holds"]
+
+
+def test_a_new_paper_is_in_good_style(tmp_path):
+    folder = new_paper("demo", tmp_path)
+    options = ["--isolated", "--no-cache", "--select", "E,F,I", "--line-length", "120"]
+    command = [sys.executable, "-m", "ruff", "check", *options]
+    done = subprocess.run([*command, "."], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_the_entry_point_names_the_paper(tmp_path):
