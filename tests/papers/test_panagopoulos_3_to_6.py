@@ -266,9 +266,9 @@ def test_no_minimum_below_the_resonance():
     ("inside", "outside"),
     [
         # far above the corner: zeta_p = sqrt(2 - sqrt(3))/2
-        (Shaft.as_in_eq_3(np.sqrt(2.0 - np.sqrt(3.0)) / 2.0 * factor, 1e5) for factor in (0.9999, 1.0001)),
+        [Shaft.as_in_eq_3(np.sqrt(2.0 - np.sqrt(3.0)) / 2.0 * factor, 1e5) for factor in (0.9999, 1.0001)],
         # without damping: omega_p = sqrt(2) omega_f
-        (Shaft.as_in_eq_3(1e-9, np.sqrt(2.0) * factor) for factor in (1.0001, 0.9999)),
+        [Shaft.as_in_eq_3(1e-9, np.sqrt(2.0) * factor) for factor in (1.0001, 0.9999)],
     ],
 )
 def test_where_the_minimum_begins_to_exist(inside, outside):
