@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from replicate.errors import PaperDefinitionError, ReplicateError, UnknownPaperError
+from replicate.errors import AcceptedStateError, PaperDefinitionError, ReplicateError, UnknownPaperError
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
@@ -216,8 +216,9 @@ def check(
     from replicate.diff.comparison import compare
     from replicate.discovery import find_papers
 
+    baseline = _accepted(accepted)
     outcome = _recompute(find_papers(papers or ()), None, jobs, out, no_cache)
-    comparison = compare(outcome, _accepted(accepted))
+    comparison = compare(outcome, baseline)
     problems = find_problems(outcome, comparison)
     for problem in problems:
         typer.echo(problem)
@@ -248,10 +249,11 @@ def diff(
     from replicate.terminal.console import console
     from replicate.terminal.differences import print_comparison
 
+    baseline = _accepted(accepted)
     with staged(out) as fresh:
         papers, selection = select(names or ())
         outcome = _recompute(papers, selection, jobs, out, no_cache)
-        comparison = compare(outcome, _accepted(accepted))
+        comparison = compare(outcome, baseline)
         print_comparison(comparison, console())  # before anything else can go wrong
         write_diff(comparison, outcome, fresh, jobs)
     typer.echo(f"pictures: {out / 'diff' / 'index.html'}")
@@ -277,9 +279,10 @@ def accept(
     from replicate.terminal.differences import print_changes
 
     require_reason(reason)
+    baseline = _accepted(accepted)
     papers, selection = select(names or ())
     outcome = _recompute(papers, selection, jobs, out, no_cache)
-    comparison = accept_state(outcome, _accepted(accepted), reason)
+    comparison = accept_state(outcome, baseline, reason)
     print_changes(comparison, console())
     changes = len(comparison.changes)
     typer.echo(f"changes accepted: {changes}" if changes else "nothing differs from the accepted state")
@@ -366,4 +369,10 @@ def _exit_if_broken(outcome: Outcome) -> None:
 def _accepted(folder: Path | None) -> Path:
     from replicate.resources import accepted_dir
 
-    return folder or accepted_dir()
+    if folder is not None:
+        return folder
+    try:
+        return accepted_dir()
+    except FileNotFoundError as error:
+        msg = "the folder of the accepted state, figures, is missing: restore it, or name another with --accepted"
+        raise AcceptedStateError(msg) from error

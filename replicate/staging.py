@@ -70,6 +70,6 @@ def _swap(fresh: Path, target: Path, old: Path) -> None:
 
 def _unwritable(target: Path, error: OSError) -> OSError | OutputError:
     """Return the error to raise: one about another place, say a file that is read, is none of ours."""
-    if error.filename and not Path(error.filename).is_relative_to(target):
+    if error.errno is None or (error.filename and not Path(error.filename).is_relative_to(target)):
         return error
     return OutputError(f"{target}: cannot be written: {error.strerror or error}")

@@ -223,6 +223,18 @@ def test_check_fails_without_accepted_state(replicate: Run, tmp_path: Path) -> N
     assert "lab/table-1: has no accepted state: lab/table-1.csv is missing" in out
 
 
+@pytest.mark.parametrize("command", [("diff", "lab"), ("check", "lab"), ("accept", "lab", "--reason", "x")])
+def test_a_missing_folder_of_the_accepted_state(
+    replicate: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, command: tuple[str, ...]
+) -> None:
+    monkeypatch.setattr("replicate.resources._PACKAGE", tmp_path / "nowhere")
+    status, out, err = replicate(*command, "-j1")
+    assert (status, out) == (2, "")
+    assert err == (
+        "replicate: the folder of the accepted state, figures, is missing: restore it, or name another with --accepted\n"
+    )
+
+
 def test_an_exhibit_that_raises_breaks_check(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     check = ("check", "lab", "-j1", "--no-cache", "--accepted", accepted(replicate))
     monkeypatch.setenv("LAB_BREAKS", "1")
