@@ -374,5 +374,5 @@ def _accepted(folder: Path | None) -> Path:
     try:
         return accepted_dir()
     except FileNotFoundError as error:
-        msg = "the folder of the accepted state, figures, is missing: restore it, or name another with --accepted"
+        msg = "the folder of the accepted state, figures, is missing: restore it, or name another: --accepted"
         raise AcceptedStateError(msg) from error

@@ -231,7 +231,7 @@ def test_a_missing_folder_of_the_accepted_state(
     status, out, err = replicate(*command, "-j1")
     assert (status, out) == (2, "")
     assert err == (
-        "replicate: the folder of the accepted state, figures, is missing: restore it, or name another with --accepted\n"
+        "replicate: the folder of the accepted state, figures, is missing: restore it, or name another: --accepted\n"
     )
 
 
