@@ -13,7 +13,7 @@ from replicate.papers.panagopoulos import paper
 
 paper.load()
 
-from replicate.papers.panagopoulos.part_2 import example, feasible, filters, noise_figures, setpoint  # noqa: E402
+from replicate.papers.panagopoulos.part_2 import example, feasible, filters, noise_figures, rounding, setpoint  # noqa: E402
 from replicate.papers.panagopoulos.part_2.designs import optimal, pid_design, printed  # noqa: E402
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number  # noqa: E402
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split  # noqa: E402
@@ -179,3 +179,20 @@ def test_an_idle_phase_constraint_moves_no_optimum(row: str) -> None:
     stated, without = pid_design(row), pid_design(row, "curvature")
     assert [part.kind for part in stated.active] == ["sensitivity", "curvature"]
     assert stated.ki == pytest.approx(without.ki, rel=1e-8)
+
+
+def test_what_the_digits_leave_open() -> None:
+    frame = rounding._left_open("IIs-table-2")
+    # IE = Ti/k grows with Ti and falls with k: its ends are two corners
+    assert frame.loc["G8 Ms=1.4 IE", "low"] == pytest.approx(2.245 / 0.3125, rel=1e-12)
+    assert frame.loc["G8 Ms=1.4 IE", "high"] == pytest.approx(2.255 / 0.3115, rel=1e-12)
+    # b = sqrt(Td/Ti), (15)
+    assert frame.loc["G3 Ms=2.0 b", "low"] == pytest.approx((0.125 / 0.1895) ** 0.5, rel=1e-12)
+    assert frame.loc["G3 Ms=2.0 b", "high"] == pytest.approx((0.135 / 0.1885) ** 0.5, rel=1e-12)
+    # a random gain that rounds to the printed one is never outside
+    rng = np.random.default_rng(7)
+    for k, ti, td in rng.uniform([0.9815, 3.135, 1.725], [0.9825, 3.145, 1.735], (40, 3)):
+        s = 1j * np.geomspace(0.05, 1.0, 4001)
+        value = k * (1 + 1 / (ti * s) + td * s) / (s + 1) ** 7
+        assert frame.loc["G7 Ms=2.0 Mp", "low"] - 1e-6 <= np.max(np.abs(value / (1 + value)))
+        assert np.max(np.abs(value / (1 + value))) <= frame.loc["G7 Ms=2.0 Mp", "high"] + 1e-6

@@ -1,67 +1,102 @@
-"""What the printed digits leave open: G3, whose derivative time has two digits, and a sensitivity with two peaks."""
+"""What the printed digits leave open: columns that follow from the gains, and a sensitivity with two equal peaks.
+
+The gains are printed with two or three digits. A number that follows from them is only known to lie between its values
+over all gains that round to the printed ones; some of the formulas are much more sensitive than others.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from replicate.loops import PID, Loop
+from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import printed
-from replicate.papers.panagopoulos.part_2.processes import PLANTS, split
-from replicate.papers.panagopoulos.part_2.setpoint import Resonance, weight
-from replicate.papers.panagopoulos.part_2.tables import REPLACEMENT, SUPERSEDED
+from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
+from replicate.papers.panagopoulos.part_2.processes import LEVELS, PLANTS, ROW_LABELS, split
+from replicate.papers.panagopoulos.part_2.properties import LABELS
+from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected, weight
+from replicate.papers.panagopoulos.part_2.tables import GAINS, REPLACEMENT, SUPERSEDED, default_grid_peak
 
 if TYPE_CHECKING:
     import pandas as pd
 
-HALF_UNIT = 0.005  # of a derivative time with two decimals
-CASES = {
-    "superseded, Ms=1.4": (SUPERSEDED, "G3 Ms=1.4"),
-    "errata, Ms=1.4": (REPLACEMENT, "G3 Ms=1.4"),
-    "errata, Ms=2.0": (REPLACEMENT, "G3 Ms=2.0"),
+QUANTITIES: dict[str, Callable[[Plant, PID], float]] = {
+    "IE": lambda _, c: 1.0 / c.ki,
+    "IE/IAE": lambda plant, c: 1.0 / (c.ki * Loop(plant, c).load_step().iae()),
+    "b": lambda plant, c: weight(c, Resonance.of(plant, c)),
+    "Tsp": lambda plant, c: filter_corrected(c, default_grid_peak(plant, c)),
+    "w0": lambda plant, c: Loop(plant, c).sensitivity_peak().frequency,
+    "Mp": lambda plant, c: Resonance.of(plant, c).value,
+    "Ms": lambda plant, c: Loop(plant, c).sensitivity_peak().value,
 }
 
-ranges = paper.table(
-    "IIs-rounding",
-    "$G_3$: what two digits of $T_d$ leave open",
-    printed=False,
-    rows=tuple(CASES),
-    columns=("Ms_low", "Ms_high", "w0_low", "w0_high", "Mp_low", "Mp_high", "b_low", "b_high"),
-    caption="Smallest and largest value of each quantity over the derivative times that round to the printed "
-    "one, with the "
-    "printed $k$ and $T_i$.",
-    labels={
-        "superseded, Ms=1.4": "Table 1, $M_s = 1.4$",
-        "errata, Ms=1.4": "errata, $M_s = 1.4$",
-        "errata, Ms=2.0": "errata, $M_s = 2.0$",
-        "Ms_low": "$M_s$ from",
-        "w0_low": r"$\omega_0$ from",
-        "Mp_low": "$M_p$ from",
-        "b_low": "$b$ from",
-    }
-    | dict.fromkeys(("Ms_high", "w0_high", "Mp_high", "b_high"), "to"),
-)
+# the printed values that do not come out of the printed gains, and the sensitivity that they are for G3
+OPEN = {
+    SUPERSEDED: {
+        "IE": ("G1 Ms=2.0", "G2 Ms=2.0", "G4 Ms=1.4", "G5 Ms=2.0", "G6 Ms=2.0"),
+        "b": ("G3 Ms=1.4", "G8 Ms=1.4"),
+        "Tsp": ("G2 Ms=2.0", "G4 Ms=1.4", "G4 Ms=2.0", "G5 Ms=1.4", "G6 Ms=1.4", "G6 Ms=2.0", "G8 Ms=2.0"),
+        "w0": ("G3 Ms=1.4",),
+        "Mp": ("G2 Ms=2.0", "G3 Ms=1.4", "G4 Ms=2.0"),
+        "Ms": ("G3 Ms=1.4",),
+    },
+    REPLACEMENT: {
+        "IE": ("G1 Ms=1.4", "G8 Ms=1.4"),
+        "IE/IAE": ("G1 Ms=2.0", "G3 Ms=2.0", "G4 Ms=1.4", "G4 Ms=2.0"),
+        "b": ("G3 Ms=2.0",),
+        "w0": ("G3 Ms=1.4", "G3 Ms=2.0"),
+        "Mp": ("G3 Ms=1.4", "G3 Ms=2.0", "G7 Ms=2.0"),
+        "Ms": tuple(f"G3 Ms={ms}" for ms in LEVELS),
+    },
+}
 
 
-@ranges.reading("as-written", "From the printed gains")
-def over_the_rounding() -> pd.DataFrame:
-    """Return the range of each quantity over the rounding of Td."""
+def gains_that_round(table: str, row: str) -> list[PID]:
+    """Return the controllers in the middle, at the corners and on the edges of what rounds to the printed gains."""
+    cells = paper.printed_cells(table)
+    steps = []
+    for column in GAINS:
+        text = cells[row, column]
+        half = 0.5 * 10.0 ** -len(text.partition(".")[2])
+        steps.append([float(text) + side * half for side in (-1.0, 0.0, 1.0)])
+    return [PID.ideal(*gains) for gains in product(*steps)]
+
+
+def _left_open(table: str) -> pd.DataFrame:
     import pandas as pd
 
     rows = {}
-    for key, (table, row) in CASES.items():
-        plant, center = PLANTS["G3"], printed(table, row)
-        found = []
-        for td in np.linspace(center.derivative_time - HALF_UNIT, center.derivative_time + HALF_UNIT, 21):
-            controller = PID.ideal(center.k, center.integral_time, float(td))
-            peak = Loop(plant, controller).sensitivity_peak()
-            resonance = Resonance.of(plant, controller)
-            found.append((float(peak), peak.frequency, resonance.value, weight(controller, resonance)))
-        low, high = np.min(found, axis=0), np.max(found, axis=0)
-        rows[key] = [float(v) for pair in zip(low, high, strict=True) for v in pair]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(ranges.columns))
+    for quantity, where in OPEN[table].items():
+        for row in where:
+            name, ms = split(row)
+            values = [QUANTITIES[quantity](PLANTS[name], c) for c in gains_that_round(table, row)]
+            text = ms if quantity == "Ms" else printed_number(table, row, quantity)
+            rows[f"{row} {quantity}"] = {"low": min(values), "printed": text, "high": max(values)}
+    return pd.DataFrame.from_dict(rows, orient="index")
+
+
+for _id, _table, _name in (("II-rounding", SUPERSEDED, "Table 1"), ("IIs-rounding", REPLACEMENT, "the errata")):
+    paper.table(
+        _id,
+        f"What the digits of the gains in {_name} leave open",
+        printed=False,
+        rows=tuple(f"{row} {quantity}" for quantity, where in OPEN[_table].items() for row in where),
+        columns=("low", "printed", "high"),
+        caption="The print, and the smallest and largest value over all $k$, $T_i$ and $T_d$ that round to the "
+        "printed ones, for columns that the printed gains do not give to the last digit. The print is rounded too: it "
+        "may stand outside by half a unit. $T_{sp}$ is (16) over $\\omega_{mp}$ on Matlab's default grid.",
+        labels={"low": "from", "printed": "printed", "high": "to"}
+        | {
+            f"{row} {quantity}": f"{(LABELS | {'Ms': '$M_s$'})[quantity]}, {ROW_LABELS[row]}"
+            for quantity, where in OPEN[_table].items()
+            for row in where
+        },
+    ).reading("as-written", "From the printed gains")(partial(_left_open, _table))
 
 
 TWO_PEAKS = "G8 Ms=1.4"
