@@ -67,13 +67,14 @@ def as_written() -> pd.DataFrame:
         m = float(m_of_gamma(gamma))
         circle = combined_circle(m)
         distance = np.abs(curve + circle.center) / circle.radius
-        touch = curve[np.argmax(distance)]
+        # the distance is flat there: of all points that are the farthest, up to rounding, the contour's first, A
+        touch = curve[np.argmax(distance >= distance.max() - 10.0**-DECIMALS)]
         inner_m = 0.5 * (gamma + 1.0)
         inner = combined_circle(inner_m)
         # what is zero up to rounding is shown as zero
         rows[f"{gamma:g}"] = [
             round(float(np.max(np.abs(gamma_at(curve) / gamma - 1.0))), DECIMALS),
-            abs(touch),
+            round(float(abs(touch)), DECIMALS),
             points.ob, points.oc, points.od, points.ac, points.ob * points.od,
             float(np.degrees(points.phase_of_a)),
             m, float(gamma_of_m(m)),

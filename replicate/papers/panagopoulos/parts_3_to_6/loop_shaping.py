@@ -96,6 +96,7 @@ def contour(gamma: float, points: int = 721) -> ComplexArray:
     phase = start + (np.pi - start) * np.linspace(0.0, 1.0, points) ** 2
     c = (gamma**2 * np.cos(phase) - 1.0) / (gamma**2 - 1.0)
     root = np.sqrt(np.maximum(c**2 - 1.0, 0.0))
+    root[0] = 0.0  # c = -1 at A; its rounding error would come out as its square root
     inner, outer = 1.0 / (-c + root), -c + root
     turn = np.exp(1j * phase)
     upper_in, upper_out = inner * turn, outer * turn
