@@ -21,7 +21,7 @@ from replicate.capture import capture, read_figure
 from replicate.diff.axes import compare_axes
 from replicate.diff.comparison import ExhibitDiff
 from replicate.diff.curves import compare_curves
-from replicate.diff.distance import distances
+from replicate.diff.distance import distances, exact_distances
 from replicate.diff.values import WINDOW, compare_values
 from replicate.exhibits import Figure
 
@@ -313,7 +313,10 @@ def test_the_distance_is_that_of_many_points(seed: int) -> None:
         return np.vstack(pieces)
 
     expected = KDTree(many(other)).query(many(one))[0].max()
-    assert distances(one, other, 1e-4).largest == pytest.approx(expected, abs=2e-3 / 2)
+    found = distances(one, other, 1e-4)
+    assert found.largest == pytest.approx(expected, abs=2e-3 / 2)
+    exact = KDTree(many(other)).query(found.points)[0]
+    assert exact_distances(found, other) == pytest.approx(exact, abs=1e-3)
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -340,6 +340,24 @@ def test_the_page_tells_a_verdict_once(diff: Run) -> None:
     assert index().count(" → ") == 1
 
 
+def test_the_page_strikes_out_only_what_changed(diff: Run) -> None:
+    def other_print(rows: list[list[str]]) -> None:
+        for row in rows:
+            if row[:2] == ["2", "root"]:
+                row[4] = "1.415"
+
+    edit("table-1.csv", other_print)
+    assert "lab/table-1: 2 root printed 1.415 -> 1.414" in diff()[1]
+    assert "<del>" not in index()
+    assert "printed 1.415 → 1.414" in index()
+
+
+def test_the_page_draws_no_figure_for_a_missing_picture(diff: Run) -> None:
+    (Path("accepted/lab") / "fig-1.png").unlink()
+    assert "lab/fig-1: its picture for people, lab/fig-1.png, is missing; 1 curve unchanged" in diff()[1]
+    assert "<svg" not in index()
+
+
 def test_accepting_what_differs(diff: Run, replicate: Run) -> None:
     edit("fig-1.csv", lift)
     edit("table-1.csv", other_value)

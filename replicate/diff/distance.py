@@ -87,6 +87,15 @@ def distances(one: Points, other: Points, exact_above: float, view: Array | None
     return Distances(points, distance)
 
 
+def exact_distances(found: Distances, other: Points) -> Array:
+    """Return the exact distance of every one of the points that were measured, for a picture of them."""
+    starts, ends = _segments(other)
+    if not len(starts):
+        return found.distance
+    chunks = [found.points[first : first + _CHUNK] for first in range(0, len(found.points), _CHUNK)]
+    return np.concatenate([distance_to_segments(chunk, starts, ends).min(axis=1) for chunk in chunks])
+
+
 def point_distances(one: Points, other: Points, view: Array | None = None) -> Distances:
     """Return the distance of every point of one set from the nearest of another."""
     points, targets = _in_view(one[finite(one)], view), other[finite(other)]

@@ -25,12 +25,14 @@ _MOST_CELLS = 200
 
 @dataclass(frozen=True)
 class CellRow:
-    """A changed cell as the template sees it."""
+    """A changed cell as the template sees it: both computed values, also if only what is said of them changed."""
 
     cell: CellChange
     before: str
     after: str
+    moved: bool
     size: str
+    printed: tuple[str, str]  # empty where the print is as it was
     verdicts: tuple[str, str]  # empty where the verdict is as it was
 
 
@@ -66,7 +68,7 @@ def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> s
     """
     papers = {paper.id: paper for paper in outcome.papers}
     names = {diff.name: _name(diff, papers.get(diff.paper)) for diff in comparison.changed}
-    figures = [(diff, names[diff.name][0] or diff.name) for diff in comparison.changed if diff.pairs]
+    figures = [(diff, names[diff.name][0] or diff.name) for diff in comparison.changed if _has_pictures(diff)]
     drawn = draw_all(figures[:MOST_FIGURES], jobs)
     drawings = {diff.name: pictures for (diff, _), pictures in zip(figures, drawn, strict=False)}
     views = [
@@ -82,6 +84,11 @@ def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> s
     return render("diff.html", "diff/index.html", comparison=comparison, summary=summary(comparison), views=views)
 
 
+def _has_pictures(diff: ExhibitDiff) -> bool:
+    """Whether it is a figure, and not just a file is missing."""
+    return bool(diff.pairs) and any(change.kind != "new" or change.where != "picture" for change in diff.changes)
+
+
 def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:
     exhibit = paper.exhibits.get(diff.exhibit) if paper else None
     return heading(diff.exhibit, exhibit.title if exhibit else "")
@@ -91,11 +98,14 @@ def _row(cell: CellChange) -> CellRow:
     before, after = cell.before or {}, cell.after or {}
     values = before.get("computed", ""), after.get("computed", "")
     size = relative(*values) if "computed" in cell.columns else None
-    verdicts = (before.get("verdict", ""), after.get("verdict", ""))
+    printed, verdicts = ((before.get(name, ""), after.get(name, "")) for name in ("printed", "verdict"))
     small = size is not None and abs(size) < 1.0
+    nothing = ("", "")
     return CellRow(
         cell,
         *values,
+        "computed" in cell.columns or not cell.columns,
         f"{'+' if size > 0 else '−'}{percent(abs(size))}" if small and size is not None else "",
-        verdicts if "verdict" in cell.columns or not cell.columns else ("", ""),
+        printed if "printed" in cell.columns else nothing,
+        verdicts if "verdict" in cell.columns or not cell.columns else nothing,
     )

@@ -16,7 +16,8 @@ from replicate.accepted import FigureState
 from replicate.capture import svg_text
 from replicate.diff.axes import matched_panels, symbol
 from replicate.diff.curves import Pair
-from replicate.diff.scaling import finite, from_units
+from replicate.diff.distance import exact_distances
+from replicate.diff.scaling import finite, from_units, in_units
 from replicate.simplify import Points
 
 if TYPE_CHECKING:
@@ -132,7 +133,10 @@ def _draw_values(axes: Axes, pair: Pair) -> None:
 def _draw_distance(axes: Axes, pair: Pair) -> None:
     found = pair.distance[0]
     along = np.linspace(0.0, 100.0, len(found.distance)) if len(found.distance) > 1 else np.zeros(1)
-    drawn = np.where(np.isfinite(found.distance), found.distance, np.nan)
+    # Scattered points are measured from each other, not from lines between them.
+    scattered = pair.name in pair.axes.get("points", ())
+    distance = found.distance if scattered else exact_distances(found, in_units(pair.before, pair.axes))
+    drawn = np.where(np.isfinite(distance), distance, np.nan)
     axes.axhspan(0.0, 100.0 * pair.tolerance, color=plotstyle.PALETTE[2], alpha=0.25, linewidth=0.0)
     if len(drawn):
         axes.plot(along, 100.0 * drawn, color=NEW, linewidth=1.2)
