@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 import synthetic
 
+import replicate
 from replicate.discovery import find_paper, known_papers
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exercises import Exercises
@@ -17,9 +19,11 @@ from replicate.handout import build_handouts, with_handout
 from replicate.handout.edition import Document, edition
 from replicate.handout.formulas import convert
 from replicate.handout.printout import markup, pdf
+from replicate.handout.row_heads import with_row_heads
+from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
 from replicate.ledger import Ledger
-from replicate.outcome import Outcome, recompute
+from replicate.outcome import recompute
 from replicate.records import FigureResult, Results, TableResult
 from replicate.verdicts import judge
 
@@ -90,59 +94,132 @@ def make(tmp_path: Path) -> Make:
     return document
 
 
-@pytest.fixture(scope="module")
-def bayhan() -> Outcome:
-    paper = find_paper("bayhan")
-    asked = [("bayhan", id) for id in ("table-2", "fig-2", "sample-grid", "match-count", "claims")]
-    return recompute([paper], asked, jobs=1, cache_dir=None)
+# What each handout asks for; computing the other exhibits of the papers would take minutes.
+ASKED = {
+    "ali": ("table-1", "ms-count", "stability", "fig-1"),
+    "bayhan": ("table-2", "fig-2", "sample-grid", "match-count", "claims"),
+    "khan": ("table-1", "table-2", "eq-7", "lost-zeros", "fig-8a"),
+    "krajewski": ("table-1", "table-1-errors", "table-1-residuals", "fig-5"),
+    "panagopoulos": ("I-table-1", "I-table-2", "I-settling", "I-fig-2"),
+}
+# A computed value that the text of each handout quotes: exhibit, row, column.
+QUOTED = {
+    "ali": ("table-1", "0.9", "Ms"),
+    "bayhan": ("table-2", "ITAESPC", "settling_time"),
+    "khan": ("table-1", "Bryant", "td"),
+    "krajewski": ("table-1-residuals", "sum", "45"),
+    "panagopoulos": ("I-settling", "G6 Ms=2.0", "within_5"),
+}
+COMPUTED = 98.765432  # in place of the value; no handout has a number like it
+
+
+class Made:
+    """A real paper with the results that its handout needs, and both editions of it."""
+
+    def __init__(self, id: str) -> None:
+        self.outcome = recompute([find_paper(id)], [(id, exhibit) for exhibit in ASKED[id]], jobs=1, cache_dir=None)
+        self.documents = {solutions: self.edition(solutions=solutions) for solutions in (False, True)}
+        self.pdfs = {solutions: pdf(document) for solutions, document in self.documents.items()}
+
+    def edition(self, results: Results | None = None, *, solutions: bool) -> Document:
+        outcome = self.outcome
+        return edition(outcome.papers[0], results or outcome.results, outcome.judgement.verdicts, solutions=solutions)
+
+
+@pytest.fixture(scope="module", params=sorted(ASKED))
+def made(request: pytest.FixtureRequest) -> Made:
+    return Made(request.param)
 
 
 def pages(content: bytes) -> int:
     return len(re.findall(rb"/Type\s*/Page\b", content))
 
 
-# --------------------------------------------------------------------------------------------------- a real handout
+# -------------------------------------------------------------------------------------------------- the real handouts
 
 
-def test_a_real_handout(bayhan: Outcome, tmp_path: Path) -> None:
-    verdicts = bayhan.judgement.verdicts
-    first = build_handouts(bayhan.papers, bayhan.results, verdicts, tmp_path / "first")
-    assert [path.name for path in first] == ["bayhan.pdf", "bayhan-solutions.pdf"]
-    again = build_handouts(bayhan.papers, bayhan.results, verdicts, tmp_path / "second")
-    for path, other in zip(first, again, strict=True):
-        content = path.read_bytes()
-        assert content == other.read_bytes()
+def test_every_paper_is_tested() -> None:
+    assert set(ASKED) == set(QUOTED) == set(known_papers())
+
+
+def test_pages(made: Made) -> None:
+    for content in made.pdfs.values():
         assert 2 <= pages(content) <= 6
         assert set(re.findall(rb"/MediaBox\s*\[([^]]*)\]", content)) == {b"0 0 595.2756 841.8898"}  # A4
-        assert b"<pdfuaid:part>1</pdfuaid:part>" in content
+
+
+def test_pdfs_are_accessible_and_say_where_they_come_from(made: Made) -> None:
+    paper = made.outcome.papers[0]
+    for solutions, content in made.pdfs.items():
+        metadata = content.partition(b"<x:xmpmeta")[2].partition(b"</x:xmpmeta>")[0].decode()
+        assert "<pdfuaid:part>1</pdfuaid:part>" in metadata
+        assert ">en-GB<" in metadata
+        assert f">{made.documents[solutions].title}{' (with solutions)' if solutions else ''}<" in metadata
+        assert paper.citation in html.unescape(metadata)
+        assert f"replicate {replicate.__version__}" in metadata
+        assert b"/Marked true" in content
+        fonts = re.findall(rb"/Type/FontDescriptor.*?>>", content, re.DOTALL)
+        assert fonts
+        assert all(re.search(rb"/FontFile[23]?\b", font) for font in fonts)
+        spoken = re.findall(rb"/Type/StructElem/S/(?:Figure|Formula)\b.*?endobj", content, re.DOTALL)
+        assert len(spoken) > 20
+        assert all(re.search(rb"/Alt[(<]", element) for element in spoken)
+
+
+def test_tables_have_heads_for_columns_and_rows(made: Made) -> None:
+    tables = [element for element in elements(made.documents[False].blocks) if element["t"] == "Table"]
+    content = made.pdfs[False]
+    assert len(tables) >= 1
+    assert content.count(b"/Scope/Row") == sum(len(table["c"][4][0][3]) for table in tables)
+    assert content.count(b"/Scope/Column") == sum(len(row[1]) for table in tables for row in table["c"][3][1])
+    update = content.rpartition(b"startxref\n")[2]
+    assert content[int(update.split()[0]) :].startswith(b"xref\n")
+    for number, place in re.findall(rb"^(\d+) 1\n(\d{10}) 00000 n $", content, re.MULTILINE):
+        assert content[int(place) :].startswith(b"%d 0 obj\n" % int(number))
+
+
+def test_the_same_results_are_the_same_bytes(made: Made, tmp_path: Path) -> None:
+    outcome = made.outcome
+    verdicts = outcome.judgement.verdicts
+    written = build_handouts(outcome.papers, outcome.results, verdicts, tmp_path, solutions=[True])
+    assert [path.name for path in written] == [f"{outcome.papers[0].id}-solutions.pdf"]
+    assert written[0].read_bytes() == made.pdfs[True]
+    for content in made.pdfs.values():
         assert b"CreationDate" not in content
         assert b"ModDate" not in content
 
 
-def test_nothing_is_left_unresolved(bayhan: Outcome) -> None:
-    for solutions in (False, True):
-        document = edition(bayhan.papers[0], bayhan.results, bayhan.judgement.verdicts, solutions=solutions)
+def test_nothing_is_left_unresolved(made: Made) -> None:
+    for solutions, document in made.documents.items():
         for text in (markup(document), webpage(document)):
             assert not re.search(r"\{\{|\{%|Undefined|\bnan\b|[\ue000-\uf8ff]", text)
             assert text.count("Exercise ") >= 5
         assert ("#solution[" in markup(document)) is solutions
 
 
-def test_a_changed_result_changes_the_handout(bayhan: Outcome) -> None:
-    def text(results: Results) -> str:
-        return markup(edition(bayhan.papers[0], results, bayhan.judgement.verdicts, solutions=True))
+def test_a_web_page_fetches_nothing(made: Made) -> None:
+    for document in made.documents.values():
+        page = webpage(document)
+        assert "<script" not in page
+        assert not re.search(r"<(?:link|iframe|img|object)\b|@import|url\((?!#)", page)
+        assert not [target for target in re.findall(r"""(?:href|src)=["']([^"']*)""", page) if target[:1] != "#"]
 
-    table = bayhan.results["bayhan", "table-2"]
+
+def test_a_changed_result_changes_the_handout(made: Made, monkeypatch: pytest.MonkeyPatch) -> None:
+    id = made.outcome.papers[0].id
+    exhibit, row, column = QUOTED[id]
+    table = made.outcome.results[id, exhibit]
     assert isinstance(table, TableResult)
     frame = table.frames["as-written"].copy()
-    frame.loc["ITAESPC", "settling_time"] = 98.765432
-    changed: Results = {
-        **bayhan.results,
-        ("bayhan", "table-2"): replace(table, frames={**table.frames, "as-written": frame}),
-    }
-    assert "98.8" not in text(bayhan.results)
-    assert "98.8" in text(changed)  # in the prose, with three digits
-    assert "98.76543" in text(changed)  # in the table, with one digit more than the print
+    assert (row in frame.index, column in frame.columns) == (True, True)
+    frame.loc[row, column] = COMPUTED
+    frames = {**table.frames, "as-written": frame}
+    changed: Results = {**made.outcome.results, (id, exhibit): replace(table, frames=frames)}
+    drawing = next(result for result in made.outcome.results.values() if isinstance(result, FigureResult))
+    monkeypatch.setattr("replicate.capture.capture", lambda *_: drawing)  # the figures are not what changes here
+    before, after = markup(made.documents[False]), markup(made.edition(changed, solutions=False))
+    assert not re.search(r"\b98\.[78]", before)
+    assert re.search(r"\b98\.(?:8|77|765)\b", after)  # in the prose, with the digits of the sentence
 
 
 @pytest.mark.parametrize("id", sorted(known_papers()))
@@ -238,6 +315,11 @@ HEAD = "# Toy\n\n{% for i in [1, 2] %}\nA line.\n\n{% endfor %}\n{{ table('table
 def test_errors_name_the_place(make: Make, text: str, message: str) -> None:
     with pytest.raises(TemplateError, match=message):
         pdf(make(HEAD + text))
+
+
+def test_row_heads_that_are_not_found_are_an_error() -> None:
+    with pytest.raises(ValueError, match="0 row heads in the tables of the PDF, expected: 3"):
+        with_row_heads(b"%PDF-1.7\ntrailer\n<</Size 1>>\nstartxref\n9\n%%EOF", rows=3)
 
 
 def test_a_handout_begins_with_its_title(make: Make) -> None:

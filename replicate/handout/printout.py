@@ -11,6 +11,7 @@ import json
 import re
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import pypandoc
 import typst
@@ -18,7 +19,17 @@ import typst
 import replicate
 from replicate.errors import TemplateError
 from replicate.handout.edition import FILE, Document
-from replicate.handout.tree import Blocks, Element, attribute, classes, raw_block, raw_inline, transform
+from replicate.handout.row_heads import with_row_heads
+from replicate.handout.tree import (
+    Blocks,
+    Element,
+    attribute,
+    classes,
+    elements,
+    raw_block,
+    raw_inline,
+    transform,
+)
 from replicate.resources import templates_dir
 
 TEMPLATE = "handout.typ"
@@ -57,7 +68,12 @@ def pdf(document: Document) -> bytes:
     if warnings:
         raise _failed(name, warnings[0], text)
     assert isinstance(made, bytes)  # noqa: S101  -- for the type checker: one PDF, not a list of pages
-    return made
+    rows = sum(len(_rows(element)) for element in elements(document.blocks) if element["t"] == "Table")
+    try:
+        return with_row_heads(made, rows)
+    except ValueError as error:
+        msg = f"{name}: {error}"
+        raise TemplateError(msg) from error
 
 
 def markup(document: Document) -> str:
@@ -94,6 +110,12 @@ def quoted(text: str) -> str:
     return f'"{escaped}"'
 
 
+def _rows(table: Element) -> list[Any]:
+    """Return the rows of a table of pandoc's tree, those of its head not among them."""
+    body = table["c"][4][0]
+    return list(body[3])
+
+
 def _for_typst(element: Element, document: Document) -> list[Element] | None:
     """Replace what pandoc has no Typst for by calls of the template's functions."""
     match element["t"]:
@@ -128,7 +150,7 @@ def _block(element: Element, document: Document) -> Blocks | None:
         return [raw_block("typst", call), *content, raw_block("typst", "]")]
     if "exhibit" in found:
         table, *caption = content
-        long = "true" if len(table["c"][4][0][3]) > _LONG else "false"
+        long = "true" if len(_rows(table)) > _LONG else "false"
         group = max(cell[3] for cell in table["c"][3][1][0][1])  # columns under one head
         return [
             raw_block("typst", f"#exhibit({long}, {group})["),
