@@ -356,6 +356,15 @@ def test_the_page_draws_no_figure_for_a_missing_picture(diff: Run) -> None:
     (Path("accepted/lab") / "fig-1.png").unlink()
     assert "lab/fig-1: its picture for people, lab/fig-1.png, is missing; 1 curve unchanged" in diff()[1]
     assert "<svg" not in index()
+    assert "No pictures here" not in index()
+
+
+def test_the_page_says_where_one_figure_too_many_is_drawn(diff: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("replicate.diff.page.MOST_FIGURES", 0)
+    edit("fig-1.csv", lift)
+    diff()
+    assert "<svg" not in index()
+    assert "<code>replicate diff lab/fig-1</code> draws this one" in index()
 
 
 def test_accepting_what_differs(diff: Run, replicate: Run) -> None:

@@ -38,7 +38,7 @@ class CellRow:
 
 @dataclass(frozen=True)
 class DiffView:
-    """A changed exhibit as the template sees it; `drawings` is missing for one that is no figure, or one too many."""
+    """A changed exhibit as the template sees it; one that is no figure, or one too many, has no `drawings`."""
 
     diff: ExhibitDiff
     label: str
@@ -46,6 +46,7 @@ class DiffView:
     drawings: Drawings | None = None
     cells: list[CellRow] = field(default_factory=list)
     more_cells: int = 0
+    too_many: bool = False
 
     @property
     def id(self) -> str:
@@ -78,6 +79,7 @@ def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> s
             drawings.get(diff.name),
             [_row(cell) for cell in diff.cells[:_MOST_CELLS]],
             max(0, len(diff.cells) - _MOST_CELLS),
+            too_many=diff.name not in drawings and _has_pictures(diff),
         )
         for diff in comparison.changed
     ]
