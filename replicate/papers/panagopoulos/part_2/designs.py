@@ -13,12 +13,11 @@ from replicate.loops import PI, PID, PIDDesign, PIDesign, design_pi, design_pid
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_pid
 from replicate.papers.panagopoulos.part_2.processes import NEAR_INTEGRATING, PLANTS, split
 
-Problem = Literal["stated", "ms-only", "phase", "curvature", "curvature-phase"]
+Problem = Literal["stated", "ms-only", "phase", "curvature-phase"]
 
 _CONSTRAINTS: dict[Problem, tuple[Literal["curvature", "phase"], ...]] = {
     "ms-only": (),
     "phase": ("phase",),
-    "curvature": ("curvature",),
     "curvature-phase": ("curvature", "phase"),
 }
 
