@@ -27,8 +27,9 @@ def replicate(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, cap
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setenv("NO_COLOR", "1")
-    monkeypatch.delenv("COLUMNS", raising=False)
-    monkeypatch.delenv("GITHUB_STEP_SUMMARY", raising=False)  # that of the job that runs the tests
+    # The terminal is that of the tests, and the summary that of the job that runs them.
+    for name in ("COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "GITHUB_STEP_SUMMARY"):
+        monkeypatch.delenv(name, raising=False)
 
     def run(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["replicate", *arguments])
