@@ -227,7 +227,11 @@ def test_every_handout_has_exercises_with_solutions(id: str) -> None:
     text = (known_papers()[id].folder() / "handout.md").read_text(encoding="utf-8")
     exercises = text.split("::: exercise\n")[1:]
     assert len(exercises) >= 5
-    assert all(exercise.count("::: solution\n") == 1 for exercise in exercises)
+    for exercise in exercises:
+        question, _, solution = exercise.partition("::: solution\n")
+        assert solution
+        assert "::: solution\n" not in solution
+        assert ('{tool="Python' in question) == ("{.python .run}" in solution)  # programs are answered by programs
     assert "from replicate.loops import" in text
     assert "## What the paper got wrong, and how we know" in text
 
