@@ -28,11 +28,11 @@ class Circle:
         Raises
         ------
         LoopError
-            If neither bound is given or a bound is not greater than one.
+            If neither bound is given or a bound is not finite and greater than one.
         """
         for name, bound in (("ms", ms), ("mp", mp)):
-            if bound is not None and not bound > 1.0:
-                msg = f"{name} must be greater than 1, not {bound}"
+            if bound is not None and not 1.0 < bound < float("inf"):
+                msg = f"{name} must be finite and greater than 1, not {bound}"
                 raise LoopError(msg)
         if ms is not None and mp is not None:
             left, right = mp / (mp - 1.0), (ms - 1.0) / ms

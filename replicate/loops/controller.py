@@ -45,7 +45,8 @@ class PID:
     Raises
     ------
     LoopError
-        If a gain is not finite, a time constant is negative or the filter order is not 1 or 2.
+        If a gain is not finite, a time constant is negative, the filter order is not 1 or 2, or the set-point filter is
+        not proper and stable.
     """
 
     k: float
@@ -67,9 +68,7 @@ class PID:
             if not (np.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
                 msg = f"the controller's {name} must be a time constant >= 0, not {getattr(self, name)}"
                 raise LoopError(msg)
-        if isinstance(self.setpoint_filter, int | float) and not self.setpoint_filter >= 0.0:
-            msg = f"the controller's setpoint_filter must be a time constant >= 0, not {self.setpoint_filter}"
-            raise LoopError(msg)
+        _check_setpoint_filter(self.setpoint_filter)
         if self.measurement_filter_order not in (1, 2):
             msg = f"the order of the measurement filter must be 1 or 2, not {self.measurement_filter_order}"
             raise LoopError(msg)
@@ -91,7 +90,7 @@ class PID:
         r"""Return :math:`K (1 + 1/(sT_i) + s T_d)`; ``integral_time=inf`` switches the integral part off."""
         return cls(
             gain,
-            gain / integral_time,
+            gain / _checked_time("integral_time", integral_time),
             gain * derivative_time,
             b=b,
             c=c,
@@ -125,7 +124,7 @@ class PID:
         True
         """
         lag = alpha * derivative_time
-        k = gain * (1.0 + (derivative_time - lag) / integral_time)
+        k = gain * (1.0 + (derivative_time - lag) / _checked_time("integral_time", integral_time))
         return cls(k, gain / integral_time, gain * derivative_time - k * lag, b=b, c=c, derivative_filter=lag)
 
     @property
@@ -177,8 +176,8 @@ class PID:
     def setpoint_filter_polynomials(self) -> tuple[Array, Array]:
         """Return (num, den) of the set-point filter."""
         if isinstance(self.setpoint_filter, tuple):
-            num, den = self.setpoint_filter
-            return np.atleast_1d(np.asarray(num, dtype=float)), np.atleast_1d(np.asarray(den, dtype=float))
+            num, den = (np.trim_zeros(np.atleast_1d(np.asarray(p, dtype=float)), "f") for p in self.setpoint_filter)
+            return num, den
         if self.setpoint_filter:
             return np.array([1.0]), np.array([float(self.setpoint_filter), 1.0])
         return np.array([1.0]), np.array([1.0])
@@ -196,6 +195,34 @@ class PID:
         integral = self.ki / s if self.ki else 0.0
         derivative = self.kd * self.c * s / (1.0 + s * self.derivative_filter)
         return np.asarray((self.b * self.k + integral + derivative) * np.polyval(num, s) / np.polyval(den, s))
+
+
+def _check_setpoint_filter(setpoint_filter: object) -> None:
+    if not isinstance(setpoint_filter, tuple):
+        if not (np.isscalar(setpoint_filter) and np.isreal(setpoint_filter) and 0.0 <= float(setpoint_filter) < np.inf):  # type: ignore[arg-type]
+            msg = f"the controller's setpoint_filter must be a time constant >= 0 or (num, den), not {setpoint_filter}"
+            raise LoopError(msg)
+        return
+    try:
+        num, den = (np.trim_zeros(np.atleast_1d(np.asarray(part, dtype=float)), "f") for part in setpoint_filter)
+    except (TypeError, ValueError):
+        num = den = np.empty(0)
+    if not (num.size and den.size and np.isfinite(num).all() and np.isfinite(den).all()):
+        msg = f"the controller's setpoint_filter must be two non-zero polynomials (num, den), not {setpoint_filter}"
+    elif num.size > den.size:
+        msg = f"the controller's setpoint_filter must be proper: degree {num.size - 1} over degree {den.size - 1}"
+    elif np.any(np.roots(den).real >= 0.0):
+        msg = f"the controller's setpoint_filter must be stable: {den.tolist()} has a root with Re s >= 0"
+    else:
+        return
+    raise LoopError(msg)
+
+
+def _checked_time(name: str, value: float) -> float:
+    if value == 0.0 or np.isnan(value):
+        msg = f"the controller's {name} must be a number other than 0 (inf switches the integral part off), not {value}"
+        raise LoopError(msg)
+    return value
 
 
 class PI(PID):
@@ -224,4 +251,4 @@ class PI(PID):
     @classmethod
     def from_integral_time(cls, gain: float, integral_time: float, b: float = 1.0) -> PI:
         """Return the PI controller ``K (1 + 1/(s Ti))``."""
-        return cls(gain, gain / integral_time, b)
+        return cls(gain, gain / _checked_time("integral_time", integral_time), b)

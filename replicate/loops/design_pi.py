@@ -94,6 +94,8 @@ class PIDesign:
 def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) -> PIDesign:
     """Return the PI controller with the largest ki whose loop stays outside a circle and is stable.
 
+    For a plant whose gain is negative, k and ki are those of the plant with its sign changed, times -1.
+
     Parameters
     ----------
     plant
@@ -116,6 +118,8 @@ def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) ->
     True
     """
     circle = Circle.of(ms, mp)
+    if gain_is_negative(plant):
+        return _mirrored(design_pi(-plant, ms, mp))
     w = design_grid(plant)
     solutions: list[PIDesign] = []
     for maximum in _local_maxima(plant, circle, w):
@@ -133,6 +137,18 @@ def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) ->
     return replace(ordered[0], solutions=tuple(ordered))
 
 
+def gain_is_negative(plant: Plant) -> bool:
+    """Whether only a negative ki can stabilise the plant: the characteristic function at s = 0 has the sign of ki G."""
+    if plant.is_rational:
+        return bool(plant.num[-1] < 0.0)  # the denominator is monic
+    return bool(plant.delay_free(design_grid(plant)[0]).real < 0.0)
+
+
+def _mirrored(design: PIDesign) -> PIDesign:
+    solutions = tuple(_mirrored(solution) for solution in design.solutions if solution is not design)
+    return replace(design, k=-design.k, ki=-design.ki, solutions=solutions)
+
+
 def setpoint_weight(plant: Plant, k: float, ki: float, *, at: tuple[float, float] | None = None) -> float:
     """Return the set-point weight b in [0, 1] that makes |G_sp| = 1 at a frequency (25).
 
@@ -141,7 +157,7 @@ def setpoint_weight(plant: Plant, k: float, ki: float, *, at: tuple[float, float
     at
         (frequency, |T| there); by default the peak of the complementary sensitivity, as the paper's text says (24).
     """
-    if k <= 0.0:
+    if k * ki <= 0.0:
         return 0.0
     if at is None:
         peak = Loop(plant, PI(k, ki)).complementary_peak()
@@ -150,7 +166,7 @@ def setpoint_weight(plant: Plant, k: float, ki: float, *, at: tuple[float, float
     if m <= 1.0 or w == 0.0:
         return 1.0
     inside = (k * w) ** 2 - ki**2 * (m**2 - 1.0)
-    return min(1.0, float(np.sqrt(inside) / (k * w * m))) if inside >= 0.0 else 0.0
+    return min(1.0, float(np.sqrt(inside) / (abs(k) * w * m))) if inside >= 0.0 else 0.0
 
 
 def smooth_condition(plant: Plant, circle: Circle, w: Array) -> Array:

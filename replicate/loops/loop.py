@@ -90,10 +90,16 @@ class Loop:
 
         Modes that cancel in the set-point response (plant poles cancelled by controller zeros) are included.
         """
+        if self._poles.size == 0:
+            msg = "a static loop has no poles; give a horizon to get its response"
+            raise LoopError(msg)
         return complex(self._poles[0])
 
     def poles(self, count: int = 4) -> ComplexArray:
-        """Return the ``count`` rightmost closed-loop poles, descending real part, one of each conjugate pair."""
+        """Return up to ``count`` rightmost closed-loop poles, descending real part, one of each conjugate pair."""
+        if count < 1:
+            msg = f"the number of poles must be at least 1, not {count}"
+            raise LoopError(msg)
         return poles.rightmost_poles(self.plant, self.controller, self.transfer, count=count)
 
     def _require_stable(self, what: str) -> None:
@@ -138,7 +144,14 @@ class Loop:
         if not self.plant.is_rational:
             # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
             return TAIL / abs(self.rightmost_pole().real)
-        return SETTLED / abs(self.rightmost_pole().real) + 4.0 * self.plant.dead_time
+        return SETTLED / self._slowest_decay() + 4.0 * self.plant.dead_time
+
+    def _slowest_decay(self) -> float:
+        """Return the decay rate of the slowest mode: of the loop, of its neutral tail, or of the set-point filter."""
+        rates = [abs(self.rightmost_pole().real), *(-np.roots(self.controller.setpoint_filter_polynomials()[1]).real)]
+        if self.plant.dead_time and self.transfer.feedthrough:  # the poles' real parts tend to this far from the axis
+            rates.append(-np.log(self.transfer.feedthrough) / self.plant.dead_time)
+        return float(min(rates))
 
     def step(self, until: float | None = None) -> Signal:
         """Return the output after a unit step of the set-point at t = 0, at rest before.
@@ -173,8 +186,15 @@ class Loop:
             If no horizon is given and the loop is unstable.
         """
         end = load_at + self.horizon() if until is None else float(until)
-        if not end > 0.0:
-            msg = f"the horizon must be positive, not {end:g}"
+        if not 0.0 < end < np.inf:
+            msg = f"the horizon must be positive and finite, not {end:g}"
+            raise LoopError(msg)
+        for name, value in (("setpoint", setpoint), ("load", load)):
+            if not np.isfinite(value):
+                msg = f"the {name} step must be a finite number, not {value}"
+                raise LoopError(msg)
+        if load_at < 0.0 or load_at >= end:
+            msg = f"the load step must come within the horizon, 0 <= load_at < {end:g}, not at {load_at:g}"
             raise LoopError(msg)
         if load and load_at:
             base = self.respond(setpoint=setpoint, until=end)
@@ -256,6 +276,8 @@ def step_responses(
     LoopError
         If the controllers differ in more than k, ki, kd and b.
     """
+    if not controllers:
+        return []
     length, y, _ = method_of_steps.respond(plant, list(controllers), until, setpoint=setpoint, load=load)
     signals = []
     for controller, coefficients in zip(controllers, y, strict=True):

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
@@ -39,7 +39,7 @@ class LoopTransfer:
         Raises
         ------
         ImproperLoopError
-            If |L| grows without bound at high frequency, or does not stay below one in a loop with dead time.
+            If |L| grows without bound at high frequency, or L tends to -1 there in a loop without dead time.
         """
         num, den = controller.feedback_polynomials()
         if plant.is_rational:
@@ -49,6 +49,11 @@ class LoopTransfer:
         if plant.is_rational and transfer.num.size > den.size:
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
             raise ImproperLoopError(msg)
+        if plant.is_rational and not plant.dead_time and transfer.num.size == den.size:
+            direct = transfer.num[0] / den[0]
+            if abs(1.0 + direct) < 1e-12:
+                msg = "the loop is not well posed: without dead time L must not tend to -1 at infinite frequency"
+                raise ImproperLoopError(msg)
         return transfer
 
     def __call__(self, s: Any) -> ComplexArray:
@@ -85,11 +90,16 @@ class LoopTransfer:
     @cached_property
     def gain_stationary(self) -> Array:
         """Positive frequencies at which |L(i w)| is stationary, ascending; |L| is monotone beyond the last one."""
-        n, d = _squared_magnitude(self.num), _squared_magnitude(self.den)
-        roots = _roots(_polynomial_product(_slope(n), d), _polynomial_product(n, _slope(d)))
-        # a nearly double root may leave the axis: keep everything close to it, it only makes the bound safer
-        x = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 0.5 * np.abs(roots.real))]
-        return np.sort(np.sqrt(x))
+        return stationary_frequencies(self.num, self.den)
+
+    @cached_property
+    def real_frequencies(self) -> Array:
+        """Positive frequencies at which L(i w) is real, ascending (rational, without dead time); for a bound only."""
+        mirrored = self.den * (-1.0) ** np.arange(self.den.size - 1, -1, -1)
+        product = np.polymul(self.num, mirrored)[::-1]  # N(s) D(-s), ascending: odd powers are imaginary on the axis
+        odd = product[1::2]
+        signs = (-1.0) ** np.arange(odd.size)
+        return _near_positive_axis(np.roots(np.trim_zeros((odd * signs)[::-1], "f")))
 
     @cached_property
     def gain_crossovers(self) -> Array:
@@ -129,6 +139,20 @@ class LoopTransfer:
             w *= 1.5
         msg = f"the loop gain does not fall below {level:g} at high frequency"
         raise ImproperLoopError(msg)
+
+
+def stationary_frequencies(num: Array, den: Array) -> Array:
+    """Return the positive frequencies at which |num/den| is stationary on the imaginary axis, ascending."""
+    n, d = _squared_magnitude(num), _squared_magnitude(den)
+    return _near_positive_axis(_roots(_polynomial_product(_slope(n), d), _polynomial_product(n, _slope(d))))
+
+
+def _near_positive_axis(found: ArrayLike) -> Array:
+    """Return the square roots of the positive ones among roots in w^2, ascending."""
+    # a nearly double root may leave the axis: keep everything close to it, it only makes a bound safer
+    roots = np.asarray(found, dtype=complex)
+    x = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 0.5 * np.abs(roots.real))]
+    return np.sort(np.sqrt(x))
 
 
 def _roots(left: Array, right: Array) -> ComplexArray:

@@ -55,7 +55,11 @@ def margins(transfer: LoopTransfer) -> Margins:
     gain, gain_at = _extreme(factors[above], phase_crossovers[above], np.argmin, float("inf"))
     reduction, reduction_at = _extreme(factors[below], phase_crossovers[below], np.argmax, 0.0)
     if not transfer.dead_time and transfer.feedthrough:
-        gain = min(gain, _algebraic_limit(transfer))
+        limit = _algebraic_limit(transfer)
+        if 1.0 < limit < gain:
+            gain, gain_at = limit, float("inf")
+        elif reduction < limit < 1.0:
+            reduction, reduction_at = limit, float("inf")
     elif transfer.feedthrough and 1.0 / transfer.feedthrough < gain:
         # the tail of a neutral loop loses stability when |L(i inf)| reaches one
         gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
@@ -64,6 +68,8 @@ def margins(transfer: LoopTransfer) -> Margins:
     lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
     phase, phase_at = _extreme(np.degrees(lag), w, np.argmin, float("inf"))
     delay, delay_at = _extreme(lag / w if w.size else lag, w, np.argmin, float("inf"))
+    if not transfer.dead_time and transfer.feedthrough >= 1.0:  # with any dead time the loop is neutral and unstable
+        delay, delay_at = 0.0, float("inf")
     return Margins(
         gain, reduction, phase, delay, gain_at, reduction_at, phase_at, delay_at,
         tuple(phase_crossovers.tolist()), tuple(w.tolist()),
@@ -78,17 +84,24 @@ def _extreme(values: Array, frequencies: Array, select: object, empty: float) ->
 
 
 def _algebraic_limit(transfer: LoopTransfer) -> float:
+    """Return the factor on L at which a loop without dead time is no longer well posed; ``inf`` if there is none."""
     direct = transfer.num[0] / transfer.den[0]
     return float(-1.0 / direct) if direct < 0.0 else float("inf")
 
 
 def _phase_crossovers(transfer: LoopTransfer) -> Array:
     """Return all frequencies with L real and negative, up to where |L| only falls."""
-    end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
+    if transfer.num.size == 0:
+        return np.empty(0)
+    if transfer.plant.is_rational and not transfer.dead_time:
+        corners = np.abs(transfer.corner_frequencies)
+        end = 2.0 * max([1e-6, *transfer.real_frequencies.tolist(), *corners.tolist()])
+    else:
+        end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     if transfer.dead_time:
         end += 2.5 * np.pi / transfer.dead_time  # one full turn more, so that a crossover below one is always included
-    elif not transfer.feedthrough:
-        end = transfer.beyond(1e-9 if transfer.plant.is_rational else 1e-6)
+    elif not transfer.plant.is_rational:
+        end = transfer.beyond(1e-6)
     w = frequency_grid(transfer, end, per_decade=80)
     value = transfer(1j * w)
     turned = value.imag[:-1] * value.imag[1:] < 0.0

@@ -34,6 +34,7 @@ DEGREE = 18
 RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at which a piece counts as resolved
 STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MAX_PIECES = 400_000
+LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def respond(
     Raises
     ------
     LoopError
-        If the controllers differ in more than their gains, or the response needs too many pieces.
+        If the controllers differ in more than their gains, or the response needs too many pieces or grows out of range.
     """
     chain, gain_matrix = _common_chain(plant, controllers)
     radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
@@ -103,14 +104,15 @@ def respond(
         if plant.dead_time:
             length = plant.dead_time / splits
             pieces = _piece_count(until, length)
-            y, u = _march(chain, gain_matrix, length, splits, pieces, setpoint, load)
+            with np.errstate(over="ignore", invalid="ignore"):
+                y, u = _march(chain, gain_matrix, length, splits, pieces, setpoint, load)
         else:
             length = until / splits
             pieces = _piece_count(until, length)
-            parts = [
-                _march_closed(c, chain, length, pieces, setpoint, load) for c in closed
-            ]
+            with np.errstate(over="ignore", invalid="ignore"):
+                parts = [_march_closed(c, chain, length, pieces, setpoint, load) for c in closed]
             y, u = np.stack([p[0] for p in parts]), np.stack([p[1] for p in parts])
+        _require_range(y, u, length)
         y, u = y @ to_coefficients, u @ to_coefficients
         remaining = max(_unresolved(y), _unresolved(u))
         # halving the pieces no longer helps once the tail is the rounding error of an ill-conditioned plant
@@ -139,6 +141,14 @@ def _piece_count(until: float, length: float) -> int:
         msg = f"the response needs {count} pieces of {length:g} up to t = {until:g}; at most {MAX_PIECES} are allowed"
         raise LoopError(msg)
     return max(count, 1)
+
+
+def _require_range(y: Array, u: Array, length: float) -> None:
+    largest = np.maximum(np.max(np.abs(y), axis=(0, 2)), np.max(np.abs(u), axis=(0, 2)))
+    beyond = np.nonzero(~(largest < LARGEST))[0]
+    if beyond.size:
+        msg = f"the response grows beyond {LARGEST:g} by t = {(beyond[0] + 1) * length:g}: choose a shorter horizon"
+        raise LoopError(msg)
 
 
 def _unresolved(coefficients: Array) -> float:

@@ -17,12 +17,13 @@ Reference: Panagopoulos, thesis (2000), supplement to paper II, (1) to (5).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.circles import Circle
+from replicate.loops.errors import LoopError
 from replicate.loops.jets import controller_basis_jets, plant_jet, series_product
 from replicate.loops.plant import Plant
 
@@ -50,6 +51,17 @@ class Constraint:
     low: float = 0.0
     high: float = float("inf")
     margin: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kind not in get_args(Kind):
+            msg = f"constraint '{self.kind}' is unknown; allowed: {', '.join(get_args(Kind))}"
+            raise LoopError(msg)
+        if not 0.0 <= self.low < self.high:
+            msg = f"the range of the {self.kind} constraint must satisfy 0 <= low < high, not {self.low} to {self.high}"
+            raise LoopError(msg)
+        if not np.isfinite(self.margin):
+            msg = f"the margin of the {self.kind} constraint must be a finite number, not {self.margin}"
+            raise LoopError(msg)
 
 
 @dataclass(frozen=True)
@@ -89,19 +101,22 @@ class LoopJet:
         shrink = 3.0 * (np.conj(loop[1]) * self.phi[1]).real / speed**2
         return value - margin, (inner / speed**3 - value * shrink).T
 
+    def slopes(self, kind: Kind, circle: Circle, x: Array) -> Array:
+        """Return w times the derivative of the constraint's value in w, shape (n,); the basis must be of order 3."""
+        loop = np.einsum("dxn,x->dn", self.phi, x)
+        if kind == "sensitivity":
+            return np.asarray(self.w * 2.0 * (np.conj(circle.center + loop[0]) * loop[1]).real / circle.radius**2)
+        if kind == "phase":
+            # value = -w Im(L'/L)
+            ratio = loop[1] / loop[0]
+            return np.asarray(-self.w * (ratio + self.w * (loop[2] / loop[0] - ratio**2)).imag)
+        speed = np.abs(loop[1])
+        top = -(np.conj(loop[1]) * loop[2]).imag
+        top_slope = -(np.conj(loop[1]) * loop[3]).imag
+        speed_slope = (np.conj(loop[1]) * loop[2]).real / speed
+        return np.asarray(self.w * (top_slope / speed**3 - 3.0 * top * speed_slope / speed**4))
+
 
 def constraint_slope(plant: Plant, constraint: Constraint, circle: Circle, x: Array, w: float) -> float:
     """Return w times the derivative of a constraint's value with respect to frequency, from the exact third jets."""
-    jet = LoopJet.of(plant, np.array([w]), order=3)
-    loop = np.einsum("dxn,x->dn", jet.phi, x)[:, 0]
-    if constraint.kind == "sensitivity":
-        return float(w * 2.0 * (np.conj(circle.center + loop[0]) * loop[1]).real / circle.radius**2)
-    if constraint.kind == "phase":
-        # value = -w Im(L'/L)
-        ratio = loop[1] / loop[0]
-        return float(-w * (ratio + w * (loop[2] / loop[0] - ratio**2)).imag)
-    speed = abs(loop[1])
-    top = -(np.conj(loop[1]) * loop[2]).imag
-    top_slope = -(np.conj(loop[1]) * loop[3]).imag
-    speed_slope = (np.conj(loop[1]) * loop[2]).real / speed
-    return float(w * (top_slope / speed**3 - 3.0 * top * speed_slope / speed**4))
+    return float(LoopJet.of(plant, np.array([w]), order=3).slopes(constraint.kind, circle, x)[0])

@@ -43,6 +43,11 @@ class Plant:
     def __init__(self, num: ArrayLike, den: ArrayLike, dead_time: float = 0.0) -> None:
         self.num: Array = np.trim_zeros(np.atleast_1d(np.asarray(num, dtype=float)), "f")
         self.den: Array = np.trim_zeros(np.atleast_1d(np.asarray(den, dtype=float)), "f")
+        if self.num.ndim != 1 or self.den.ndim != 1:
+            msg = (
+                f"the plant's coefficients must be two lists of numbers, not {self.num.shape} / {self.den.shape} arrays"
+            )
+            raise LoopError(msg)
         self.dead_time = _checked_dead_time(dead_time)
         self.function: Callable[[Any], Any] | None = None
         if self.num.size == 0 or self.den.size == 0:
@@ -122,6 +127,13 @@ class Plant:
         g = self.delay_free
         slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
         return np.asarray(slope / (60 * h * g(s)) - self.dead_time)
+
+    def __neg__(self) -> Plant:
+        """Return the plant with its sign changed."""
+        if self.function is None:
+            return Plant(-self.num, self.den, self.dead_time)
+        function = self.function
+        return Plant.from_function(lambda s: -function(s), self.dead_time)
 
     @property
     def integrators(self) -> int:

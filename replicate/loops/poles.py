@@ -31,6 +31,8 @@ MOST_STARTS = 24
 def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
     """Return the rightmost closed-loop poles, sorted by descending real part, Im >= 0 (a pair counts once).
 
+    A static loop has none.
+
     Raises
     ------
     LoopError
@@ -41,6 +43,8 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         starts = _starts_on_grid(transfer)
     elif polynomial:
         starts = np.asarray(np.roots(np.polyadd(transfer.den, transfer.num)), dtype=complex)
+        if starts.size == 0:  # a static loop
+            return starts
     else:
         starts = _generator_eigenvalues(plant, controller, transfer)
     starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]

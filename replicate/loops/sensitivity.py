@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.loop_transfer import LoopTransfer, stationary_frequencies
 from replicate.loops.stability import frequency_grid
 
 Array = NDArray[np.float64]
@@ -53,11 +53,12 @@ class FrequencyPeak(float):
 
 @dataclass(frozen=True)
 class _Kind:
-    """Magnitude of S or T, the slope of its logarithm in w, and a bound from |L|."""
+    """Magnitude of S or T, the slope of its logarithm in w, a bound from |L|, and the ratio of polynomials it is."""
 
     magnitude: Callable[[Array], Array]
     slope: Callable[[float], float]
     bound: Callable[[float], float]
+    ratio: tuple[Array, Array]  # of the rational part; the magnitude itself if there is no dead time
 
 
 def sensitivity_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], center: float = 1.0) -> FrequencyPeak:
@@ -71,7 +72,12 @@ def sensitivity_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], cent
         value = complex(transfer(1j * w))
         return float((-1j * value * complex(transfer.log_derivative(1j * w)) / (center + value)).real)
 
-    kind = _Kind(lambda w: np.abs(1.0 / (center + transfer(1j * w))), slope, lambda gain: 1.0 / (center - gain))
+    kind = _Kind(
+        lambda w: np.abs(1.0 / (center + transfer(1j * w))),
+        slope,
+        lambda gain: 1.0 / (center - gain),
+        (transfer.den, np.asarray(np.polyadd(center * transfer.den, transfer.num), dtype=float)),
+    )
     return _peak(transfer, poles, kind)
 
 
@@ -86,17 +92,20 @@ def complementary_peak(transfer: LoopTransfer, poles: NDArray[np.complex128]) ->
         value = complex(transfer(1j * w))
         return float((1j * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
 
-    return _peak(transfer, poles, _Kind(magnitude, slope, lambda gain: gain / (1.0 - gain)))
+    closed = (transfer.num, np.asarray(np.polyadd(transfer.den, transfer.num), dtype=float))
+    return _peak(transfer, poles, _Kind(magnitude, slope, lambda gain: gain / (1.0 - gain), closed))
 
 
 def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) -> FrequencyPeak:
+    if transfer.num.size == 0:  # no feedback at all
+        return FrequencyPeak(kind.bound(0.0), 0.0)
+    if transfer.feedthrough and not transfer.dead_time:
+        return _rational_peak(transfer, poles, kind)
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = _grid(transfer, end, poles)
     best = highest_peak(kind.magnitude, kind.slope, w)
     # Extend the band until the bound on the rest is below the best peak, or the limit at infinity is the supremum.
     limit = kind.bound(transfer.feedthrough)
-    if transfer.dead_time == 0.0 and transfer.feedthrough:
-        limit = float(kind.magnitude(np.array([1e12 * end]))[0])
     for _ in range(40):
         if kind.bound(float(abs(transfer(1j * end)))) <= max(best.value, limit):
             break
@@ -104,6 +113,22 @@ def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) ->
         beyond = _grid(transfer, wider, poles, start=0.98 * end)
         best = _highest(best, highest_peak(kind.magnitude, kind.slope, beyond))
         end = wider
+    return _with_ends(transfer, kind, best, limit)
+
+
+def _rational_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) -> FrequencyPeak:
+    """Return the peak of a loop without dead time whose gain does not vanish at infinite frequency."""
+    # beyond its last stationary point the magnitude is monotone and tends to its limit
+    stationary = stationary_frequencies(*kind.ratio)
+    end = 2.0 * max([1e-6, *stationary.tolist(), *np.abs(transfer.corner_frequencies).tolist()])
+    best = highest_peak(kind.magnitude, kind.slope, _grid(transfer, end, poles))
+    num, den = kind.ratio
+    limit = float(abs(num[0] / den[0])) if num.size == den.size else 0.0
+    return _with_ends(transfer, kind, best, limit)
+
+
+def _with_ends(transfer: LoopTransfer, kind: _Kind, best: FrequencyPeak, limit: float) -> FrequencyPeak:
+    """Return the highest of a peak and the values at rest and in the limit of infinite frequency."""
     at_rest = _at_rest(transfer, kind)
     if at_rest >= best.value:
         best = FrequencyPeak(at_rest, 0.0)

@@ -125,6 +125,9 @@ class Signal:
         times = np.asarray(t, dtype=float)
         flat = np.atleast_1d(times).ravel()
         end = self.breaks[-1]
+        if np.isnan(flat).any():
+            msg = "a time is not a number (nan)"
+            raise LoopError(msg)
         if flat.size and flat.max() > end * (1.0 + 1e-12):
             msg = f"t = {flat.max():g} lies beyond the response's horizon of {end:g}: compute a longer one"
             raise LoopError(msg)
@@ -351,6 +354,9 @@ class Signal:
             If the response is outside the band at the end of its horizon.
         """
         self._require_stable("settling time")
+        if not 0.0 < band < np.inf:
+            msg = f"the settling band must be a positive fraction, not {band}"
+            raise LoopError(msg)
         width = band * (abs(self.final) if self.final else 1.0)
         error = np.abs(self._samples - self.final)
         if error[-1, -1] > width:
@@ -381,12 +387,18 @@ class Signal:
         """Return the time from first reaching ``low`` to first reaching ``high``, fractions of the final value."""
         self._require_stable("rise time")
         self._require_final("rise time")
+        if not 0.0 <= low < high:
+            msg = f"the rise time runs from a fraction low >= 0 to a larger one, not from {low} to {high}"
+            raise LoopError(msg)
         return self.first_reach(high * self.final) - self.first_reach(low * self.final)
 
     def delay_time(self, fraction: float = 0.5) -> float:
         """Return the first time at which the response reaches ``fraction`` of its final value, dead time included."""
         self._require_stable("delay time")
         self._require_final("delay time")
+        if not fraction >= 0.0:
+            msg = f"the delay time belongs to a fraction >= 0 of the final value, not to {fraction}"
+            raise LoopError(msg)
         return self.first_reach(fraction * self.final)
 
     # ---- integrals ------------------------------------------------------------------------------------------------

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 
 LARGEST_TURN = 0.8  # rad between neighbouring points; anything below pi/2 identifies the branch
 MOST_POINTS = 2_000_000
+ON_AXIS = 1e-14  # relative distance from the axis at which a root is on it to rounding
 DEEPEST = 60  # bisections of one interval before a zero is taken to lie on the axis
 
 
@@ -40,7 +41,8 @@ def unstable_poles(transfer: LoopTransfer) -> int:
         raise ImproperLoopError(msg)
     if transfer.dead_time == 0.0 and transfer.plant.is_rational:
         closed = np.polyadd(transfer.den, transfer.num)
-        return int(np.sum(np.roots(closed).real >= 0.0))
+        roots = np.roots(closed)
+        return int(np.sum(roots.real >= -ON_AXIS * np.abs(roots)))
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = frequency_grid(transfer, end)
     w = np.concatenate([[0.0], w]) if transfer.plant.is_rational else w

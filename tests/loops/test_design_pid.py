@@ -10,6 +10,7 @@ are central differences.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -160,7 +161,8 @@ class Search:
         w = np.concatenate([np.geomspace(1e-6, 1e-2, 40), np.linspace(1e-2, 7.0, 500)])
         value = 1.0 + np.array([k, ki, kd]) @ self.columns(w)
         angle = np.unwrap(np.angle(value))
-        return bool(abs(angle[-1] - angle[0] - 0.5 * np.pi) < 0.3)
+        # other counts differ by 180 degrees; a neutral loop keeps turning a little about the last value
+        return bool(abs(angle[-1] - angle[0] - 0.5 * np.pi) < 0.8)
 
     def cost(self, x: np.ndarray) -> float:
         """Return -ki where there is a feasible one, else by how much the least bad of a few ki fails."""
@@ -189,28 +191,31 @@ class Search:
         return -float(found.fun), *(float(v) for v in found.x)
 
 
+@cache
 def designed(name: str, ms: float, kinds: tuple[str, ...]) -> tuple[PIDDesign, tuple[float, float]]:
     pi = design_pi(plant(name), ms=ms)
     span = search_range(plant(name), pi.k, pi.ki)
     return design_pid(plant(name), ms=ms, constraints=kinds), span  # type: ignore[arg-type]
 
 
-def compare(name: str, ms: float, kinds: tuple[str, ...], *, points: int = 260, popsize: int = 20) -> None:
+def compare(
+    name: str, ms: float, kinds: tuple[str, ...], *, points: int = 260, popsize: int = 20, tolerance: float = 1e-6
+) -> None:
     design, span = designed(name, ms, kinds)
-    assert design.status == "optimal"
     search = Search(name, ms, kinds, span, points)
     ki, _, _ = search.run(popsize)
     assert ki == pytest.approx(design.ki, rel=2e-3)
     # and the search's own judge finds the design feasible, to the accuracy of its derivatives
     assert search.stable(design.k, design.ki, design.kd)
     assert search.quadratics(design.k, design.kd).T @ [design.ki**2, design.ki, 1.0] == pytest.approx(
-        np.maximum(search.quadratics(design.k, design.kd).T @ [design.ki**2, design.ki, 1.0], 0.0), abs=1e-6
+        np.maximum(search.quadratics(design.k, design.kd).T @ [design.ki**2, design.ki, 1.0], 0.0), abs=tolerance
     )
 
 
 @pytest.mark.parametrize(("name", "ms"), CASES)
 def test_stated_problem_is_solved(name: str, ms: float) -> None:
     compare(name, ms, shape(name))
+    assert designed(name, ms, shape(name))[0].status == "optimal"
 
 
 @pytest.mark.parametrize(("name", "ms"), [("G1", 2.0), ("G2", 1.4), ("G4", 1.4), ("G8", 2.0)])
@@ -278,11 +283,73 @@ def test_search_range_of_a_lag_of_fourth_order() -> None:
     assert low == pytest.approx(0.5 * w[np.argmin(distance)], rel=1e-4)
 
 
+SUBSETS = ((), ("curvature",), ("phase",), ("curvature", "phase"))
+
+
+@pytest.mark.parametrize(("name", "ms"), [*((name, 1.4) for name in PLANTS), ("G1", 2.0), ("G4", 2.0)])
+def test_fewer_constraints_never_give_less(name: str, ms: float) -> None:
+    designs = {kinds: designed(name, ms, kinds) for kinds in SUBSETS}
+    for fewer, (relaxed, span) in designs.items():
+        for more, (strict, _) in designs.items():
+            if set(fewer) < set(more):
+                assert relaxed.ki >= strict.ki * (1.0 - 1e-9)
+        # a relaxed design that wins by looking through a constraint would be caught by a fine grid
+        assert relaxed.status in ("optimal", "not-polished")
+        fine = Search(name, ms, fewer, span, points=20000).quadratics(relaxed.k, relaxed.kd)
+        a, b, c = fine
+        size = np.abs(a) * relaxed.ki**2 + np.abs(b) * relaxed.ki + np.abs(c)
+        assert np.all(a * relaxed.ki**2 + b * relaxed.ki + c >= -1e-6 * size)
+
+
+@pytest.mark.parametrize("ms", [1.4, 2.0])
+def test_curvature_alone_allows_a_loop_turned_over(ms: float) -> None:
+    # the optimum lies beyond the designs with a cusp, where methods that follow gradients do not get from the PI design
+    compare("G4", ms, ("curvature",), points=3000, tolerance=1e-5)
+
+
+@pytest.mark.parametrize(("dead_time", "ms"), [(1.0, 2.0), (1.0, 1.4), (5.0, 2.0)])
+def test_circle_bounds_derivative_gain_at_infinite_frequency(
+    dead_time: float, ms: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Under ideal derivative |L| of e^{-Ls}/(s+1) tends to kd and turns through all phases, so 1 - kd >= 1/Ms."""
+    design = design_pid(Plant.foptd(1.0, 1.0, dead_time), ms=ms, constraints=())
+    assert design.status == "optimal"
+    assert design.kd == pytest.approx(1.0 - 1.0 / ms, rel=1e-12)
+    assert [part.frequency for part in design.active][-1] == np.inf
+    monkeypatch.setitem(PLANTS, "F", ([1.0], [1.0, 1.0], dead_time))
+    search = Search("F", ms, (), (0.1, 1.0), points=4000)
+
+    def highest(kd: float) -> float:
+        gains = np.linspace(0.0, 2.0, 81)
+        for _ in range(4):
+            heights = [search.largest_ki(k, kd) for k in gains]
+            top = int(np.argmax(heights))
+            gains = np.linspace(gains[max(top - 1, 0)], gains[min(top + 1, 80)], 81)
+        return max(heights)
+
+    assert highest(design.kd) == pytest.approx(design.ki, rel=1e-4)
+    assert highest(0.98 * design.kd) < design.ki
+
+
+def test_unbounded_gain_is_a_status_and_not_a_number() -> None:
+    # one or two poles and no zeros to the right: with the controller's zeros on the poles L = const/s, for any const
+    for den in ([1.0, 1.0], [1.0, 0.0, 0.0], [0.1, 1.1, 1.0]):
+        design = design_pid(Plant([1.0], den), ms=1.4)
+        assert design.status == "unbounded"
+        assert np.isnan([design.k, design.ki, design.kd]).all()
+    assert design_pid(Plant([1.0, 2.0], [1.0, 3.0, 3.0, 1.0]), ms=1.4, constraints=()).status == "unbounded"
+
+
+def test_plant_that_jumps_with_its_input_is_refused() -> None:
+    with pytest.raises(LoopError, match="measurement filter"):
+        design_pid(Plant([1.0], [1.0], dead_time=1.0), ms=1.4)
+
+
 def test_margin_is_kept() -> None:
     free = design_pid(plant("G4"), ms=1.4)
     pi = design_pi(plant("G4"), ms=1.4)
     span = search_range(plant("G4"), pi.k, pi.ki)
-    kept = design_pid(plant("G4"), ms=1.4, constraints=[Constraint("curvature", *span, margin=0.1)])
+    kept = design_pid(plant("G4"), ms=1.4, constraints=[Constraint("curvature", *span, margin=0.1), "phase"])
     search = Search("G4", 1.4, ("curvature",), span)
     jets = np.einsum("dxn,x->dn", search.jets(np.linspace(*span, 4000)), [kept.k, kept.ki, kept.kd])
     curvature = (np.conj(jets[1]) * jets[2]).imag / np.abs(jets[1]) ** 3

@@ -1,0 +1,186 @@
+r"""A map of the feasible PID gains: where over the plane (k, kd) the largest feasible ki has its local maxima.
+
+For fixed k and kd every constraint of `replicate.loops.nyquist_constraints` is a quadratic in ki at each frequency, so
+it forbids one interval of ki, or all but one. What is left over all frequencies are gaps; inside a connected gap
+stability cannot change, because the point -1 lies inside the circle. The local maxima of the gaps' upper ends are where
+a search for the largest ki has to start: a start that is not chosen this way may end on a ridge far below the optimum.
+
+The map is coarse on purpose. It says where to look; what is found from there is polished and verified elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.circles import Circle
+from replicate.loops.nyquist_constraints import Kind, LoopJet
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+# k and kd of the map, in units of a gain and of that gain over a frequency
+GAINS = np.concatenate([[-1.0, -0.3, -0.1, -0.03, 0.0], np.geomspace(0.01, 0.3, 6), np.geomspace(0.4, 30.0, 16)])
+DERIVATIVES = np.concatenate([[-0.3, -0.1, 0.0], np.geomspace(0.03, 0.3, 4), np.geomspace(0.42, 60.0, 16)])
+EDGE = 1.0 - 1e-9
+FREQUENCIES = 160  # of each constraint, on the map
+
+ZOOM = np.linspace(-1.0, 1.0, 7)  # the window of an ascent, in units of its half-width
+WIDEST, NARROWEST = 0.3, 1e-5  # half-width of the window, relative to the gains
+
+
+@dataclass(frozen=True)
+class Summit:
+    """A local maximum of the map: the gains at the upper end of a gap, a ki inside it, and the scale of k and kd."""
+
+    k: float
+    ki: float
+    kd: float
+    inside: float
+    reach: tuple[float, float]
+
+    @property
+    def gains(self) -> Array:
+        """The gains as an array (k, ki, kd)."""
+        return np.array([self.k, self.ki, self.kd])
+
+    def on_edge(self, largest_kd: float) -> bool:
+        """Whether the summit lies on the outer edge of its map, beyond which the ground may rise."""
+        k, kd = self.k / self.reach[0], self.kd / self.reach[1]
+        return bool(k >= EDGE * GAINS[-1] or (kd >= EDGE * DERIVATIVES[-1] and self.kd < EDGE * largest_kd))
+
+
+def summits(
+    jets: Sequence[tuple[Kind, LoopJet]],
+    circle: Circle,
+    gain: float,
+    frequency: float,
+    largest_kd: float = np.inf,
+    density: int = 1,
+) -> list[Summit]:
+    """Return the local maxima of ki over (k, kd), largest ki first; stability is not looked at.
+
+    Parameters
+    ----------
+    jets
+        The constraints with the basis of L at the frequencies on which they are asked for.
+    gain, frequency
+        Scale of the map: a gain of the size of k, and the frequency that turns it into a derivative gain.
+    largest_kd
+        Bound on the size of kd.
+    density
+        Number of gains in place of each one of the coarsest map.
+    """
+    k, kd = gain * _denser(GAINS, density), gain / frequency * _denser(DERIVATIVES, density)
+    kd = np.unique(np.clip(kd, -largest_kd, largest_kd))
+    gaps = _gaps([(kind, _thinned(jet)) for kind, jet in jets], circle, k, kd)
+    found = []
+    for (i, j), here in gaps.items():
+        around = [g for di in (-1, 0, 1) for dj in (-1, 0, 1) if di or dj for g in gaps.get((i + di, j + dj), ())]
+        for bottom, top in here:
+            connected = [g for g in around if g[0] < top and g[1] > bottom]
+            if all(top >= g[1] for g in connected):
+                found.append(Summit(float(k[i]), top, float(kd[j]), 0.5 * (bottom + top), (gain, gain / frequency)))
+    return sorted(found, key=lambda s: -s.ki)
+
+
+def _denser(values: Array, density: int) -> Array:
+    steps = np.arange(0.0, values.size - 1.0 + 0.5 / density, 1.0 / density)
+    return np.asarray(np.interp(steps, np.arange(values.size), values))
+
+
+def ascend(
+    jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, start: Summit, slack: float, largest_kd: float = np.inf
+) -> Summit:
+    """Follow a gap uphill from a summit with windows of the map that shrink where they find nothing higher.
+
+    Slow but safe: every step stays between the constraints, where a method that follows gradients may leap over them.
+
+    Parameters
+    ----------
+    slack
+        Relative distance that is kept from the constraints; more than they can dip between the frequencies of ``jets``.
+    """
+    best, width = start, WIDEST
+    while width > NARROWEST:
+        k = best.k + width * max(abs(best.k), 0.1 * start.reach[0]) * ZOOM
+        kd = best.kd + width * max(abs(best.kd), 0.1 * start.reach[1]) * ZOOM
+        kd = np.clip(kd, -largest_kd, largest_kd)
+        connected = [
+            Summit(float(k[i]), top, float(kd[j]), 0.5 * (max(bottom, 0.5 * top) + top), start.reach)
+            for (i, j), gaps in _gaps(jets, circle, k, kd, slack).items()
+            for bottom, top in gaps
+            if bottom < best.inside < top
+        ]
+        highest = max(connected, key=lambda s: s.ki, default=best)
+        if highest.ki > best.ki * (1.0 + 0.02 * width):
+            best = highest
+        else:
+            width *= 0.5
+    return best
+
+
+def _thinned(jet: LoopJet) -> LoopJet:
+    step = max(1, jet.w.size // FREQUENCIES)
+    return LoopJet(jet.w[::step], jet.phi[:, :, ::step])
+
+
+def _gaps(
+    jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float = 0.0
+) -> dict[tuple[int, int], list[tuple[float, float]]]:
+    """Return the gaps (lower end, upper end) of ki at the indices (i, j) of k and kd."""
+    low, high = _forbidden(jets, circle, k, kd, slack)
+    order = np.argsort(low, axis=-1)
+    low = np.take_along_axis(low, order, axis=-1)
+    covered = np.maximum.accumulate(np.take_along_axis(high, order, axis=-1), axis=-1)
+    floor = np.maximum(np.concatenate([np.zeros_like(low[..., :1]), covered[..., :-1]], axis=-1), 0.0)
+    gaps: dict[tuple[int, int], list[tuple[float, float]]] = {}
+    for i, j, n in zip(*np.nonzero((low > floor * (1.0 + 1e-9)) & np.isfinite(low)), strict=True):
+        gaps.setdefault((int(i), int(j)), []).append((float(floor[i, j, n]), float(low[i, j, n])))
+    return gaps
+
+
+def _forbidden(
+    jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float
+) -> tuple[Array, Array]:
+    """Return lower and upper ends of the forbidden intervals of ki > 0, shape (len(k), len(kd), intervals)."""
+    low, high = [], []
+    for kind, jet in jets:
+        a, b, c = _quadratics(kind, jet, circle, k, kd, slack)
+        with np.errstate(all="ignore"):
+            root = np.sqrt(np.maximum(b**2 - 4.0 * a * c, 0.0))
+            q = -0.5 * (b + np.copysign(root, b))
+            first, second = q / a, c / q
+        left, right = np.fmin(first, second), np.fmax(first, second)
+        real = b**2 > 4.0 * a * c
+        opens_up = np.broadcast_to(a > 0.0, real.shape)
+        # a > 0: forbidden between the roots; a < 0: below the lower and above the upper one, or everywhere
+        low += [np.where(opens_up & real & (right > 0.0), left, np.where(opens_up, np.inf, 0.0))]
+        high += [np.where(opens_up, np.where(real, right, -np.inf), np.where(real, left, np.inf))]
+        low += [np.where(~opens_up & real, np.maximum(right, 0.0), np.inf)]
+        high += [np.where(~opens_up & real, np.inf, -np.inf)]
+    return np.concatenate(low, axis=-1), np.concatenate(high, axis=-1)
+
+
+def _quadratics(
+    kind: Kind, jet: LoopJet, circle: Circle, k: Array, kd: Array, slack: float
+) -> tuple[Array, Array, Array]:
+    """Return a, b, c of ``a ki^2 + b ki + c >= 0``, shapes (n,), (len(k), len(kd), n) twice."""
+    phi = jet.phi
+    rest = k[:, None, None] * phi[:, None, None, 0] + kd[:, None] * phi[:, None, None, 2]
+    if kind == "sensitivity":
+        offset, slope = rest[0] + circle.center, phi[0, 1]
+        return (
+            np.abs(slope) ** 2,
+            2.0 * (np.conj(offset) * slope).real,
+            np.abs(offset) ** 2 - circle.radius**2 * (1.0 + slack),
+        )
+    n = 0 if kind == "phase" else 1
+    return (
+        -(np.conj(phi[n, 1]) * phi[n + 1, 1]).imag,
+        -(np.conj(rest[n]) * phi[n + 1, 1] + np.conj(phi[n, 1]) * rest[n + 1]).imag,
+        -(np.conj(rest[n]) * rest[n + 1]).imag - slack * jet.w * np.abs(rest[n + 1]) ** 2,
+    )
