@@ -118,8 +118,12 @@ def list_(
 
     if paper is None:
         print_papers(find_papers(), console())
-    else:
-        print_exhibits(find_paper(paper), console(), accepted_dir())
+        return
+    try:
+        accepted = accepted_dir()
+    except FileNotFoundError:  # a list does without
+        accepted = Path("figures")
+    print_exhibits(find_paper(paper), console(), accepted)
 
 
 @app.command()

@@ -45,7 +45,9 @@ def test_list(replicate: Run) -> None:
         assert part in out
 
 
-def test_list_says_what_is_done_and_what_cannot_be_and_why(capsys: pytest.CaptureFixture[str]) -> None:
+def test_list_says_what_is_done_and_what_cannot_be_and_why(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """On the thesis, against the printed CSV and the definitions themselves."""
     from replicate.discovery import find_paper
     from replicate.exhibits import NotComputable
@@ -54,6 +56,7 @@ def test_list_says_what_is_done_and_what_cannot_be_and_why(capsys: pytest.Captur
     from replicate.terminal.inventory import print_exhibits
 
     paper = find_paper("panagopoulos")
+    monkeypatch.setenv("COLUMNS", "100")
     print_exhibits(paper, console(), accepted_dir())
     inventory, _, missing = capsys.readouterr().out.partition("What cannot be computed, and why")
     lines = {line.split()[0]: line for line in inventory.splitlines() if line and not line.startswith(" ")}
@@ -150,6 +153,17 @@ def test_numbers_stay_whole_on_a_narrow_terminal(replicate: Run, monkeypatch: py
     assert ["log", "0.301", "0.69315", "≠", "0.30103", "=", "↻", "reconstructed"] in [
         line.split() for line in replicate("show", "lab", "table-1", "-j1")[1].splitlines()
     ]
+
+
+def test_a_list_on_a_narrow_terminal_is_whole(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setattr("replicate.resources._PACKAGE", Path("nowhere"))  # no accepted state either
+    status, out, _ = replicate("list", "panagopoulos")
+    assert status == 0
+    lines = out.partition("What cannot be computed")[0].splitlines()
+    assert max(map(len, lines)) <= 60
+    assert "…" not in out
+    assert "Equation (7) and its correction" in " ".join(out.split())
 
 
 def test_a_terminal_without_unicode(folder: Path, tmp_path: Path) -> None:

@@ -15,6 +15,8 @@ from replicate.exhibits import Claims, Exhibit, Paper, Table
 from replicate.terminal.gaps import reasons, standing
 from replicate.terminal.mathtext import readable
 
+_NARROW = 90
+
 
 def print_papers(papers: Iterable[Paper], console: Console) -> None:
     """Print one line per paper: id, title, year, and how many exhibits of each kind it has."""
@@ -27,12 +29,17 @@ def print_papers(papers: Iterable[Paper], console: Console) -> None:
 
 
 def print_exhibits(paper: Paper, console: Console, accepted: Path) -> None:
-    """Print one line per exhibit (id, kind, status, title, readings), then what is missing and why."""
+    """Print one line per exhibit (id, kind, status, title, readings), then what is missing and why.
+
+    On a narrow terminal, where five columns would leave no room for words, kind and readings are left out.
+    """
     console.print(Text(paper.citation))
-    grid = _grid("exhibit", "kind", "status", "title", "readings")
+    narrow = console.width < _NARROW
+    grid = _grid("exhibit", "status", "title") if narrow else _grid("exhibit", "kind", "status", "title", "readings")
     for exhibit in paper.exhibits.values():
-        status = standing(paper, exhibit, accepted)
-        grid.add_row(Text(exhibit.id), exhibit.kind, status, Text(readable(exhibit.title)), Text(_content(exhibit)))
+        id, status, title = exhibit.id, standing(paper, exhibit, accepted), readable(exhibit.title)
+        cells = (id, status, title) if narrow else (id, exhibit.kind, status, title, _content(exhibit))
+        grid.add_row(*map(Text, cells))
     console.print(grid)
     missing = reasons(paper, accepted)
     if missing:
@@ -63,6 +70,6 @@ def _grid(*headings: str) -> Grid:
             heading,
             no_wrap=heading in {"paper", "exhibit", "kind", "status"},
             overflow="fold",
-            min_width=28 if heading == "title" else None,
+            min_width=28 if heading == "title" and "readings" in headings else None,
         )
     return grid
