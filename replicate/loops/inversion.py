@@ -155,13 +155,24 @@ def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop
                     values = values + 2.0 * (loop.residue(complex(pole)) * np.exp(pole * t[later])).real
             result[later] = values
             return result
-    msg = "no contour separates the loop's known poles from the others: it is unstable or too lightly damped to invert"
-    raise LoopError(msg)
+    raise LoopError(_why_not(transform, shortest))
 
 
-def _refined(
-    contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float
-) -> Array | None:
+def _why_not(transform: Callable[[Any], ComplexArray], shortest: float) -> str:
+    """Say why no contour inverts a transform."""
+    contour = _Contour(3.0 / shortest, OPENINGS[0])
+    s, _ = contour(np.linspace(0.0, contour.reach(shortest), 200))
+    with np.errstate(all="ignore"):
+        wrong = s[~np.isfinite(transform(s))]
+    if wrong.size:
+        return f"the plant's function is not finite at s = {wrong[0]:.3g}: write it so that it does not overflow"
+    return (
+        "no contour inverts the response: the loop is too lightly damped, "
+        "or the plant's function falls too slowly at high frequency"
+    )
+
+
+def _refined(contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float) -> Array | None:
     """Return the integral along the contour at times ``t``, or None if the quadrature does not converge on it."""
     reach = contour.reach(shortest)
     previous: Array | None = None

@@ -91,8 +91,9 @@ class Plant:
     def from_function(cls, function: Callable[[Any], Any], dead_time: float = 0.0) -> Plant:
         r"""Return the plant :math:`f(s) e^{-sL}` for any transfer function f analytic for Re s > 0.
 
-        ``function`` must accept complex arrays. Time responses continue it into the plane cut along the negative
-        real axis where that is possible (as for :math:`e^{-\\sqrt s}`) and check that this is so.
+        ``function`` must accept complex arrays and not overflow where it is small. Time responses continue it into
+        the plane cut along the negative real axis where that is possible (as for :math:`e^{-\\sqrt s}`) and check
+        that this is so.
         """
         plant = cls([1.0], [1.0], dead_time)
         plant.function = function
@@ -144,9 +145,11 @@ class Plant:
 
     @property
     def gain(self) -> float:
-        """The steady-state gain G(0); ``inf`` for an integrating plant."""
+        """The steady-state gain G(0); ``inf`` for an integrating plant, ``nan`` if a function has no value there."""
         if self.function is not None:
-            return float(np.real(self.delay_free(0.0)))
+            with np.errstate(all="ignore"):
+                at_rest = float(np.real(self.delay_free(0.0)))
+            return at_rest if np.isfinite(at_rest) else float("nan")
         return float("inf") if self.integrators else float(self.num[-1] / self.den[-1])
 
     def poles(self) -> ComplexArray:

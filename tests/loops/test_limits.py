@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import mpmath
 import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
@@ -131,6 +132,45 @@ def test_integrated_error_of_slow_filters_and_neutral_tails(controller: PID) -> 
     lag = 20.0 if controller.setpoint_filter else 0.0
     assert y.ie() == pytest.approx((1.0 + controller.k * 0.6) / controller.ki + lag, rel=1e-10)
     assert y(y.horizon) == pytest.approx(1.0, abs=1e-12)
+
+
+# ---- plants given by a function ----------------------------------------------------------------------------------
+
+
+def sech_root(s: np.ndarray) -> np.ndarray:
+    """1/cosh(sqrt(s)), heat conduction through a wall, without overflow."""
+    decay = np.exp(-np.sqrt(s))
+    return np.asarray(2.0 * decay / (1.0 + decay**2))
+
+
+def test_heat_conduction_through_a_wall() -> None:
+    y = Loop(Plant.from_function(sech_root), PI(2.0, 8.0, b=0.6)).step()
+
+    def transform(s: mpmath.mpc) -> mpmath.mpc:
+        g = 1 / mpmath.cosh(mpmath.sqrt(s))
+        return (mpmath.mpf(0.6) * 2 + 8 / s) * g / s / (1 + (2 + 8 / s) * g)
+
+    with mpmath.workdps(30):
+        for t in (0.1, 0.5, 1.2):
+            assert y(t) == pytest.approx(
+                float(mpmath.invertlaplace(transform, t, method="talbot", degree=40)), abs=1e-11
+            )
+
+
+def test_function_that_overflows_is_named() -> None:
+    with np.errstate(all="ignore"):
+        loop = Loop(Plant.from_function(lambda s: 1.0 / np.cosh(np.sqrt(s))), PI(2.0, 8.0))
+        with pytest.raises(LoopError, match="does not overflow"):
+            loop.step()
+
+
+def test_function_without_a_value_at_rest() -> None:
+    # sqrt(s)/sinh(sqrt(s)) is 0/0 at s = 0; the output's final value needs no plant gain, the control signal's does
+    plant = Plant.from_function(lambda s: 2.0 * np.sqrt(s) * np.exp(-np.sqrt(s)) / (1.0 - np.exp(-2.0 * np.sqrt(s))))
+    response = Loop(plant, PI(0.8, 9.0)).respond()
+    assert np.isnan(plant.gain)
+    assert response.output.final == 1.0
+    assert np.isnan(response.control.final)
 
 
 # ---- plants of negative gain -----------------------------------------------------------------------------------------
