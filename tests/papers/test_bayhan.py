@@ -118,12 +118,8 @@ def test_printed_rules_against_a_second_transcription(r):
 
 def test_rules_at_exact_fractions():
     symbols = {"K": Fraction(7, 8), "tau": Fraction(2, 3), "L": Fraction(1, 5), "tau_cl": Fraction(1, 10)}
-    assert competing_rules()["IMC"].evaluate(**symbols) == competing_rules("authors")["IMC"].evaluate(
-        **symbols
-    )
-    assert competing_rules()["IMC"].evaluate(**symbols).kp == Fraction(2, 3) / (
-        Fraction(7, 8) * Fraction(3, 10)
-    )
+    assert competing_rules()["IMC"].evaluate(**symbols) == competing_rules("authors")["IMC"].evaluate(**symbols)
+    assert competing_rules()["IMC"].evaluate(**symbols).kp == Fraction(2, 3) / (Fraction(7, 8) * Fraction(3, 10))
     assert competing_rules()["ZN"].evaluate(**symbols).ti == Fraction(3, 5)
     # Cohen-Coon with r = L/tau = 3/10: L (30 + 9/10)/(9 + 6) = 103/250.
     assert competing_rules("authors")["CC"].evaluate(**symbols).ti == Fraction(103, 250)
@@ -272,9 +268,7 @@ ROWS = [
 MISPRINTS = {("table-3", "ITAE", "rise_time")}
 
 
-@pytest.mark.parametrize(
-    ("table", "process", "rule", "gains"), ROWS, ids=[f"{row[0]}-{row[2]}" for row in ROWS]
-)
+@pytest.mark.parametrize(("table", "process", "rule", "gains"), ROWS, ids=[f"{row[0]}-{row[2]}" for row in ROWS])
 def test_authors_reading_by_matrix_exponential(table, process, rule, gains):
     k, ki = gains or mp_double_pole(process)
     values = {K: process.K, L: process.L, TAU: process.tau}
