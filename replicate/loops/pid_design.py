@@ -1,0 +1,94 @@
+"""A PID design: the gains, what limits them, and how the search for them ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from replicate.loops.controller import PID
+from replicate.loops.nyquist_constraints import Kind
+
+Status = Literal["optimal", "not-polished", "no-controller", "unbounded"]
+
+MESSAGES: dict[str, str] = {
+    "optimal": "the optimality conditions hold to rounding and all constraints were verified on all frequencies",
+    "not-polished": "a feasible and stable point was found, but the optimality system did not converge to it",
+    "no-controller": "no stabilising controller that satisfies the constraints was found",
+    "unbounded": "the integral gain can be raised without limit: nothing in the plant bounds its bandwidth",
+}
+
+
+@dataclass(frozen=True)
+class ActiveConstraint:
+    """A constraint that limits the design: its kind, the frequency at which it touches, and its multiplier.
+
+    The multiplier is the relative growth of ki per unit by which the constraint is relaxed.
+    """
+
+    kind: Kind
+    frequency: float
+    multiplier: float
+
+
+@dataclass(frozen=True)
+class PIDDesign:
+    """A PID controller and how it came about.
+
+    Attributes
+    ----------
+    k, ki, kd, b
+        Gains and set-point weight (by `pid_setpoint_weight`); ``nan`` if there is no controller.
+    frequency
+        Where the Nyquist curve touches the circle (the lowest frequency, if several).
+    active
+        The active constraints with frequencies and multipliers.
+    status, message
+        What happened, as a word and as a sentence.
+    """
+
+    k: float
+    ki: float
+    kd: float
+    b: float
+    frequency: float
+    active: tuple[ActiveConstraint, ...]
+    status: Status
+
+    @property
+    def message(self) -> str:
+        """The status as a sentence."""
+        return MESSAGES[self.status]
+
+    @property
+    def integral_time(self) -> float:
+        """Ti = k/ki."""
+        return self.k / self.ki
+
+    @property
+    def derivative_time(self) -> float:
+        """Td = kd/k."""
+        return self.kd / self.k
+
+    @property
+    def controller(self) -> PID:
+        """The controller itself, with ideal derivative of the measurement."""
+        return PID(self.k, self.ki, self.kd, b=self.b)
+
+
+def pid_setpoint_weight(controller: PID, frequency: float, peak: float) -> float:
+    """Return the set-point weight b in [0, 1] for which |G_sp| is one where |T| has its peak (13).
+
+    Parameters
+    ----------
+    frequency, peak
+        Frequency and value of the complementary sensitivity peak; a peak at rest puts no bound and gives 1.
+    """
+    if controller.k * controller.ki <= 0.0:
+        return 0.0
+    if peak <= 1.0 or frequency == 0.0:
+        return 1.0
+    size = (controller.k * frequency) ** 2 + (controller.ki - frequency**2 * controller.kd) ** 2
+    inside = size - (controller.ki * peak) ** 2
+    return min(1.0, float(np.sqrt(inside) / (abs(controller.k) * frequency * peak))) if inside > 0.0 else 0.0

@@ -1,0 +1,215 @@
+"""The optimality system of PID design: a point found on a frequency grid becomes an optimum, exact and verified.
+
+At a maximum of ki every active constraint touches zero at its own frequency, where it is stationary, and the gradient
+of ki is a combination of the active gradients with positive multipliers. Newton's method solves this for the gains, the
+frequencies and the multipliers at once; the result is verified on all frequencies and for stability.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar, nnls, root
+
+from replicate.loops.circles import Circle
+from replicate.loops.controller import PID
+from replicate.loops.design_pi import design_grid
+from replicate.loops.errors import LoopError
+from replicate.loops.loop import Loop
+from replicate.loops.nyquist_constraints import Constraint, LoopJet
+from replicate.loops.pid_design import ActiveConstraint, PIDDesign, Status, pid_setpoint_weight
+from replicate.loops.plant import Plant
+from replicate.loops.sensitivity import sensitivity_peak
+
+Array = NDArray[np.float64]
+
+NEARLY = 1e-5  # violation that a point found on the grid may have between its grid frequencies
+TOUCHING_FIRST = 100.0  # weight of a constraint's value against its gradient when the active ones are chosen
+LOST = 0.02  # of ki, between a point on the grid and the optimum near it
+MOST_EVALUATIONS = 500  # of the optimality system: from a good start it converges in a few dozen
+FEASIBLE = 2e-9
+SAME_TOUCH = 0.06  # touches closer than this relative distance in frequency are one
+
+
+class GridProblem:
+    """The semi-infinite problem: its constraints on a frequency grid, and the optimality system of those that touch."""
+
+    def __init__(self, plant: Plant, circle: Circle, constraints: tuple[Constraint, ...]) -> None:
+        self.plant = plant
+        self.circle = circle
+        self.constraints = constraints
+        w = design_grid(plant)
+        self.grids = []
+        for constraint in constraints:
+            inside = w[(w > constraint.low) & (w < constraint.high)]
+            ends = [e for e in (constraint.low, constraint.high) if 0.0 < e < np.inf]
+            self.grids.append(LoopJet.of(plant, np.unique(np.concatenate([inside, ends]))))
+        # |L| tends to kd times this at infinite frequency, where a dead time turns it through all phases: there, too,
+        # the Nyquist curve has to stay outside the circle
+        first_order = plant.is_rational and plant.dead_time > 0.0 and plant.den.size - plant.num.size == 1
+        self.edge = abs(float(plant.num[0])) if first_order else 0.0
+        self.largest_kd = (circle.center - circle.radius) / self.edge if first_order else float("inf")
+
+    def values(self, index: int, x: Array) -> tuple[Array, Array]:
+        """Return values and gradients of a constraint on its grid, squashed to within -1 and 1."""
+        constraint = self.constraints[index]
+        value, gradient = self.grids[index].values(constraint.kind, self.circle, x, constraint.margin)
+        # far from zero the exact size does not matter, and large numbers would only harm the quadratic subproblem
+        squash = 1.0 / (1.0 + np.abs(value))
+        return value * squash, gradient * (squash**2)[:, None]
+
+    def at_infinity(self, x: Array) -> tuple[float, Array]:
+        """Return value and gradient of the sensitivity constraint at infinite frequency."""
+        distance = self.circle.center - abs(x[2]) * self.edge
+        slope = -2.0 * distance * self.edge * np.sign(x[2]) / self.circle.radius**2
+        return distance**2 / self.circle.radius**2 - 1.0, np.array([0.0, 0.0, slope])
+
+    def is_stable(self, x: Array) -> bool:
+        """Whether gains (k, ki, kd) give a stable loop."""
+        try:
+            return Loop(self.plant, PID(*x)).is_stable()
+        except LoopError:
+            return False
+
+    def finish(self, x: Array) -> PIDDesign | None:
+        """Return the verified design near a grid optimum, polished if the optimality system converges."""
+        active: list[ActiveConstraint] = []
+        for preference in (TOUCHING_FIRST, 0.0):
+            active = self._active(x, preference)
+            polished = self._newton(x, active) if active else None
+            if polished is not None:
+                gains, parts = polished
+                # an optimum below the point itself is another one
+                if gains[1] > x[1] * (1.0 - LOST) and self._verified(gains):
+                    return self._design(gains, parts, "optimal")
+        shrunk = x * np.array([1.0, 1.0 - NEARLY, 1.0])
+        if self._verified(shrunk, NEARLY):
+            return self._design(shrunk, tuple(active), "not-polished")
+        return None
+
+    def _active(self, x: Array, preference: float) -> list[ActiveConstraint]:
+        """Return the touching points with positive multipliers, from a non-negative fit of the gradient.
+
+        ``preference`` weighs against points that come close to zero but do not touch it.
+        """
+        candidates: list[tuple[int, float, Array, float]] = []
+        for index, grid in enumerate(self.grids):
+            value, gradient = self.values(index, x)
+            edge = np.concatenate([[np.inf], value, [np.inf]])
+            low = np.nonzero((value <= edge[:-2]) & (value <= edge[2:]) & (value < 5e-3))[0]
+            candidates += [(index, float(grid.w[i]), gradient[i], abs(float(value[i]))) for i in low]
+        if abs(x[2]) > self.largest_kd * (1.0 - 2e-3):
+            value_at_edge, gradient_at_edge = self.at_infinity(x)
+            candidates.append((0, float("inf"), gradient_at_edge, abs(value_at_edge)))
+        if not candidates:
+            return []
+        scale = np.array([max(abs(x[0]), 1e-6 * x[1]), x[1], max(abs(x[2]), 1e-6 * x[1])])
+        matrix = np.array([[*(gradient * scale), preference * value] for _, _, gradient, value in candidates]).T
+        # at a maximum the gradient of ki is minus a positive combination of the active gradients
+        multipliers, residual = nnls(matrix, np.array([0.0, -1.0, 0.0, 0.0]))
+        if residual > 0.3:
+            return []
+        active: list[ActiveConstraint] = []
+        for (index, touch, *_), multiplier in zip(candidates, multipliers, strict=True):
+            kind, frequency, weight = self.constraints[index].kind, touch, float(multiplier)
+            if weight <= 1e-6:
+                continue
+            if (
+                active
+                and active[-1].kind == kind
+                and frequency < np.inf
+                and frequency < active[-1].frequency * (1.0 + SAME_TOUCH)
+            ):
+                last = active.pop()  # one touch seen at two neighbouring grid frequencies
+                total = last.multiplier + weight
+                frequency = (last.frequency * last.multiplier + frequency * weight) / total
+                weight = total
+            active.append(ActiveConstraint(kind, frequency, weight))
+        return active
+
+    def _newton(self, x: Array, active: list[ActiveConstraint]) -> tuple[Array, tuple[ActiveConstraint, ...]] | None:
+        """Solve the optimality system from a grid optimum; unknowns are gains, touching frequencies and multipliers."""
+        size = np.array([max(abs(x[0]), 1e-6 * x[1]), x[1], max(abs(x[2]), 1e-6 * x[1])])
+        kinds = [next(c for c in self.constraints if c.kind == part.kind) for part in active]
+        fixed = [part.frequency in (kind.low, kind.high) for part, kind in zip(active, kinds, strict=True)]
+        touches = np.array([part.frequency for part in active])
+        finite = np.where(np.isinf(touches), 1.0, touches)
+        start = np.concatenate([x / size, np.zeros(len(active)), [part.multiplier for part in active]])
+
+        def equations(z: Array) -> Array:
+            gains = z[:3] * size
+            logs, multipliers = z[3 : 3 + len(active)], z[3 + len(active) :]
+            jet = LoopJet.of(self.plant, finite * np.exp(logs), order=3)
+            balance = np.array([0.0, 1.0, 0.0])  # gradient of ki, in scaled gains
+            rows = []
+            for n, (kind, at_end) in enumerate(zip(kinds, fixed, strict=True)):
+                if np.isinf(touches[n]):
+                    value_at_edge, gradient_at_edge = self.at_infinity(gains)
+                    balance = balance + multipliers[n] * gradient_at_edge * size
+                    rows += [value_at_edge, logs[n]]
+                    continue
+                one = LoopJet(jet.w[n : n + 1], jet.phi[:, :, n : n + 1])
+                value, gradient = one.values(kind.kind, self.circle, gains, kind.margin)
+                balance = balance + multipliers[n] * gradient[0] * size
+                rows += [value[0], logs[n] if at_end else one.slopes(kind.kind, self.circle, gains)[0]]
+            return np.concatenate([balance, rows])
+
+        with np.errstate(all="ignore"):
+            solution = root(  # type: ignore[call-overload]  # as above
+                equations, start, method="hybr", options={"xtol": 1e-14, "maxfev": MOST_EVALUATIONS}
+            )
+        if not np.max(np.abs(solution.fun)) < 1e-9:
+            return None
+        gains = solution.x[:3] * size
+        frequencies = [part.frequency * float(np.exp(s)) for part, s in zip(active, solution.x[3:], strict=False)]
+        multipliers = solution.x[3 + len(active) :] * size[1] / gains[1]  # relative to the ki that was found
+        if np.any(multipliers <= 0.0) or not 0.5 < gains[1] / x[1] < 2.0:
+            return None
+        parts = [
+            ActiveConstraint(part.kind, w, float(m))
+            for part, w, m in zip(active, frequencies, multipliers, strict=True)
+        ]
+        order = {"sensitivity": 0, "curvature": 1, "phase": 2}
+        return gains, tuple(sorted(parts, key=lambda p: (order[p.kind], p.frequency)))
+
+    def _verified(self, x: Array, tolerance: float = FEASIBLE) -> bool:
+        """Whether the loop is stable and no constraint is violated between the grid frequencies either."""
+        if x[1] <= 0.0:
+            return False
+        try:
+            loop = Loop(self.plant, PID(*x))
+            if not loop.is_stable():
+                return False
+            inverse = sensitivity_peak(loop.transfer, loop.poles(), self.circle.center)
+        except LoopError:
+            return False
+        if inverse.value * self.circle.radius > 1.0 + tolerance:
+            return False
+        return all(
+            self._lowest(index, x) >= -tolerance for index, c in enumerate(self.constraints) if c.kind != "sensitivity"
+        )
+
+    def _lowest(self, index: int, x: Array) -> float:
+        """Return the smallest value of a constraint on its range, polished between grid points."""
+        constraint, w = self.constraints[index], self.grids[index].w
+
+        def value(log_w: float) -> float:
+            jet = LoopJet.of(self.plant, np.array([np.exp(log_w)]))
+            return float(jet.values(constraint.kind, self.circle, x, constraint.margin)[0][0])
+
+        values = self.grids[index].values(constraint.kind, self.circle, x, constraint.margin)[0]
+        lowest = float(values.min())
+        inner = np.nonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]) & (values[1:-1] < 0.05))[0] + 1
+        for i in inner:
+            found = minimize_scalar(
+                value, bounds=(np.log(w[i - 1]), np.log(w[i + 1])), method="bounded", options={"xatol": 1e-10}
+            )
+            lowest = min(lowest, float(found.fun))
+        return lowest
+
+    def _design(self, x: Array, active: tuple[ActiveConstraint, ...], status: Status) -> PIDDesign:
+        k, ki, kd = (float(v) for v in x)
+        peak = Loop(self.plant, PID(k, ki, kd)).complementary_peak()
+        b = pid_setpoint_weight(PID(k, ki, kd), peak.frequency, peak.value)
+        touching = [part.frequency for part in active if part.kind == "sensitivity"]
+        return PIDDesign(k, ki, kd, b, min(touching, default=float("nan")), active, status)

@@ -1,0 +1,166 @@
+"""The search behind PID design: from the summits of a map of feasible gains and from the PI design, uphill in ki.
+
+The feasible set has ridges, and look-alikes behind the circle where the loop is unstable, so a single start is not to
+be trusted. Each start is climbed by sequential quadratic programming on a frequency grid, or on the map itself where
+gradients lead away from the summit, and finished by the optimality system.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from replicate.loops.gain_map import Summit, ascend, summits
+from replicate.loops.nyquist_constraints import Kind, LoopJet
+from replicate.loops.pid_design import PIDDesign
+from replicate.loops.pid_optimality import NEARLY, GridProblem
+
+Array = NDArray[np.float64]
+
+HIGH, LOW = 0.8, 0.3  # of the best ki so far: lower summits are not worth a climb by the map, or none at all
+SLACKS = (1e-4, 1e-3)  # distance that a climb keeps from the constraints, which dip a little between frequencies
+FINE = 6  # grid frequencies for each, where the shape is followed closely
+MOST_MAPS, LARGER = 3, 10.0  # how often, and by how much, a map is made larger
+DENSITIES = (1, 3)  # of the map, and of the one that is made if the first shows nothing
+SUMMITS = 4  # starts taken from the map of feasible gains
+RUNAWAY = 1e5  # gains this many times the start's: the search has left the problem
+
+
+class Search:
+    """The search for the largest ki of one problem."""
+
+    def __init__(self, problem: GridProblem) -> None:
+        self.problem = problem
+
+    @cached_property
+    def _jets(self) -> list[tuple[Kind, LoopJet]]:
+        return [
+            (constraint.kind, grid)
+            for constraint, grid in zip(self.problem.constraints, self.problem.grids, strict=True)
+        ]
+
+    @cached_property
+    def _fine_jets(self) -> list[tuple[Kind, LoopJet]]:
+        """The constraints on a grid fine enough not to look through a cusp of the Nyquist curve."""
+        fine = []
+        for kind, grid in self._jets:
+            steps = np.linspace(0.0, grid.w.size - 1.0, FINE * (grid.w.size - 1) + 1)
+            w = np.exp(np.interp(steps, np.arange(grid.w.size), np.log(grid.w)))
+            fine.append((kind, LoopJet.of(self.problem.plant, w)))
+        return fine
+
+    def summits(self, gain: float, frequency: float) -> list[Summit]:
+        """Return the highest summits of the map of feasible gains that lie in stable country.
+
+        The map is made larger while its highest summit lies on its edge, and denser while it shows none.
+        """
+        found: list[Summit] = []
+        for _ in range(MOST_MAPS):
+            for density in DENSITIES:
+                found = self._stable_summits(gain, frequency, density)
+                if found:
+                    break
+            on_edge = [s for s in found[:1] if s.on_edge(self.problem.largest_kd)]
+            if not on_edge:
+                break
+            gain *= LARGER
+        return found
+
+    def _stable_summits(self, gain: float, frequency: float, density: int) -> list[Summit]:
+        found: list[Summit] = []
+        for summit in summits(self._jets, self.problem.circle, gain, frequency, self.problem.largest_kd, density):
+            if len(found) == SUMMITS:
+                break
+            if self.problem.is_stable(np.array([summit.k, summit.inside, summit.kd])):
+                found.append(summit)
+        return found
+
+    def best(self, starts: Sequence[tuple[float, float, float]], heights: Sequence[Summit]) -> PIDDesign | None:
+        """Return the best design that summits and starts lead to.
+
+        Two that agree settle it, if no summit is left that is higher.
+        """
+        best: PIDDesign | None = None
+        left = list(heights)
+        for where in [*heights[:1], *starts[:1], *heights[1:], *starts[1:]]:
+            if isinstance(where, Summit):
+                left.remove(where)
+                if best is None or where.ki > HIGH * best.ki:
+                    found = self.ascended(where)
+                else:
+                    found = self.climbed(where.gains) if where.ki > LOW * best.ki else None
+            else:
+                found = self.climbed(np.array(where))
+            if found is None:
+                continue
+            agree = (
+                best is not None and found.status == best.status == "optimal" and abs(found.ki / best.ki - 1.0) < 1e-8
+            )
+            if best is None or found.ki > best.ki:
+                best = found
+            if agree and all(summit.ki < best.ki for summit in left):
+                break
+        return best
+
+    def ascended(self, summit: Summit) -> PIDDesign | None:
+        """Return the design to which a summit leads; where gradients lead away from it, the map is climbed."""
+        found = self.climbed(summit.gains)
+        for slack in SLACKS:
+            if found is not None and found.ki >= summit.ki:
+                break
+            fine = ascend(self._fine_jets, self.problem.circle, summit, slack, self.problem.largest_kd)
+            higher = self.problem.finish(fine.gains)
+            found = max((d for d in (found, higher) if d is not None), key=lambda d: d.ki, default=None)
+        return found
+
+    def climbed(self, x: Array) -> PIDDesign | None:
+        """Return the design to which a search from gains ``x`` leads."""
+        point = self.climb(x)
+        return None if point is None else self.problem.finish(point)
+
+    def climb(self, x: Array) -> Array | None:
+        """Search again from what was found until ki no longer grows: a single run may stop short on a ridge."""
+        best: Array | None = None
+        first = x[1]
+        for shrink in (1.0, 0.6, 1.0, 1.0, 1.0):
+            found = self._search(x * np.array([1.0, shrink, 1.0]))
+            if found is None:
+                continue
+            if best is not None and found[1] <= best[1] * (1.0 + 1e-6):
+                break
+            if found[1] > RUNAWAY * first:
+                return None
+            best = x = found
+        return best
+
+    def _search(self, x: Array) -> Array | None:
+        """Return a local maximum on the grid by sequential quadratic programming, or None if it ends infeasible."""
+        problem = self.problem
+        frequency = abs(x[1] / x[0]) if x[0] else 1.0
+        scale = np.array([max(abs(x[0]), 1e-3 * x[1]), x[1], max(x[2], 0.3 * abs(x[0]) / max(frequency, 1e-12))])
+
+        limit = problem.largest_kd / scale[2]
+
+        def values(z: Array) -> Array:
+            return np.concatenate([problem.values(i, z * scale)[0] for i in range(len(problem.grids))])
+
+        def gradients(z: Array) -> Array:
+            return np.concatenate([problem.values(i, z * scale)[1] * scale for i in range(len(problem.grids))])
+
+        with np.errstate(all="ignore"):
+            result = minimize(  # type: ignore[call-overload]  # the stubs want exact dict types, not literals
+                lambda z: -z[1],
+                x / scale,
+                jac=lambda _: np.array([0.0, -1.0, 0.0]),
+                constraints={"type": "ineq", "fun": values, "jac": gradients},
+                method="SLSQP",
+                bounds=None if np.isinf(limit) else [(None, None), (None, None), (-limit, limit)],
+                options={"maxiter": 100, "ftol": 1e-11},
+            )
+            if not np.all(np.abs(result.x) < RUNAWAY) or np.min(values(result.x)) < -NEARLY:
+                return None
+        return np.asarray(result.x * scale)
