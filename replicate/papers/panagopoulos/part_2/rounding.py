@@ -20,7 +20,7 @@ from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import LEVELS, PLANTS, ROW_LABELS, split
 from replicate.papers.panagopoulos.part_2.properties import LABELS
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected, weight
-from replicate.papers.panagopoulos.part_2.tables import GAINS, REPLACEMENT, SUPERSEDED, default_grid_peak
+from replicate.papers.panagopoulos.part_2.tables import GAINS, REPLACEMENT, SUPERSEDED
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +29,7 @@ QUANTITIES: dict[str, Callable[[Plant, PID], float]] = {
     "IE": lambda _, c: 1.0 / c.ki,
     "IE/IAE": lambda plant, c: 1.0 / (c.ki * Loop(plant, c).load_step().iae()),
     "b": lambda plant, c: weight(c, Resonance.of(plant, c)),
-    "Tsp": lambda plant, c: filter_corrected(c, default_grid_peak(plant, c)),
+    "Tsp": lambda plant, c: filter_corrected(c, Resonance.on_default_grid(plant, c)),
     "w0": lambda plant, c: Loop(plant, c).sensitivity_peak().frequency,
     "Mp": lambda plant, c: Resonance.of(plant, c).value,
     "Ms": lambda plant, c: Loop(plant, c).sensitivity_peak().value,

@@ -13,7 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import hypot, inf, sqrt
 
+import numpy as np
+
 from replicate.loops import PID, Loop, Plant
+
+DEFAULT_GRID = np.logspace(-2.0, 2.0, 50)  # of Matlab, when the frequencies are left to it, rad/s
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,14 @@ class Resonance:
         """Return the peak of a loop, from the exact frequency response."""
         peak = Loop(plant, controller).complementary_peak()
         return cls(peak.frequency, peak.value)
+
+    @classmethod
+    def on_default_grid(cls, plant: Plant, controller: PID) -> Resonance:
+        """Return the largest |T| on `DEFAULT_GRID`."""
+        value = Loop(plant, controller)(1j * DEFAULT_GRID)
+        size = np.abs(value / (1.0 + value))
+        i = int(np.argmax(size))
+        return cls(float(DEFAULT_GRID[i]), float(size[i]))
 
     @property
     def at_rest(self) -> bool:

@@ -6,9 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from replicate.loops import PID, Loop, Plant
+from replicate.loops import PID, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
@@ -36,15 +34,6 @@ def design_properties(row: str, problem: Problem = "stated") -> Properties:
 def printed_properties(table: str, row: str) -> Properties:
     """Return the properties that follow from the gains a table prints."""
     return Properties.of(split(row)[0], printed(table, row))
-
-
-def default_grid_peak(plant: Plant, controller: PID) -> Resonance:
-    """Return the largest |T| among the 50 frequencies of ``logspace(-2, 2)``, which Matlab takes by default."""
-    w = np.logspace(-2.0, 2.0, 50)
-    value = Loop(plant, controller)(1j * w)
-    size = np.abs(value / (1.0 + value))
-    i = int(np.argmax(size))
-    return Resonance(float(w[i]), float(size[i]))
 
 
 ONE_SIDED = 0.05  # as in paper I: the last time above +5 % of the step, undershoot ignored
@@ -127,7 +116,7 @@ def _add_readings(table: Table) -> None:
         "filter-default-grid",
         "The same on Matlab's default frequency grid",
         "As before, with the peak of $|T|$ taken from 50 frequencies, `logspace(-2,2)`.",
-    )(_filter_only(table.id, default_grid_peak))
+    )(_filter_only(table.id, Resonance.on_default_grid))
     table.reading(
         "paper-1-settling",
         "The settling time of paper I",

@@ -117,14 +117,9 @@ class SetpointFilter(NamedTuple):
     never_above_one: float
 
 
-DEFAULT_GRID = np.logspace(-2.0, 2.0, 50)  # of Matlab, rad/s
-
-
 def default_grid_peak(gains: tuple[float, float, float] | None = None) -> setpoint.Resonance:
     """Return the peak of |T| as paper II's tables found it: the largest of the 50 values on ``logspace(-2, 2)``."""
-    from replicate.papers.panagopoulos.part_2 import tables  # where that reading is defined; registers exhibits
-
-    return tables.default_grid_peak(DRYING, _controller(gains))
+    return setpoint.Resonance.on_default_grid(DRYING, _controller(gains))
 
 
 def _controller(gains: tuple[float, float, float] | None) -> PID:

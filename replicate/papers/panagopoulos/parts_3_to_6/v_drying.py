@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
+from replicate.papers.panagopoulos.part_2.setpoint import DEFAULT_GRID
 from replicate.papers.panagopoulos.parts_3_to_6.industrial import (
-    DEFAULT_GRID,
     DRYING,
     DRYING_PI,
     FILTER,
