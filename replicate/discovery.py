@@ -9,10 +9,14 @@ from __future__ import annotations
 import importlib
 import importlib.metadata
 import pkgutil
-from collections.abc import Iterable
+import traceback
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 
 from replicate.errors import PaperDefinitionError, UnknownPaperError
 from replicate.exhibits import Exhibit, Paper
+from replicate.locations import display_name
 
 ENTRY_POINTS = "replicate.papers"
 
@@ -44,12 +48,15 @@ def find_paper(id: str) -> Paper:
     ------
     UnknownPaperError
         If there is none of this name; the message lists the known ones.
+    PaperDefinitionError
+        If one of its modules cannot be imported.
     """
     papers = known_papers()
     if id not in papers:
         msg = f"there is no paper '{id}'; known: {', '.join(papers) or 'none'}"
         raise UnknownPaperError(msg)
-    return papers[id].load()
+    with _importing(id):
+        return papers[id].load()
 
 
 def find_papers(ids: Iterable[str] = ()) -> list[Paper]:
@@ -108,19 +115,36 @@ def select(names: Iterable[str]) -> tuple[list[Paper], list[tuple[str, str]] | N
 def _own_papers() -> list[tuple[str, object]]:
     import replicate.papers as home
 
-    names = [
-        module.name for module in pkgutil.iter_modules(home.__path__, f"{home.__name__}.") if module.ispkg
-    ]
-    return [(name, getattr(importlib.import_module(name), "paper", None)) for name in sorted(names)]
+    names = [module.name for module in pkgutil.iter_modules(home.__path__, f"{home.__name__}.") if module.ispkg]
+    found: list[tuple[str, object]] = []
+    for name in sorted(names):
+        with _importing(name):
+            found.append((name, getattr(importlib.import_module(name), "paper", None)))
+    return found
 
 
 def _installed_papers() -> list[tuple[str, object]]:
     found: list[tuple[str, object]] = []
     for point in sorted(importlib.metadata.entry_points(group=ENTRY_POINTS)):
         where = f"entry point '{point.name}'"
-        try:
+        with _importing(f"{where}: {point.value}"):
             found.append((where, point.load()))
-        except (ImportError, AttributeError) as error:
-            msg = f"{where}: {point.value} cannot be loaded: {error}"
-            raise PaperDefinitionError(msg) from error
     return found
+
+
+@contextmanager
+def _importing(what: str) -> Iterator[None]:
+    """Tell of an exception in a paper's own code in one line, with the file and line that raised it."""
+    try:
+        yield
+    except PaperDefinitionError:
+        raise
+    except Exception as error:
+        if isinstance(error, SyntaxError) and error.filename:
+            file, line, reason = error.filename, error.lineno, error.msg
+        else:
+            frames = traceback.extract_tb(error.__traceback__)
+            frame = next(frame for frame in reversed(frames) if not frame.filename.startswith("<frozen"))
+            file, line, reason = frame.filename, frame.lineno, f"{type(error).__name__}: {error}"
+        msg = f"{what} cannot be loaded: {display_name(Path(file))}:{line}: {reason}"
+        raise PaperDefinitionError(msg) from error
