@@ -12,9 +12,11 @@ from __future__ import annotations
 import csv
 import importlib
 import importlib.resources
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.resources.abc import Traversable
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
@@ -242,18 +244,12 @@ class Paper:
         """Return the package's folder, for its data files."""
         return importlib.resources.files(self.package)
 
-    def printed_cells(self, exhibit: str) -> dict[tuple[str, str], str]:
+    def printed_cells(self, exhibit: str) -> Mapping[tuple[str, str], str]:
         """Return what the paper prints in a table, by row and column, for exhibits that weigh the print as evidence.
 
         Blank cells are left out. The file is not validated here; `replicate.printed.read_printed` does that.
         """
-        text = (self.folder() / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
-        return {
-            (record["row"], column): cell
-            for record in csv.DictReader(text.splitlines())
-            for column, cell in record.items()
-            if column != "row" and cell
-        }
+        return _printed_cells(self.package, exhibit)
 
     def printed_numbers(self, exhibit: str) -> dict[tuple[str, str], float]:
         """Return the printed cells of a table as numbers."""
@@ -357,3 +353,15 @@ class Paper:
     def not_computable(self, id: str, title: str, reason: str, *, kind: TableKind | FigureKind = "figure") -> None:
         """Add an exhibit that cannot be recomputed, with the reason."""
         self._add(NotComputable(id, kind, title, reason))
+
+
+@cache
+def _printed_cells(package: str, exhibit: str) -> Mapping[tuple[str, str], str]:
+    text = (importlib.resources.files(package) / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
+    cells = {
+        (record["row"], column): cell
+        for record in csv.DictReader(text.splitlines())
+        for column, cell in record.items()
+        if column != "row" and cell
+    }
+    return MappingProxyType(cells)

@@ -57,9 +57,7 @@ def computed_text(value: float | None) -> str:
     return f"{value + 0.0:.{COMPUTED_DIGITS}g}"  # + 0.0 turns -0 into 0
 
 
-def match(
-    printed: PrintedValue | str, computed: float | None, significant_digits: int | None = None
-) -> Match:
+def match(printed: PrintedValue | str, computed: float | None, significant_digits: int | None = None) -> Match:
     """Compare a computed value with a printed one.
 
     Parameters
@@ -99,6 +97,17 @@ def match(
         return Match("none")
     with localcontext(prec=_PRECISION):
         return _compare(printed.value, printed.unit, Decimal(text))
+
+
+def meets(printed: str, computed: float) -> bool:
+    """Whether a computed value is equal to a print, for exhibits that count how many numbers a hypothesis meets.
+
+    Examples
+    --------
+    >>> meets("3.84", 3.8361), meets("3.84", 3.8499), meets("3.84", 3.8501), meets("3.84", 3.834)
+    (True, True, False, False)
+    """
+    return match(printed, computed).kind == "equal"
 
 
 def _compare(printed: Decimal, unit: Decimal, computed: Decimal) -> Match:

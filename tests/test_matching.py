@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from synthetic import decimal_text
 
 from replicate.errors import PrintedFileError
-from replicate.matching import Match, computed_text, format_like, match
+from replicate.matching import Match, computed_text, format_like, match, meets
 from replicate.printed import PrintedValue
 
 # 10 printed digits and 2 more are the 12 that survive the writing of the computed number.
@@ -78,9 +78,7 @@ def test_fixed_significant_digits(digits: int, exponent: int, offset: int) -> No
     if "." in stripped:
         stripped = stripped.rstrip("0").rstrip(".")
     assert match(stripped, computed(steps, exponent), significant_digits=6) == expected(digits, steps)
-    assert match(PrintedValue(stripped, significant_digits=6), computed(steps, exponent)) == expected(
-        digits, steps
-    )
+    assert match(PrintedValue(stripped, significant_digits=6), computed(steps, exponent)) == expected(digits, steps)
 
 
 def test_trailing_zeros_are_information() -> None:
@@ -162,3 +160,9 @@ def test_format_like_keeps_significant_digits(digits: int, mantissa: int, expone
     rounded = (mantissa + unit // 2) // unit * unit
     assert Fraction(text) == rounded * Fraction(10) ** exponent
     assert not ("." in text and text.endswith("0"))
+
+
+def test_meets_rounds_and_truncates():
+    assert meets("75.7", 75.7508)  # truncated
+    assert meets("38.4", 38.351)
+    assert not meets("7.23", 7.2406)

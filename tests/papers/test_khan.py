@@ -25,7 +25,6 @@ from replicate.papers.khan import (
     refit,
     smooth,
     sweep,
-    transcription,
 )
 from replicate.papers.khan import paper as khan
 
@@ -328,12 +327,6 @@ def test_a_hundredth_of_the_band_moves_the_slow_settling_times_by_more_than_they
     y = processes.loop("ZN", 1.0, 10.0)
     for column, signal in (("ts", y.step()), ("td", y.load_step())):
         assert 0.01 / rate > abs(signal.settling_time(0.02) - printed["ZN", column])
-
-
-def test_meets_rounds_and_truncates():
-    assert transcription.meets("75.7", 75.7508)  # truncated
-    assert transcription.meets("38.4", 38.351)
-    assert not transcription.meets("7.23", 7.2406)
 
 
 @pytest.mark.parametrize(("table", "rows", "columns"), [("table-1", 5, 4), ("table-2", 7, 8)])

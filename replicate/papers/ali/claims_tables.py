@@ -8,11 +8,11 @@ from itertools import pairwise
 
 from replicate.exhibits import Finding
 from replicate.loops import Loop
+from replicate.matching import meets
 from replicate.papers.ali import paper
 from replicate.papers.ali.claims import TABLE_1, WORST, claims, number, true_peak
 from replicate.papers.ali.eq_11 import ROWS, printed_coefficients, printed_integral_times
 from replicate.papers.ali.sensitivities import designed, exact_peak
-from replicate.papers.ali.sensitivity_count import is_print_of
 from replicate.papers.ali.stability import DESIGNS, robustness
 from replicate.papers.ali.structures import Settings, plant, series
 from replicate.papers.ali.table_1 import table_1
@@ -38,7 +38,7 @@ def true_ms() -> Finding:
         for row in table.rows:
             peak = true_peak(table.id, Fraction(row))
             deviations.append(float(texts[row, "Ms"]) / peak - 1.0)
-            equal += is_print_of(texts[row, "Ms"], peak)
+            equal += meets(texts[row, "Ms"], peak)
     return Finding(
         "holds" if equal == len(deviations) else "fails",
         max(deviations),

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
+from replicate.matching import meets
 from replicate.papers.ali import paper
 from replicate.papers.ali.sensitivities import Peak, designed, exact_peak, sensitivity, tabulated
 from replicate.papers.ali.structures import (
@@ -97,18 +97,7 @@ def count() -> pd.DataFrame:
         for table in (table_1, table_2):
             texts = paper.printed_cells(table.id)
             values = {row: sensitivity(table.id, row, structure, peak, settings) for row in table.rows}
-            equal.append(sum(is_print_of(texts[row, "Ms"], value) for row, value in values.items()))
+            equal.append(sum(meets(texts[row, "Ms"], value) for row, value in values.items()))
             deviations += [abs(value / float(texts[row, "Ms"]) - 1.0) for row, value in values.items()]
         rows[id] = [*equal, sum(equal), 100.0 * max(deviations), len(deviations)]
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(sensitivity_count.columns))
-
-
-def is_print_of(text: str, value: float) -> bool:
-    """Return whether a positive value rounds or truncates to a printed text with two decimals.
-
-    Examples
-    --------
-    >>> is_print_of("1.84", 1.8449), is_print_of("1.84", 1.8454), is_print_of("1.84", 1.8344)
-    (True, True, False)
-    """
-    return text in {f"{value:.2f}", f"{math.floor(value * 100.0) / 100.0:.2f}"}

@@ -11,6 +11,7 @@ from scipy.special import lambertw
 
 from replicate.exhibits import ClaimVerdict, Finding
 from replicate.loops import PI, Loop
+from replicate.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.bryant import gain_for_damping
 from replicate.papers.khan.claims import claims
@@ -19,7 +20,6 @@ from replicate.papers.khan.fits import rise_time_fit
 from replicate.papers.khan.processes import NAMES, PRINTED, RESTORED, gains, loop, plant, settling_after_load
 from replicate.papers.khan.sweep import stability_limit, sweep
 from replicate.papers.khan.tables import RULES_1, RULES_2
-from replicate.papers.khan.transcription import meets
 
 
 @claims.claim(

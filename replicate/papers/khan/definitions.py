@@ -9,11 +9,11 @@ from functools import cache
 import pandas as pd
 
 from replicate.loops import PI, Loop, Signal
+from replicate.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
 from replicate.papers.khan.sweep import stability_limit
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES, RULES_1, RULES_2
-from replicate.papers.khan.transcription import meets
 from replicate.rules import classical_rules
 
 NEAR = 0.005  # half a per cent: the printed times carry errors of that size

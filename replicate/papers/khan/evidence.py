@@ -6,11 +6,11 @@ import math
 
 import pandas as pd
 
+from replicate.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.definitions import VERSIONS, specifications_of
 from replicate.papers.khan.processes import loop, settling_after_load
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES
-from replicate.papers.khan.transcription import meets
 
 swapped = paper.table(
     "swapped-rows",
