@@ -62,23 +62,6 @@ PLANTS = MappingProxyType(
     }
 )
 
-TEX = MappingProxyType(
-    {
-        "G1": r"\dfrac{1}{(s+1)^3}",
-        "G2": r"\dfrac{1}{(s+1)(1+0.2s)(1+0.04s)(1+0.008s)}",
-        "G3": r"\dfrac{e^{-15s}}{(s+1)^3}",
-        "G4": r"\dfrac{1}{s(s+1)^2}",
-        "G5": r"\dfrac{1-2s}{(s+1)^3}",
-        "G6": r"\dfrac{9}{(s+1)(s^2+2s+9)}",
-        "G7": r"e^{-s}",
-        "G8": r"\dfrac{e^{-s}}{s}",
-        "G9": r"e^{-\sqrt{s}}",
-        "G10": r"\dfrac{100}{(s+10)^2}\left(\dfrac{1}{s+1}+\dfrac{0.5}{s+0.05}\right)",
-        "G11": r"\dfrac{150}{(s+10)^2(s+1)}",
-        "G13": r"\dfrac{(s+6)^2}{s(s+1)^2(s+36)}",
-    }
-)
-
 
 def label(name: str) -> str:
     """Return a plant's name as the paper sets it, ``G12 a=0.2`` as $G_{12}$, $a = 0.2$."""

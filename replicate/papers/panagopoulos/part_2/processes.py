@@ -31,17 +31,6 @@ PLANTS: dict[str, Plant] = {
     "G8": Plant([-2.0, 1.0], _lags(1, 1, 1)),
 }
 
-TITLES = {
-    "G1": r"$G_1 = \frac{1}{s(s+1)^3}$",
-    "G2": r"$G_2 = \frac{e^{-5s}}{(s+1)^3}$",
-    "G3": r"$G_3 = \frac{1}{(s+1)(1+0.2s)(1+0.04s)(1+0.008s)}$",
-    "G4": r"$G_4 = \frac{1}{(s+1)^4}$",
-    "G5": r"$G_5 = \frac{1}{(s+1)^5}$",
-    "G6": r"$G_6 = \frac{1}{(s+1)^6}$",
-    "G7": r"$G_7 = \frac{1}{(s+1)^7}$",
-    "G8": r"$G_8 = \frac{1-2s}{(s+1)^3}$",
-}
-
 LEVELS = (1.4, 2.0)
 """The two values of the design parameter Ms."""
 
