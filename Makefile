@@ -54,8 +54,9 @@ bench: $(VENV)/.ready ## measure speed and accuracy against python-control
 ##@ Working on it
 
 .PHONY: lint
-lint: $(VENV)/.ready ## ruff and mypy --strict
+lint: $(VENV)/.ready ## ruff (rules and format) and mypy --strict
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
 .PHONY: lock

@@ -51,9 +51,7 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
             row = replace(row, verdict=finding.verdict, computed=computed, explanation=evidence)
         judgement.verdicts.append(row)
         if claim.printed and parse_number(claim.printed) is None:
-            judgement.problems.append(
-                f"{place}: printed = '{claim.printed}' is not a number; allowed: {ALLOWED}"
-            )
+            judgement.problems.append(f"{place}: printed = '{claim.printed}' is not a number; allowed: {ALLOWED}")
         elif claim.printed:
             judgement.results.append(_result_row(row, claim, None if wrong else finding))
     status: Status = "done"

@@ -8,9 +8,7 @@ from typing import Literal
 from replicate.exhibits import ClaimVerdict
 from replicate.matching import MatchHow, MatchKind
 
-ValueVerdict = Literal[
-    "reproduced", "reconstructed", "near", "misprint", "discrepant", "unexplained", "not-computable"
-]
+ValueVerdict = Literal["reproduced", "reconstructed", "near", "misprint", "discrepant", "unexplained", "not-computable"]
 Verdict = ValueVerdict | ClaimVerdict
 Status = Literal["done", "partly", "not-computable"]
 

@@ -122,9 +122,7 @@ class Ledger:
         lines = [number for number, line in enumerate(text.splitlines(), 1) if _ENTRY_HEADER.match(line)]
         if len(lines) != len(raw):  # an inline list of tables, or the header inside a multi-line text
             lines = [1] * len(raw)
-        entries = tuple(
-            _entry(f"{name}:{line}", line, item, paper) for line, item in zip(lines, raw, strict=True)
-        )
+        entries = tuple(_entry(f"{name}:{line}", line, item, paper) for line, item in zip(lines, raw, strict=True))
         _check_named_once(name, entries)
         return cls(name, entries)
 
@@ -143,9 +141,7 @@ class Ledger:
             if entry.name.startswith("ledger-") and entry.name.endswith(".toml")
         )
         ledgers = [cls.load(folder / name, paper) for name in ("ledger.toml", *parts)]
-        entries = tuple(
-            replace(entry, file=ledger.name) for ledger in ledgers for entry in ledger.entries
-        )
+        entries = tuple(replace(entry, file=ledger.name) for ledger in ledgers for entry in ledger.entries)
         _check_named_once(ledgers[0].name, entries)
         return cls(ledgers[0].name, entries)
 

@@ -269,9 +269,7 @@ def _digits(number: float, digits: int = 6) -> str:
 
 def _template_line(error: BaseException) -> int:
     """Return the line of the template in which an error arose; 1 if it left no trace there."""
-    lines = [
-        frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<template>"
-    ]
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<template>"]
     return next((line for line in reversed(lines) if line is not None), 1)
 
 

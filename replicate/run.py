@@ -88,9 +88,7 @@ def run(
         if kept is not None:
             finished[unit] = kept
             report(Progress(len(finished), len(owner), unit, from_cache=True))
-    for unit, result in _compute_all(
-        [unit for unit in owner if unit not in finished], jobs or os.cpu_count() or 1
-    ):
+    for unit, result in _compute_all([unit for unit in owner if unit not in finished], jobs or os.cpu_count() or 1):
         finished[unit] = result
         errors = errors_of(result)
         if not errors:

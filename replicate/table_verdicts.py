@@ -58,13 +58,10 @@ class TableJudge:
         entries = dict(self._assign({key for key, verdict in held.items() if verdict is None}))
         for key, value in self.printed.items():
             self.judgement.results.extend(
-                self._result_row(key, value, reading, self.matches[reading][key])
-                for reading in self.table.readings
+                self._result_row(key, value, reading, self.matches[reading][key]) for reading in self.table.readings
             )
             entry = entries.get(key)
-            verdict = held[key] or (
-                self._explained(key, value, entry) if entry else self._unexplained(key, value)
-            )
+            verdict = held[key] or (self._explained(key, value, entry) if entry else self._unexplained(key, value))
             if entry:
                 explained.append((len(self.judgement.verdicts), entry))
             self.judgement.verdicts.append(verdict)
@@ -159,13 +156,9 @@ class TableJudge:
                 f"{place}: corrected = '{entry.corrected}', but reading '{entry.reading}' gives {text}"
             )
             return False
-        if stated.unit > self.printed[key].unit and _digits(entry.corrected) < _digits(
-            self.printed[key].text
-        ):
+        if stated.unit > self.printed[key].unit and _digits(entry.corrected) < _digits(self.printed[key].text):
             print_ = self.printed[key].text
-            self.judgement.problems.append(
-                f"{place}: corrected = '{entry.corrected}' has fewer digits than '{print_}'"
-            )
+            self.judgement.problems.append(f"{place}: corrected = '{entry.corrected}' has fewer digits than '{print_}'")
             return False
         return True
 
@@ -187,19 +180,14 @@ class TableJudge:
         if self.result.errors and not any(key in numbers for numbers in self.numbers.values()):
             return self._verdict_row(key, "unexplained", AS_WRITTEN)  # the failure is on record already
         computed = [
-            f"{reading} {computed_text(self.numbers[reading].get(key)) or 'nothing'}"
-            for reading in self.numbers
+            f"{reading} {computed_text(self.numbers[reading].get(key)) or 'nothing'}" for reading in self.numbers
         ]
-        self._problem(
-            f"{_cell(key)}: printed {value.text}, computed {', '.join(computed)}: has no ledger entry"
-        )
+        self._problem(f"{_cell(key)}: printed {value.text}, computed {', '.join(computed)}: has no ledger entry")
         return self._verdict_row(key, "unexplained", AS_WRITTEN)
 
     def _result_row(self, key: Key, value: PrintedValue, reading: str, found: Match) -> ResultRow:
         computed = computed_text(self.numbers[reading].get(key))
-        return ResultRow(
-            self.paper, self.table.id, *key, value.text, reading, computed, found.kind, found.how
-        )
+        return ResultRow(self.paper, self.table.id, *key, value.text, reading, computed, found.kind, found.how)
 
     def _verdict_row(self, key: Key, verdict: ValueVerdict, reading: str) -> VerdictRow:
         computed = computed_text(self.numbers[reading].get(key))

@@ -106,6 +106,4 @@ def _forget() -> None:
 
 def contents(folder: Path) -> dict[Path, bytes]:
     """Return what a run left behind, without what it keeps for the next one."""
-    return {
-        path: path.read_bytes() for path in folder.rglob("*") if path.is_file() and "cache" not in path.parts
-    }
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file() and "cache" not in path.parts}

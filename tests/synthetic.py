@@ -41,9 +41,7 @@ def paper(folder: Path | None = None, *, significant_digits: int | None = None) 
     made = FolderPaper("toy", "toy", "Toy", ("N. N.",), "Toy (2000)", 2000, (), ("table-1", "fig-1", "fig-2"))
     if folder is not None:
         made.data_folder = folder
-    table = made.table(
-        "table-1", "Numbers", rows=ROWS, columns=COLUMNS, significant_digits=significant_digits
-    )
+    table = made.table("table-1", "Numbers", rows=ROWS, columns=COLUMNS, significant_digits=significant_digits)
     table.reading("as-written", "As written")(never)
     table.reading("authors", "As the authors computed")(never)
 
@@ -92,9 +90,7 @@ def printed(
     texts = {("A", "x"): ax, ("A", "y"): ay, ("B", "x"): bx, ("B", "y"): by}
     return {
         "table-1": {
-            key: PrintedValue(text, *key, significant_digits=significant_digits)
-            for key, text in texts.items()
-            if text
+            key: PrintedValue(text, *key, significant_digits=significant_digits) for key, text in texts.items() if text
         }
     }
 

@@ -99,9 +99,7 @@ def test_lines_across_the_axes_are_in_data_coordinates() -> None:
 
 def test_scattered_points_are_all_kept_in_order() -> None:
     x = np.linspace(0.0, 1.0, 1001)
-    result = on_axes(
-        lambda axes: (axes.scatter(x, 2 * x, label="samples"), axes.plot(x, x, "o", label="dots"))
-    )
+    result = on_axes(lambda axes: (axes.scatter(x, 2 * x, label="samples"), axes.plot(x, x, "o", label="dots")))
     assert np.allclose(curve(result, "samples"), np.column_stack([x, 2 * x]), rtol=1e-8)
     assert len(curve(result, "dots")) == 1001
 
@@ -216,9 +214,7 @@ def test_the_svg_is_ready_for_a_page() -> None:
 
 
 def test_the_png_is_a_png_of_the_right_size() -> None:
-    png = capture(
-        "p", Figure("f", "figure", "t", lambda canvas: canvas.subplots() and None, size=(3.0, 2.0))
-    ).png
+    png = capture("p", Figure("f", "figure", "t", lambda canvas: canvas.subplots() and None, size=(3.0, 2.0))).png
     assert png.startswith(b"\x89PNG")
     assert int.from_bytes(png[16:20], "big") == 3 * plotstyle.PNG_DPI
     assert int.from_bytes(png[20:24], "big") == 2 * plotstyle.PNG_DPI

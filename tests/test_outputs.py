@@ -54,9 +54,7 @@ def test_the_three_lists(tmp_path: Path) -> None:
         "computed": "1",
         "match": "equal",
     }
-    assert [row["status"] for row in exhibits] == ["done", "done", "done", "not-computable"] or len(
-        exhibits
-    ) == 4
+    assert [row["status"] for row in exhibits] == ["done", "done", "done", "not-computable"] or len(exhibits) == 4
     assert {row["row"]: row["verdict"] for row in verdicts if row["column"] == "claim"} == {
         "big": "holds",
         "smooth": "fails",
@@ -98,9 +96,7 @@ def test_tables_keep_text_and_blanks() -> None:
 def test_same_results_same_bytes(tmp_path: Path) -> None:
     one, other = written(tmp_path / "1"), written(tmp_path / "2")
     files = {path.relative_to(one): path.read_bytes() for path in one.rglob("*") if path.is_file()}
-    assert files == {
-        path.relative_to(other): path.read_bytes() for path in other.rglob("*") if path.is_file()
-    }
+    assert files == {path.relative_to(other): path.read_bytes() for path in other.rglob("*") if path.is_file()}
     assert len(files) == 9
     assert not any(str(tmp_path).encode() in content for content in files.values())
 

@@ -84,9 +84,7 @@ def test_a_missing_file_is_named_without_the_machine(tmp_path: Path) -> None:
         read_printed(tmp_path / "toy" / "printed" / "none.csv", table())
 
 
-@pytest.mark.parametrize(
-    "text", ["1,2", "", " ", "--1", "1e", "1.2.3", "inf", "NaN", "0x1", "1_000", "٣", "1 2", "."]
-)
+@pytest.mark.parametrize("text", ["1,2", "", " ", "--1", "1e", "1.2.3", "inf", "NaN", "0x1", "1_000", "٣", "1 2", "."])
 def test_not_numbers(text: str) -> None:
     assert parse_number(text) is None
     with pytest.raises(PrintedFileError, match="is not a number; allowed: digits"):

@@ -12,8 +12,7 @@ from replicate.verdicts import judge
 
 COMPUTED = "computed: 'table-1', 'fig-1', 'claims'"
 VERDICTS = (
-    "reproduced, reconstructed, near, misprint, discrepant, unexplained, not-computable, "
-    "holds, holds-partly, fails"
+    "reproduced, reconstructed, near, misprint, discrepant, unexplained, not-computable, holds, holds-partly, fails"
 )
 
 
@@ -117,9 +116,7 @@ def test_pulls_results(template: str, text: str) -> None:
     ],
 )
 @pytest.mark.parametrize("lines_before", [0, 2])
-def test_what_does_not_exist_is_an_error_with_its_line(
-    template: str, message: str, lines_before: int
-) -> None:
+def test_what_does_not_exist_is_an_error_with_its_line(template: str, message: str, lines_before: int) -> None:
     text = "Prose.\n" * lines_before + template + "\nMore."
     with pytest.raises(TemplateError) as caught:
         prose().render(text, "toy/notes.md", first_line=10)
@@ -127,9 +124,7 @@ def test_what_does_not_exist_is_an_error_with_its_line(
 
 
 def test_a_reading_that_failed_says_so() -> None:
-    with pytest.raises(
-        TemplateError, match=r"^toy/notes\.md:1: value\(.*'authors'\): the reading failed: no grid$"
-    ):
+    with pytest.raises(TemplateError, match=r"^toy/notes\.md:1: value\(.*'authors'\): the reading failed: no grid$"):
         prose(authors="no grid").render("{{ value('table-1', 'A', 'x', 'authors') }}", "toy/notes.md")
 
 

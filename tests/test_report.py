@@ -178,9 +178,7 @@ def test_pages_stand_alone(make):
         assert "@import" not in text
         assert not re.search(r"url\((?!#)", text)
         assert not [address for address in page.values("href") if ":" in address]
-        assert not [
-            attribute for _, attrs in page.elements for attribute in attrs if attribute.startswith("on")
-        ]
+        assert not [attribute for _, attrs in page.elements for attribute in attrs if attribute.startswith("on")]
 
 
 def test_every_printed_and_computed_value_stands_with_its_verdict(make):

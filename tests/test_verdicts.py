@@ -165,9 +165,7 @@ def test_a_cell_that_is_named_wins_over_a_star() -> None:
         ),
     ],
 )
-def test_an_entry_that_no_longer_applies_is_a_problem(
-    found: LedgerEntry, texts: dict[str, str], message: str
-) -> None:
+def test_an_entry_that_no_longer_applies_is_a_problem(found: LedgerEntry, texts: dict[str, str], message: str) -> None:
     assert judged(found, **texts).problems == [message]
 
 
@@ -220,9 +218,9 @@ def test_a_misprint_needs_a_computed_value() -> None:
 def test_a_reading_that_raised_does_not_take_the_others_down() -> None:
     judgement = judged(run=results(errors={AS_WRITTEN: "ZeroDivisionError: no gain"}))
     assert {row.verdict for row in judgement.verdicts if row.exhibit == "table-1"} == {"reconstructed"}
-    assert {
-        row.match for row in judgement.results if row.reading == AS_WRITTEN and row.exhibit == "table-1"
-    } == {"none"}
+    assert {row.match for row in judgement.results if row.reading == AS_WRITTEN and row.exhibit == "table-1"} == {
+        "none"
+    }
     assert judgement.problems == ["toy table-1: reading 'as-written' failed: ZeroDivisionError: no gain"]
 
 
@@ -407,8 +405,7 @@ def test_files_are_read_from_the_papers_folder(tmp_path: Path) -> None:
     (folder / "printed").mkdir(parents=True)
     (folder / "printed" / "table-1.csv").write_text("r,x,y\nA,1.7,2.0\nB,3.0,4.0\n", encoding="utf-8")
     (folder / "ledger.toml").write_text(
-        '[[entry]]\nexhibit = "table-1"\nrows = ["A"]\ncolumns = ["x"]\n'
-        'cause = "method"\nexplanation = "Coarse."\n',
+        '[[entry]]\nexhibit = "table-1"\nrows = ["A"]\ncolumns = ["x"]\ncause = "method"\nexplanation = "Coarse."\n',
         encoding="utf-8",
     )
     judgement = judge(synthetic.paper(folder), results())

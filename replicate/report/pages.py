@@ -80,9 +80,7 @@ def page_name(paper: str, part: str) -> str:
     return f"{paper}-{part}.html" if part else f"{paper}.html"
 
 
-def build_report(
-    papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path
-) -> list[Path]:
+def build_report(papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path) -> list[Path]:
     """Write the report.
 
     Parameters

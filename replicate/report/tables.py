@@ -127,9 +127,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
     )
 
 
-def _cell(
-    table: Table, frames: Mapping[str, pd.DataFrame], row: str, column: str, verdict: VerdictRow | None
-) -> Cell:
+def _cell(table: Table, frames: Mapping[str, pd.DataFrame], row: str, column: str, verdict: VerdictRow | None) -> Cell:
     printed = PrintedValue(verdict.printed, significant_digits=table.significant_digits) if verdict else None
     values = []
     for id, frame in frames.items():

@@ -87,9 +87,7 @@ def exhibit_views(
     ]
 
 
-def _common(
-    exhibit: Exhibit, row: ExhibitRow | None, verdicts: list[VerdictRow], page: str
-) -> dict[str, Any]:
+def _common(exhibit: Exhibit, row: ExhibitRow | None, verdicts: list[VerdictRow], page: str) -> dict[str, Any]:
     """Return the fields that every kind of exhibit has; without an inventory row it was not asked for."""
     label, title = heading(exhibit.id, exhibit.title)
     reason = exhibit.reason if isinstance(exhibit, NotComputable) else ""

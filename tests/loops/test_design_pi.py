@@ -73,9 +73,7 @@ CASES = {
     "G7": Case(dead_time=1.0, reach=3.0),
     "G8": Case(den=(1.0, 0.0), dead_time=1.0, reach=3.0),
     "G9": Case(root=True, reach=60.0),
-    "G10": Case(
-        tuple(100 * np.polyadd((1, 0.05), (0.5, 0.5))), poly((1, 10), (1, 10), (1, 1), (1, 0.05)), reach=20.0
-    ),
+    "G10": Case(tuple(100 * np.polyadd((1, 0.05), (0.5, 0.5))), poly((1, 10), (1, 10), (1, 1), (1, 0.05)), reach=20.0),
     "G11": Case((150.0,), poly((1, 10), (1, 10), (1, 1)), reach=20.0),
     "G12, a=0": resonant(0.0),
     "G12, a=0.1": resonant(0.1),

@@ -78,9 +78,7 @@ def test_dominant_pole_of_a_pair_is_the_upper_one():
 
 
 def test_metrics_are_samples_not_interpolations():
-    response = SampledResponse(
-        np.linspace(0.0, 2.0, 9), np.array([0.0, 0.1, 0.49, 0.5, 0.89, 0.95, 1.3, 0.9, 1.01])
-    )
+    response = SampledResponse(np.linspace(0.0, 2.0, 9), np.array([0.0, 0.1, 0.49, 0.5, 0.89, 0.95, 1.3, 0.9, 1.01]))
     assert response.spacing == 0.25
     assert response.overshoot() == pytest.approx(0.3)
     assert response.settling_time(0.02) == 1.75

@@ -196,9 +196,7 @@ def _dominance(process: Process) -> Finding:
     )
 
 
-@claims.claim(
-    "dominance-4-1", "Condition (27) is met for Example 4.1, $a = 0.85$.", where="(27), Example 4.1"
-)
+@claims.claim("dominance-4-1", "Condition (27) is met for Example 4.1, $a = 0.85$.", where="(27), Example 4.1")
 def dominance_41() -> Finding:
     return _dominance(EXAMPLE_41)
 
@@ -208,9 +206,7 @@ def dominance_42() -> Finding:
     return _dominance(EXAMPLE_42)
 
 
-@claims.claim(
-    "dominance-pt326", "Condition (27) is met for the PT326 set, $a = 1.3$.", where="(27), section V"
-)
+@claims.claim("dominance-pt326", "Condition (27) is met for the PT326 set, $a = 1.3$.", where="(27), section V")
 def dominance_pt326() -> Finding:
     return _dominance(PT326)
 
@@ -279,17 +275,14 @@ def a_is_speed() -> Finding:
 # examples
 
 
-@claims.claim(
-    "no-overshoot", "The pole assignment gives no overshoot.", where="abstract, Tables 2 and 3, section V"
-)
+@claims.claim("no-overshoot", "The pole assignment gives no overshoot.", where="abstract, Tables 2 and 3, section V")
 def no_overshoot() -> Finding:
     values = {process.title: _column(process, "text", "overshoot")["PA"] for process in PROCESSES}
     worst = max(values.values())
     return Finding(
         "holds" if worst < 0.0005 else "fails",
         worst,
-        f"With the exact dead time the overshoot is, as a fraction, {_listed(values)}: nothing that could "
-        "be seen.",
+        f"With the exact dead time the overshoot is, as a fraction, {_listed(values)}: nothing that could be seen.",
     )
 
 
@@ -425,8 +418,7 @@ def unstable_42() -> Finding:
 
 @claims.claim(
     "most-acceptable-4-2",
-    "In Example 4.2 the pole assignment is the most acceptable of the stable rules if no overshoot is "
-    "wanted.",
+    "In Example 4.2 the pole assignment is the most acceptable of the stable rules if no overshoot is wanted.",
     where="Example 4.2, text below Table 3",
 )
 def most_acceptable() -> Finding:
@@ -504,15 +496,11 @@ def _load_cost(criterion: Literal["ise", "itse"], k: float, ti: float) -> float:
 )
 def itse_exponent() -> Finding:
     symbols = {"K": 1.0, "tau": 1.0, "L": 0.5}
-    printed, mended = (
-        float(competing_rules(v)["ITSE"].evaluate(**symbols).ti) for v in ("printed", "corrected")
-    )
+    printed, mended = (float(competing_rules(v)["ITSE"].evaluate(**symbols).ti) for v in ("printed", "corrected"))
     _, ise, _ = _best_load("ise")
     _, itse, _ = _best_load("itse")
     return Finding(
-        "fails"
-        if abs(mended - ise) < abs(printed - ise) and abs(mended - itse) < abs(printed - itse)
-        else "holds",
+        "fails" if abs(mended - ise) < abs(printed - ise) and abs(mended - itse) < abs(printed - itse) else "holds",
         printed,
         f"For $L/\\tau = 0.5$ the printed rule gives $T_i/\\tau$ = {_number(printed)}, with the sign "
         f"changed {_number(mended)}. The controllers that minimise ISE and ITSE of the load response have "

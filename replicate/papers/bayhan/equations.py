@@ -90,9 +90,7 @@ def _cubic(tau: Fraction, a: Fraction, found: Assignment) -> Number:
     return assigned(tau, a, (found.c0, found.c1))[3]
 
 
-@equations.reading(
-    "as-written", "As printed", note="Equation (24) without its lost last line; (20) with $2a/\\tau^2$."
-)
+@equations.reading("as-written", "As printed", note="Equation (24) without its lost last line; (20) with $2a/\\tau^2$.")
 def as_written() -> pd.DataFrame:
     """Evaluate the formulas as they stand on the page."""
 
@@ -117,8 +115,7 @@ def restored() -> pd.DataFrame:
 @equations.reading(
     "direct",
     "Direct solution of (14) = (20)",
-    note="The four linear equations in $K_p, K_i, c_0, c_1$ solved by elimination, without the paper's "
-    "formulas.",
+    note="The four linear equations in $K_p, K_i, c_0, c_1$ solved by elimination, without the paper's formulas.",
 )
 def direct() -> pd.DataFrame:
     """Solve for the four unknowns directly."""

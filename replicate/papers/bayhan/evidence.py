@@ -126,9 +126,7 @@ def matches() -> pd.DataFrame:
             printed = paper.printed_cells(table.id)
             pairs = [(text, number(computed, row, column)) for (row, column), text in printed.items()]
             equal.append(sum(_equal(text, value) for text, value in pairs))
-            near += sum(
-                _equal(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs
-            )
+            near += sum(_equal(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs)
             cells += len(pairs)
         rows[assumption.id] = [*equal, sum(equal), near, cells]
     return pd.DataFrame.from_dict(rows, orient="index", columns=list(match_count.columns))

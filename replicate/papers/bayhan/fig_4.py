@@ -33,9 +33,7 @@ def draw(fig: Figure) -> None:
     axes = fig.subplots()
     step_axes(axes, UNTIL)
     for a in VALUES:
-        style = (
-            {"linewidth": 2.6, "color": axes.xaxis.label.get_color()} if a == PT326.a else {"linewidth": 1.4}
-        )
+        style = {"linewidth": 2.6, "color": axes.xaxis.label.get_color()} if a == PT326.a else {"linewidth": 1.4}
         line = "-" if a <= PT326.a else "--"
         draw_step(axes, PT326, PT326.pole_assignment(a), UNTIL, label=f"$a = {a}$", linestyle=line, **style)
     axes.set_ylim(bottom=0.0)

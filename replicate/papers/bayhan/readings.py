@@ -68,9 +68,7 @@ AUTHORS = Assumption(
 READINGS = (TEXT, GAINS, AUTHORS)
 
 # Two further combinations, to separate the effects; they are counted, not shown cell by cell.
-TEXT_ON_GRID = Assumption(
-    "eq3-grid", "Equation (3), Padé model, sample grid", "Kp/Ti", sampled_specifications
-)
+TEXT_ON_GRID = Assumption("eq3-grid", "Equation (3), Padé model, sample grid", "Kp/Ti", sampled_specifications)
 GAINS_ON_GRID = Assumption(
     "ki-over-ti-grid",
     "$K_i = 1/T_i$, Padé model, sample grid, Table 1 as printed",
