@@ -19,7 +19,7 @@ from replicate.accepted_files import keyed, read_axes, read_cells, read_curves
 from replicate.errors import AcceptedStateError
 from replicate.outcome import Outcome
 from replicate.outputs import csv_text, curves_text, number_text
-from replicate.records import ClaimsResult, FigureResult, Result, TableResult
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.simplify import Points
 
 if TYPE_CHECKING:

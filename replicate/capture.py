@@ -20,7 +20,7 @@ from matplotlib.figure import Figure as Canvas
 from replicate import plotstyle
 from replicate.exhibits import Figure
 from replicate.readback import read_panel
-from replicate.records import FigureResult
+from replicate.exhibits.results import FigureResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,9 +14,9 @@ from replicate.judgement import (
     Status,
     VerdictRow,
 )
-from replicate.matching import computed_text, match
-from replicate.printed import ALLOWED, parse_number
-from replicate.records import ClaimsResult
+from replicate.exhibits.matching import computed_text, match
+from replicate.exhibits.printed import ALLOWED, parse_number
+from replicate.exhibits.results import ClaimsResult
 
 
 def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement:

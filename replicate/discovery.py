@@ -16,7 +16,7 @@ from pathlib import Path
 
 from replicate.errors import PaperDefinitionError, UnknownPaperError
 from replicate.exhibits import Exhibit, Paper
-from replicate.locations import display_name
+from replicate.exhibits.file_names import display_name
 
 ENTRY_POINTS = "replicate.papers"
 
@@ -32,7 +32,7 @@ def known_papers() -> dict[str, Paper]:
     papers: dict[str, Paper] = {}
     for where, paper in (*_own_papers(), *_installed_papers()):
         if not isinstance(paper, Paper):
-            msg = f"{where}: defines no 'paper' that is a replicate.exhibits.Paper"
+            msg = f"{where}: defines no 'paper' that is a replicate.exhibits.vocabulary.Paper"
             raise PaperDefinitionError(msg)
         if paper.id in papers:
             msg = f"{where}: there is a paper '{paper.id}' already, in {papers[paper.id].package}"

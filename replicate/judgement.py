@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from replicate.exhibits import ClaimVerdict
-from replicate.matching import MatchHow, MatchKind
+from replicate.exhibits.matching import MatchHow, MatchKind
 
 ValueVerdict = Literal["reproduced", "reconstructed", "near", "misprint", "discrepant", "unexplained", "not-computable"]
 Verdict = ValueVerdict | ClaimVerdict

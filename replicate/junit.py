@@ -11,7 +11,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
 from replicate.judgement import Judgement, VerdictRow
-from replicate.records import Results
+from replicate.exhibits.results import Results
 from replicate.units import errors_of
 
 

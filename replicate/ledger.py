@@ -30,8 +30,8 @@ from typing import Literal, get_args
 
 from replicate.errors import LedgerError
 from replicate.exhibits import AS_WRITTEN, Paper, Table
-from replicate.locations import display_name
-from replicate.printed import ALLOWED, parse_number
+from replicate.exhibits.file_names import display_name
+from replicate.exhibits.printed import ALLOWED, parse_number
 
 Cause = Literal[
     "misprint", "scan", "definition", "method", "optimiser", "rounding", "measured", "unavailable", "unknown"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from replicate.exhibits import Paper
 from replicate.judgement import Judgement
-from replicate.records import Results
+from replicate.exhibits.results import Results
 from replicate.run import Progress, failures, run
 from replicate.verdicts import judge
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from replicate.exhibits import Paper
 from replicate.judgement import ExhibitRow, Judgement, ResultRow, VerdictRow
 from replicate.junit import junit
-from replicate.records import FigureResult, Results, TableResult
+from replicate.exhibits.results import FigureResult, Results, TableResult
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from replicate.cells import cells
+from replicate.exhibits.frames import cells
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.judgement import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
 from replicate.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
-from replicate.matching import Match, computed_text, format_like, match
-from replicate.printed import Key, PrintedValue
-from replicate.records import TableResult
+from replicate.exhibits.matching import Match, computed_text, format_like, match
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.results import TableResult
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "misprint": "misprint",

@@ -10,7 +10,7 @@ import importlib
 from dataclasses import dataclass
 
 from replicate.exhibits import Claims, Exhibit, Figure, Finding, Paper, Table
-from replicate.records import ClaimsResult, FigureResult, Result, TableResult
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,9 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Paper, Table
 from replicate.judgement import ExhibitRow, Judgement, ResultRow, Status, VerdictRow
 from replicate.ledger import Ledger, LedgerEntry
-from replicate.printed import Key, PrintedValue, read_printed
+from replicate.exhibits.printed import Key, PrintedValue, read_printed
 from replicate.prose import Prose
-from replicate.records import ClaimsResult, FigureResult, Result, TableResult
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.table_verdicts import TableJudge
 
 __all__ = ["ExhibitRow", "Judgement", "ResultRow", "VerdictRow", "judge", "read_all_printed"]

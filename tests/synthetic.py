@@ -9,8 +9,8 @@ from pathlib import Path
 import pandas as pd
 
 from replicate.exhibits import Finding, Paper
-from replicate.printed import Key, PrintedValue
-from replicate.records import ClaimsResult, FigureResult, Result, TableResult
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 
 ROWS = ("A", "B")
 COLUMNS = ("x", "y")

@@ -21,7 +21,7 @@ from replicate.diff.comparison import compare as compare_all
 from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.outcome import Outcome
-from replicate.records import FigureResult, Results
+from replicate.exhibits.results import FigureResult, Results
 from replicate.verdicts import judge
 
 AXES: list[dict[str, Any]] = [

@@ -17,7 +17,7 @@ from replicate import plotstyle
 from replicate.capture import capture
 from replicate.exhibits import Figure
 from replicate.readback import MOST_POINTS
-from replicate.records import FigureResult
+from replicate.exhibits.results import FigureResult
 
 
 def captured(draw: Callable[[Canvas], object]) -> FigureResult:

@@ -14,7 +14,7 @@ import synthetic
 import replicate
 from replicate.discovery import find_paper, known_papers
 from replicate.errors import PaperDefinitionError, TemplateError
-from replicate.exercises import Exercises
+from replicate.exhibits.exercises import Exercises
 from replicate.handout import build_handouts, with_handout
 from replicate.handout.edition import Document, edition
 from replicate.handout.formulas import convert
@@ -24,7 +24,7 @@ from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
 from replicate.ledger import Ledger
 from replicate.outcome import recompute
-from replicate.records import FigureResult, Results, TableResult
+from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.verdicts import judge
 
 SVG = (

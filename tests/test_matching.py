@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from synthetic import decimal_text
 
 from replicate.errors import PrintedFileError
-from replicate.matching import Match, computed_text, format_like, match, meets
-from replicate.printed import PrintedValue
+from replicate.exhibits.matching import Match, computed_text, format_like, match, meets
+from replicate.exhibits.printed import PrintedValue
 
 # 10 printed digits and 2 more are the 12 that survive the writing of the computed number.
 DIGITS = st.integers(-(10**9), 10**9)

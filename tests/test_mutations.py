@@ -14,7 +14,7 @@ from replicate.check import check
 from replicate.discovery import find_papers
 from replicate.ledger import Ledger
 from replicate.outcome import Outcome, recompute
-from replicate.printed import PrintedValue
+from replicate.exhibits.printed import PrintedValue
 from replicate.verdicts import judge, read_all_printed
 
 ROOT = Path(__file__).parent.parent

@@ -8,7 +8,7 @@ import synthetic
 
 from replicate.errors import PrintedFileError
 from replicate.exhibits import Table
-from replicate.printed import PrintedValue, parse_number, read_printed
+from replicate.exhibits.printed import PrintedValue, parse_number, read_printed
 
 ALLOWED = "digits with an optional sign, decimal point and exponent"
 

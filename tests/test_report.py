@@ -9,8 +9,8 @@ import pytest
 from replicate.capture import capture
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Finding, Paper
-from replicate.printed import PrintedValue
-from replicate.records import ClaimsResult, TableResult
+from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.results import ClaimsResult, TableResult
 from replicate.report import build_report
 from replicate.report.markdown import MarkdownBatch
 from replicate.report.numbers import aligned, shown

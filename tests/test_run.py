@@ -12,7 +12,7 @@ import pytest
 from replicate import discovery, run
 from replicate.errors import PaperDefinitionError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
-from replicate.records import ClaimsResult, FigureResult, Results, TableResult
+from replicate.exhibits.results import ClaimsResult, FigureResult, Results, TableResult
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from synthetic import frame, printed, results
 from replicate.exhibits import AS_WRITTEN, Finding
 from replicate.judgement import ExhibitRow, Judgement, ResultRow, VerdictRow
 from replicate.ledger import Ledger, LedgerEntry
-from replicate.records import FigureResult, TableResult
+from replicate.exhibits.results import FigureResult, TableResult
 from replicate.verdicts import judge
 
 A_X = ("A", "x")

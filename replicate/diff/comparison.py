@@ -15,7 +15,7 @@ from replicate.diff.curves import Pair, compare_curves
 from replicate.discovery import known_papers
 from replicate.errors import AcceptedStateError
 from replicate.outcome import Outcome
-from replicate.records import ClaimsResult, FigureResult, Result
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result
 from replicate.units import errors_of
 
 Kind = Literal["table", "claims", "figure", ""]

@@ -10,7 +10,7 @@ from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Paper
 from replicate.handout.edition import FILE, edition
 from replicate.judgement import VerdictRow
-from replicate.records import Results
+from replicate.exhibits.results import Results
 
 Format = Literal["pdf", "html"]
 

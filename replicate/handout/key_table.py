@@ -10,8 +10,8 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Table
 from replicate.handout.tree import Element, inlines, plain, span, string
 from replicate.judgement import VerdictRow
-from replicate.printed import MINUS
-from replicate.records import TableResult
+from replicate.exhibits.printed import MINUS
+from replicate.exhibits.results import TableResult
 from replicate.report.numbers import aligned
 from replicate.report.tables import Cell, TableView, Value, table_view
 from replicate.report.words import MATCHES, VERDICTS

@@ -26,12 +26,12 @@ from typing import Any
 
 from replicate import capture
 from replicate.errors import PaperDefinitionError, TemplateError
-from replicate.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Answer, Exercises
 from replicate.exhibits import Figure, Paper, Table
 from replicate.handout.key_table import Choice, key_table, legend
 from replicate.handout.tree import Element
 from replicate.judgement import VerdictRow
-from replicate.records import FigureResult, Results, TableResult
+from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.report.figures import description
 from replicate.report.tables import table_view
 
@@ -92,7 +92,7 @@ class Placing:
             return Exercises()
         found = getattr(importlib.import_module(f"{self.paper.package}.handout"), "exercises", None)
         if not isinstance(found, Exercises):
-            msg = f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exercises.Exercises"
+            msg = f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exhibits.exercises.Exercises"
             raise PaperDefinitionError(msg)
         return found
 

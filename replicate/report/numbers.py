@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable
 from decimal import ROUND_HALF_EVEN, Decimal
 
-from replicate.matching import computed_text
-from replicate.printed import MINUS, PrintedValue
+from replicate.exhibits.matching import computed_text
+from replicate.exhibits.printed import MINUS, PrintedValue
 
 FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
 PUNCTUATION_SPACE = "\N{PUNCTUATION SPACE}"  # as wide as a decimal point

@@ -14,9 +14,9 @@ from pathlib import Path
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Paper
 from replicate.judgement import Judgement, VerdictRow
-from replicate.locations import display_name
+from replicate.exhibits.file_names import display_name
 from replicate.prose import Prose
-from replicate.records import Results
+from replicate.exhibits.results import Results
 from replicate.report.labels import part_of
 from replicate.report.notes import Piece, pieces, place
 from replicate.report.rendering import render

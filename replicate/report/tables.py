@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from replicate.cells import CellError, cell
+from replicate.exhibits.frames import CellError, cell
 from replicate.exhibits import Reading, Table
 from replicate.judgement import HOLDING, VerdictRow
-from replicate.matching import Match, match
-from replicate.printed import Key, PrintedValue
-from replicate.records import TableResult
+from replicate.exhibits.matching import Match, match
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.results import TableResult
 from replicate.report import numbers
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from markupsafe import Markup
 
 from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
 from replicate.judgement import ExhibitRow, Judgement, VerdictRow
-from replicate.printed import PrintedValue, parse_number
-from replicate.records import ClaimsResult, FigureResult, Result, Results, TableResult
+from replicate.exhibits.printed import PrintedValue, parse_number
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
 from replicate.report import numbers, scores
 from replicate.report.figures import description, inline_svg
 from replicate.report.labels import heading

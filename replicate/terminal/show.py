@@ -15,8 +15,8 @@ from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
 from replicate.judgement import ResultRow, VerdictRow
 from replicate.outcome import Outcome
 from replicate.outputs import number_text
-from replicate.printed import PrintedValue
-from replicate.records import ClaimsResult, FigureResult, TableResult
+from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
 from replicate.report.numbers import shown
 from replicate.report.words import MATCHES, WORDS
 from replicate.terminal.colours import colour

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from replicate.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Answer, Exercises
 from replicate.loops import Loop
 from replicate.papers.ali.structures import Settings, plant, series
 from replicate.papers.ali.tuning import gain_product, integral_time, smallest_sensitivity

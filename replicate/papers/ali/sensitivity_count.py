@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from replicate.matching import meets
+from replicate.exhibits.matching import meets
 from replicate.papers.ali import paper
 from replicate.papers.ali.sensitivities import Peak, designed, exact_peak, sensitivity, tabulated
 from replicate.papers.ali.structures import (

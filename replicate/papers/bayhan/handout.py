@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy import optimize
 
-from replicate.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Answer, Exercises
 from replicate.loops import Loop
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.evidence import in_steps, six_digits

@@ -11,7 +11,7 @@ from scipy.special import lambertw
 
 from replicate.exhibits import ClaimVerdict, Finding
 from replicate.loops import PI, Loop
-from replicate.matching import meets
+from replicate.exhibits.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.bryant import gain_for_damping
 from replicate.papers.khan.claims import claims

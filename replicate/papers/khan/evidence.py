@@ -6,7 +6,7 @@ import math
 
 import pandas as pd
 
-from replicate.matching import meets
+from replicate.exhibits.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.definitions import VERSIONS, specifications_of
 from replicate.papers.khan.processes import loop, settling_after_load

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Answer, Exercises
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import PRINTED, RESTORED, case_gains, loop, plant, settling_after_load

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from replicate.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Answer, Exercises
 from replicate.loops import Signal
 from replicate.papers.krajewski.fig_6 import TAUS
 from replicate.papers.krajewski.normalised_loop import lag, loop, point

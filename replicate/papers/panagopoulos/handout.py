@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from replicate.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Answer, Exercises
 from replicate.loops import Loop, Signal, design_pi
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design, load_response

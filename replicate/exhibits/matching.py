@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from decimal import ROUND_HALF_UP, Decimal, localcontext
 from typing import Literal
 
-from replicate.printed import PrintedValue
+from replicate.exhibits.printed import PrintedValue
 
 MatchKind = Literal["equal", "near", "differs", "none"]
 MatchHow = Literal["rounded", "truncated", ""]

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from replicate.exhibits import Finding
+from replicate.exhibits.vocabulary import Finding
 
 if TYPE_CHECKING:
     import pandas as pd

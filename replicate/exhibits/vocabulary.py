@@ -247,7 +247,7 @@ class Paper:
     def printed_cells(self, exhibit: str) -> Mapping[tuple[str, str], str]:
         """Return what the paper prints in a table, by row and column, for exhibits that weigh the print as evidence.
 
-        Blank cells are left out. The file is not validated here; `replicate.printed.read_printed` does that.
+        Blank cells are left out. The file is not validated here; `replicate.exhibits.printed.read_printed` does that.
         """
         return _printed_cells(self.package, exhibit)
 

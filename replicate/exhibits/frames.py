@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from replicate.printed import Key
+from replicate.exhibits.printed import Key
 
 if TYPE_CHECKING:
     import pandas as pd
