@@ -20,7 +20,7 @@ from replicate.errors import AcceptedStateError
 from replicate.outcome import Outcome
 from replicate.outputs import csv_text, curves_text, number_text
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
-from replicate.simplify import Points
+from replicate.figures.polylines import Points
 
 if TYPE_CHECKING:
     import pandas as pd

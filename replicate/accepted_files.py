@@ -17,7 +17,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from replicate.errors import AcceptedStateError
-from replicate.simplify import Points
+from replicate.figures.polylines import Points
 
 CURVE_COLUMNS = ("panel", "curve", "x", "y")
 
@@ -69,7 +69,7 @@ def read_curves(path: Path) -> dict[tuple[str, str], Points]:
 
 
 def read_axes(path: Path) -> list[Mapping[str, Any]]:
-    """Return the descriptions of the panels of a figure, as in `replicate.readback.read_panel`.
+    """Return the descriptions of the panels of a figure, as in `replicate.figures.readback.read_panel`.
 
     Raises
     ------

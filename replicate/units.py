@@ -91,7 +91,7 @@ def _compute_reading(unit: Unit, table: Table) -> TableResult:
 
 
 def _draw(unit: Unit, figure: Figure) -> FigureResult:
-    from replicate.capture import capture, no_figure
+    from replicate.figures.off_screen import capture, no_figure
 
     try:
         return capture(unit.paper, figure)

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from replicate import plotstyle
-from replicate.capture import capture
+from replicate.figures.off_screen import capture
 from replicate.exhibits import Figure
-from replicate.readback import MOST_POINTS
+from replicate.figures.readback import MOST_POINTS
 from replicate.exhibits.results import FigureResult
 
 

@@ -17,12 +17,12 @@ from scipy.spatial import KDTree
 
 from replicate import plotstyle
 from replicate.accepted import FigureState, figure_state
-from replicate.capture import capture, read_figure
-from replicate.diff.axes import compare_axes
+from replicate.figures.off_screen import capture, read_figure
+from replicate.figures.axes import compare_axes
 from replicate.diff.comparison import ExhibitDiff
-from replicate.diff.curves import compare_curves
-from replicate.diff.distance import distances, exact_distances
-from replicate.diff.values import WINDOW, compare_values
+from replicate.figures.curves import compare_curves
+from replicate.figures.distance import distances, exact_distances
+from replicate.figures.values import WINDOW, compare_values
 from replicate.exhibits import Figure
 
 Array = NDArray[np.float64]

@@ -216,7 +216,7 @@ def test_a_changed_result_changes_the_handout(made: Made, monkeypatch: pytest.Mo
     frames = {**table.frames, "as-written": frame}
     changed: Results = {**made.outcome.results, (id, exhibit): replace(table, frames=frames)}
     drawing = next(result for result in made.outcome.results.values() if isinstance(result, FigureResult))
-    monkeypatch.setattr("replicate.capture.capture", lambda *_: drawing)  # the figures are not what changes here
+    monkeypatch.setattr("replicate.figures.off_screen.capture", lambda *_: drawing)  # the figures are not what changes here
     before, after = markup(made.documents[False]), markup(made.edition(changed, solutions=False))
     assert not re.search(r"\b98\.[78]", before)
     assert re.search(r"\b98\.(?:8|77|765)\b", after)  # in the prose, with the digits of the sentence

@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from replicate.capture import capture
+from replicate.figures.off_screen import capture
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Finding, Paper
 from replicate.exhibits.printed import PrintedValue

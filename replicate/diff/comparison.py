@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Literal
 
 from replicate.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
-from replicate.diff.axes import compare_axes
+from replicate.figures.axes import compare_axes
 from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
-from replicate.diff.curves import Pair, compare_curves
+from replicate.figures.curves import Pair, compare_curves
 from replicate.discovery import known_papers
 from replicate.errors import AcceptedStateError
 from replicate.outcome import Outcome

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from replicate.accepted import FigureState
 from replicate.diff.comparison import ExhibitDiff
-from replicate.diff.curves import Pair
+from replicate.figures.curves import Pair
 from replicate.diff.redraw import MOST_CURVES, differences, overlay, picture
 from replicate.report.figures import description, inline_svg
 

@@ -13,7 +13,7 @@ from replicate.diff.changes import relative
 from replicate.diff.comparison import Comparison, ExhibitDiff
 from replicate.diff.counts import summary
 from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
-from replicate.diff.wording import percent
+from replicate.figures.wording import percent
 from replicate.exhibits import Paper
 from replicate.outcome import Outcome
 from replicate.report.labels import heading

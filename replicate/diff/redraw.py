@@ -13,12 +13,12 @@ import numpy as np
 
 from replicate import plotstyle
 from replicate.accepted import FigureState
-from replicate.capture import svg_text
-from replicate.diff.axes import matched_panels, symbol
-from replicate.diff.curves import Pair
-from replicate.diff.distance import exact_distances
-from replicate.diff.scaling import finite, from_units, in_units
-from replicate.simplify import Points
+from replicate.figures.off_screen import svg_text
+from replicate.figures.axes import matched_panels, symbol
+from replicate.figures.curves import Pair
+from replicate.figures.distance import exact_distances
+from replicate.figures.scaling import finite, from_units, in_units
+from replicate.figures.polylines import Points
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from replicate.plotstyle import themed
+from replicate.figures.style import themed
 
 _SVG_TAG = re.compile(r"<svg\b[^>]*>", re.DOTALL)
 _VIEW_BOX = re.compile(r'viewBox="([^"]+)"')
@@ -24,7 +24,7 @@ def inline_svg(svg: str, id: str, title: str, description: str) -> str:
     Parameters
     ----------
     svg
-        The document as `replicate.capture` leaves it.
+        The document as `replicate.figures.off_screen` leaves it.
     id
         Id of the element, unique on the page; all ids inside begin with it.
     title, description

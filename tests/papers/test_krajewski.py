@@ -10,7 +10,7 @@ import pytest
 from loops.references import ReferenceLoop
 from scipy.optimize import brentq
 
-from replicate.capture import capture
+from replicate.figures.off_screen import capture
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski import paper
 from replicate.papers.krajewski.combined_chart import combined_chart

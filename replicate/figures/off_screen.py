@@ -19,7 +19,7 @@ from matplotlib.figure import Figure as Canvas
 
 from replicate import plotstyle
 from replicate.exhibits import Figure
-from replicate.readback import read_panel
+from replicate.figures.readback import read_panel
 from replicate.exhibits.results import FigureResult
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     Returns
     -------
     FigureResult
-        SVG (transparent, ink and paper colours as in `replicate.plotstyle`), PNG (white), curves and axes.
+        SVG (transparent, ink and paper colours as in `replicate.figures.style`), PNG (white), curves and axes.
 
     Raises
     ------

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from replicate.diff.axes import Axes, symbol
-from replicate.diff.scaling import finite, from_units, in_units
-from replicate.diff.values import Array, ValueDifference
-from replicate.simplify import Points
+from replicate.figures.axes import Axes, symbol
+from replicate.figures.scaling import finite, from_units, in_units
+from replicate.figures.values import Array, ValueDifference
+from replicate.figures.polylines import Points
 
 if TYPE_CHECKING:
-    from replicate.diff.curves import Pair
+    from replicate.figures.curves import Pair
 
 # Consecutive points no further apart along x than this, and further along y, are a jump.
 _JUMP_WIDTH, _JUMP_HEIGHT = 1e-6, 1e-3

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.diff.changes import RELATIVE
-from replicate.simplify import Points
+from replicate.figures.polylines import Points
 
 #: Curves are the same up to this fraction of the size of their axes: far less than one could see, and a few
 #: times the error of thinning.

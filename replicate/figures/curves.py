@@ -1,7 +1,7 @@
 """Compare the curves of a figure: which one moved, where and by how much, which was renamed, is gone or new.
 
-Curves are matched by panel and label. Functions of x are compared by value (`replicate.diff.values`), all
-others by distance (`replicate.diff.distance`).
+Curves are matched by panel and label. Functions of x are compared by value (`replicate.figures.values`), all
+others by distance (`replicate.figures.distance`).
 """
 
 from __future__ import annotations
@@ -11,14 +11,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from replicate.diff.axes import Axes, matched_panels
+from replicate.figures.axes import Axes, matched_panels
 from replicate.diff.changes import Change, Kind
-from replicate.diff.distance import Distances, distances, point_distances
-from replicate.diff.scaling import TOLERANCE, finite, in_units, rounding
-from replicate.diff.values import WINDOW, Array, ValueDifference, compare_values, is_function
-from replicate.diff.wording import moved_words
-from replicate.readback import TOLERANCE as THINNING
-from replicate.simplify import Points
+from replicate.figures.distance import Distances, distances, point_distances
+from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
+from replicate.figures.values import WINDOW, Array, ValueDifference, compare_values, is_function
+from replicate.figures.wording import moved_words
+from replicate.figures.readback import TOLERANCE as THINNING
+from replicate.figures.polylines import Points
 
 # A function of x that moved by less than this needs no second measure that says whether it moved sideways.
 _LITTLE = 10.0 * TOLERANCE

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from replicate.diff.changes import Change, same_number
-from replicate.diff.scaling import TOLERANCE, in_units
+from replicate.figures.scaling import TOLERANCE, in_units
 
 Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
@@ -21,7 +21,7 @@ def compare_axes(paper: str, exhibit: str, before: Sequence[Axes], after: Sequen
     Parameters
     ----------
     before, after
-        Descriptions as in `replicate.readback.read_panel`.
+        Descriptions as in `replicate.figures.readback.read_panel`.
     """
     several = len(before) > 1 or len(after) > 1
     changes = []

@@ -16,7 +16,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
 
-from replicate.simplify import Points, simplify
+from replicate.figures.polylines import Points, simplify
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
