@@ -10,7 +10,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from replicate.judgement import Judgement, VerdictRow
+from replicate.verdicts.rows import Judgement, VerdictRow
 from replicate.exhibits.results import Results
 from replicate.units import errors_of
 

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from replicate.exhibits import Paper
-from replicate.judgement import ExhibitRow, Judgement, ResultRow, VerdictRow
+from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
 from replicate.junit import junit
 from replicate.exhibits.results import FigureResult, Results, TableResult
 

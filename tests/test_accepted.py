@@ -22,7 +22,7 @@ from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.outcome import Outcome
 from replicate.exhibits.results import FigureResult, Results
-from replicate.verdicts import judge
+from replicate.verdicts.judge import judge
 
 AXES: list[dict[str, Any]] = [
     {

@@ -22,10 +22,10 @@ from replicate.handout.printout import markup, pdf
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
-from replicate.ledger import Ledger
+from replicate.verdicts.ledger import Ledger
 from replicate.outcome import recompute
 from replicate.exhibits.results import FigureResult, Results, TableResult
-from replicate.verdicts import judge
+from replicate.verdicts.judge import judge
 
 SVG = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 50" width="100" height="50">'

@@ -6,7 +6,7 @@ import pytest
 import synthetic
 
 from replicate.errors import LedgerError
-from replicate.ledger import CAUSES, Ledger, LedgerEntry
+from replicate.verdicts.ledger import CAUSES, Ledger, LedgerEntry
 
 ENTRY = """
 [[entry]]

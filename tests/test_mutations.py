@@ -12,10 +12,10 @@ import pytest
 
 from replicate.check import check
 from replicate.discovery import find_papers
-from replicate.ledger import Ledger
+from replicate.verdicts.ledger import Ledger
 from replicate.outcome import Outcome, recompute
 from replicate.exhibits.printed import PrintedValue
-from replicate.verdicts import judge, read_all_printed
+from replicate.verdicts.judge import judge, read_all_printed
 
 ROOT = Path(__file__).parent.parent
 HOLDS = {"reproduced", "reconstructed", "near"}

@@ -12,10 +12,10 @@ import pytest
 import synthetic
 
 from replicate.errors import OutputError
-from replicate.judgement import Judgement
+from replicate.verdicts.rows import Judgement
 from replicate.outputs import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, table_text, write_outputs
 from replicate.staging import staged
-from replicate.verdicts import judge
+from replicate.verdicts.judge import judge
 
 
 def written(folder: Path, **changes: object) -> Path:

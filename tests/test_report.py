@@ -15,7 +15,7 @@ from replicate.report import build_report
 from replicate.report.markdown import MarkdownBatch
 from replicate.report.numbers import aligned, shown
 from replicate.resources import templates_dir
-from replicate.verdicts import judge
+from replicate.verdicts.judge import judge
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 

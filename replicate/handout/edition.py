@@ -16,9 +16,9 @@ from replicate.handout.formulas import Converted, Formula, FormulaError, convert
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
 from replicate.handout.tree import Blocks, Element, classes, div, elements, plain, string, text_of, transform
-from replicate.judgement import VerdictRow
+from replicate.verdicts.rows import VerdictRow
 from replicate.exhibits.file_names import display_name
-from replicate.prose import Prose
+from replicate.verdicts.prose import Prose
 from replicate.exhibits.results import Results
 
 FILE = "handout.md"

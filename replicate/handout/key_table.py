@@ -9,7 +9,7 @@ from typing import Any
 from replicate.errors import TemplateError
 from replicate.exhibits import Table
 from replicate.handout.tree import Element, inlines, plain, span, string
-from replicate.judgement import VerdictRow
+from replicate.verdicts.rows import VerdictRow
 from replicate.exhibits.printed import MINUS
 from replicate.exhibits.results import TableResult
 from replicate.report.numbers import aligned

@@ -30,7 +30,7 @@ from replicate.exhibits.exercises import Answer, Exercises
 from replicate.exhibits import Figure, Paper, Table
 from replicate.handout.key_table import Choice, key_table, legend
 from replicate.handout.tree import Element
-from replicate.judgement import VerdictRow
+from replicate.verdicts.rows import VerdictRow
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.report.figures import description
 from replicate.report.tables import table_view

@@ -13,9 +13,9 @@ from pathlib import Path
 
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Paper
-from replicate.judgement import Judgement, VerdictRow
+from replicate.verdicts.rows import Judgement, VerdictRow
 from replicate.exhibits.file_names import display_name
-from replicate.prose import Prose
+from replicate.verdicts.prose import Prose
 from replicate.exhibits.results import Results
 from replicate.report.labels import part_of
 from replicate.report.notes import Piece, pieces, place

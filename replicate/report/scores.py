@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from replicate.judgement import HOLDING, VerdictRow
+from replicate.verdicts.rows import HOLDING, VerdictRow
 from replicate.report.words import CLAIM_VERDICTS, VERDICTS, Word
 
 

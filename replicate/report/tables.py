@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits.frames import CellError, cell
 from replicate.exhibits import Reading, Table
-from replicate.judgement import HOLDING, VerdictRow
+from replicate.verdicts.rows import HOLDING, VerdictRow
 from replicate.exhibits.matching import Match, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult

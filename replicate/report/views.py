@@ -9,7 +9,7 @@ from typing import Any
 from markupsafe import Markup
 
 from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
-from replicate.judgement import ExhibitRow, Judgement, VerdictRow
+from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
 from replicate.exhibits.printed import PrintedValue, parse_number
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
 from replicate.report import numbers, scores

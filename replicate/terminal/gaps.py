@@ -6,7 +6,7 @@ from pathlib import Path
 
 from replicate.accepted import TableState, read_state
 from replicate.exhibits import Exhibit, NotComputable, Paper, Table
-from replicate.ledger import Ledger, LedgerEntry
+from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.exhibits.results import TableResult
 
 LOST = ("measured", "unavailable")  # causes that leave nothing to compute

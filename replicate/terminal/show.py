@@ -12,7 +12,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
-from replicate.judgement import ResultRow, VerdictRow
+from replicate.verdicts.rows import ResultRow, VerdictRow
 from replicate.outcome import Outcome
 from replicate.outputs import number_text
 from replicate.exhibits.printed import PrintedValue

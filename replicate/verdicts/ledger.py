@@ -14,7 +14,7 @@
 
 An entry whose rows and columns are both lists names its cells *explicitly*: each must be a printed value
 that does not hold. With ``"*"`` it covers the cells that do not hold and must find at least one. What
-depends on results is checked when the paper is judged (`replicate.verdicts`); this module checks all that
+depends on results is checked when the paper is judged (`replicate.verdicts.judge`); this module checks all that
 can be known without.
 """
 

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING
 from replicate.exhibits.frames import CellError, cell
 from replicate.errors import TemplateError
 from replicate.exhibits import AS_WRITTEN, Finding, Paper
-from replicate.judgement import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
+from replicate.verdicts.rows import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
 from replicate.exhibits.results import ClaimsResult, Result, TableResult
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from replicate.exhibits import AS_WRITTEN, Claim, Claims, Finding
-from replicate.judgement import (
+from replicate.verdicts.rows import (
     CLAIM_COLUMN,
     CLAIM_VERDICTS,
     ExhibitRow,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 from replicate.exhibits.frames import cells
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.judgement import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
-from replicate.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.verdicts.rows import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
+from replicate.verdicts.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
 from replicate.exhibits.matching import Match, computed_text, format_like, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
