@@ -8,7 +8,7 @@ from pathlib import Path
 from replicate.accepted import files_of, state_files
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import ReplicateError
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 from replicate.staging import staged
 
 LOG = "CHANGES.md"

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from replicate.diff.comparison import Comparison, compare
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 
 
 def check(outcome: Outcome, accepted: Path) -> list[str]:

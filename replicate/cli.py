@@ -20,7 +20,7 @@ from replicate.errors import AcceptedStateError, PaperDefinitionError, Replicate
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
-    from replicate.outcome import Outcome, Selection
+    from replicate.run.outcome import Outcome, Selection
 
 DIFFERS, BROKEN, TERMINATED = 1, 2, 143
 
@@ -111,7 +111,7 @@ def list_(
 
     Of each exhibit: whether it is done, and if it cannot be computed, why.
     """
-    from replicate.discovery import find_paper, find_papers
+    from replicate.run.discovery import find_paper, find_papers
     from replicate.resources import accepted_dir
     from replicate.terminal.console import console
     from replicate.terminal.inventory import print_exhibits, print_papers
@@ -139,7 +139,7 @@ def show(
 
     With the explanations of those that do not hold.
     """
-    from replicate.discovery import find_exhibit, find_paper
+    from replicate.run.discovery import find_exhibit, find_paper
     from replicate.exhibits import Table
     from replicate.terminal.console import console
     from replicate.terminal.show import print_exhibit
@@ -173,8 +173,8 @@ def chart(
 
     They are given as --NAME VALUE; without any, the message names those of the chart.
     """
-    from replicate.charts import file_name, find_chart, read_parameters, write_chart
-    from replicate.discovery import find_paper
+    from replicate.run.charts import file_name, find_chart, read_parameters, write_chart
+    from replicate.run.discovery import find_paper
 
     owner = find_paper(paper)
     found = find_chart(owner, name)
@@ -187,7 +187,7 @@ def chart(
 @app.command()
 def report(papers: Papers = None, jobs: Jobs = None, out: Out = BUILD, no_cache: NoCache = False) -> None:
     """Recompute every exhibit and write the report."""
-    from replicate.discovery import find_papers
+    from replicate.run.discovery import find_papers
     from replicate.outputs import write_outputs
     from replicate.report.pages import build_report
     from replicate.staging import staged
@@ -218,7 +218,7 @@ def check(
     """
     from replicate.check import problems as find_problems
     from replicate.diff.comparison import compare
-    from replicate.discovery import find_papers
+    from replicate.run.discovery import find_papers
 
     baseline = _accepted(accepted)
     outcome = _recompute(find_papers(papers or ()), None, jobs, out, no_cache)
@@ -248,7 +248,7 @@ def diff(
     """
     from replicate.diff.comparison import compare
     from replicate.diff.outputs import write_diff
-    from replicate.discovery import select
+    from replicate.run.discovery import select
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.differences import print_comparison
@@ -278,7 +278,7 @@ def accept(
     """Make the present state the accepted one."""
     from replicate.accept import accept as accept_state
     from replicate.accept import require_reason
-    from replicate.discovery import select
+    from replicate.run.discovery import select
     from replicate.terminal.console import console
     from replicate.terminal.differences import print_changes
 
@@ -304,7 +304,7 @@ def handout(
     no_cache: NoCache = False,
 ) -> None:
     """Build teaching handouts, without and with solutions."""
-    from replicate.discovery import find_papers
+    from replicate.run.discovery import find_papers
     from replicate.handout import build_handouts, checked_format, with_handout
     from replicate.staging import staged
 
@@ -327,7 +327,7 @@ def new(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
 ) -> None:
     """Make the package of a new paper in the current folder."""
-    from replicate.discovery import known_papers
+    from replicate.run.discovery import known_papers
     from replicate.scaffold import new_paper
 
     if paper in known_papers():
@@ -346,7 +346,7 @@ def _recompute(
     papers: list[Paper], selection: Selection | None, jobs: int | None, out: Path, no_cache: bool
 ) -> Outcome:
     """Compute and judge with progress on standard error."""
-    from replicate.outcome import recompute
+    from replicate.run.outcome import recompute
     from replicate.terminal.console import console
     from replicate.terminal.progress import progress_on
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 
 from replicate.verdicts.rows import Judgement, VerdictRow
 from replicate.exhibits.results import Results
-from replicate.units import errors_of
+from replicate.run.units import errors_of
 
 
 def junit(papers: Sequence[str], results: Results, judgement: Judgement) -> str:

@@ -20,7 +20,7 @@ from replicate.check import check
 from replicate.diff.comparison import compare as compare_all
 from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 from replicate.exhibits.results import FigureResult, Results
 from replicate.verdicts.judge import judge
 

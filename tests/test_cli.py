@@ -49,7 +49,7 @@ def test_list_says_what_is_done_and_what_cannot_be_and_why(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On the thesis, against the printed CSV and the definitions themselves."""
-    from replicate.discovery import find_paper
+    from replicate.run.discovery import find_paper
     from replicate.exhibits import NotComputable
     from replicate.resources import accepted_dir
     from replicate.terminal.console import console
@@ -187,7 +187,7 @@ def test_a_run_that_is_told_to_end_tidies_up(replicate: Run, monkeypatch: pytest
 
 def test_when_everything_fails_the_first_lines_tell(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     failures = [f"lab/table-{number}: ValueError: no" for number in range(40)]
-    monkeypatch.setattr("replicate.outcome.failures", lambda _: failures)
+    monkeypatch.setattr("replicate.run.outcome.failures", lambda _: failures)
     status, _, err = replicate("report", "lab", "-j1")
     told = [line for line in err.splitlines() if line.startswith("failed: ")]
     assert status == 2
@@ -212,7 +212,7 @@ def test_debug_shows_where(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(sys, "argv", ["replicate", "show", "lap", "table-1", "--debug"])
     with pytest.raises(Exception, match="no paper 'lap'"):
         cli.main()
-    monkeypatch.setattr("replicate.discovery.find_paper", lambda _: 1 / 0)
+    monkeypatch.setattr("replicate.run.discovery.find_paper", lambda _: 1 / 0)
     status, _, err = replicate("show", "lab", "table-1")
     assert status == 2
     assert err == "replicate: unexpected ZeroDivisionError: division by zero (--debug shows where)\n"

@@ -3,7 +3,7 @@ import re
 import pytest
 
 import replicate.papers
-from replicate.discovery import known_papers
+from replicate.run.discovery import known_papers
 from replicate.errors import PaperDefinitionError
 
 

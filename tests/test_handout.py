@@ -12,7 +12,7 @@ import pytest
 import synthetic
 
 import replicate
-from replicate.discovery import find_paper, known_papers
+from replicate.run.discovery import find_paper, known_papers
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits.exercises import Exercises
 from replicate.handout import build_handouts, with_handout
@@ -23,7 +23,7 @@ from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
 from replicate.verdicts.ledger import Ledger
-from replicate.outcome import recompute
+from replicate.run.outcome import recompute
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.verdicts.judge import judge
 

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from replicate.check import check
-from replicate.discovery import find_papers
+from replicate.run.discovery import find_papers
 from replicate.verdicts.ledger import Ledger
-from replicate.outcome import Outcome, recompute
+from replicate.run.outcome import Outcome, recompute
 from replicate.exhibits.printed import PrintedValue
 from replicate.verdicts.judge import judge, read_all_printed
 

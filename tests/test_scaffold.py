@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from replicate.errors import OutputError, PaperDefinitionError
-from replicate.outcome import recompute
+from replicate.run.outcome import recompute
 from replicate.scaffold import new_paper
 
 

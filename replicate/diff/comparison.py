@@ -12,11 +12,11 @@ from replicate.figures.axes import compare_axes
 from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
 from replicate.figures.curves import Pair, compare_curves
-from replicate.discovery import known_papers
+from replicate.run.discovery import known_papers
 from replicate.errors import AcceptedStateError
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result
-from replicate.units import errors_of
+from replicate.run.units import errors_of
 
 Kind = Literal["table", "claims", "figure", ""]
 

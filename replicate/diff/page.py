@@ -15,7 +15,7 @@ from replicate.diff.counts import summary
 from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
 from replicate.figures.wording import percent
 from replicate.exhibits import Paper
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 from replicate.report.labels import heading
 from replicate.report.rendering import render
 

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
 from rich.progress import Progress as Bar
 
-from replicate.run import Progress
+from replicate.run.parallel import Progress
 
 
 @contextmanager

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
 from replicate.verdicts.rows import ResultRow, VerdictRow
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 from replicate.outputs import number_text
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
@@ -22,7 +22,7 @@ from replicate.report.words import MATCHES, WORDS
 from replicate.terminal.colours import colour
 from replicate.terminal.console import print_whole
 from replicate.terminal.mathtext import readable
-from replicate.units import errors_of
+from replicate.run.units import errors_of
 
 _DIGITS = 9
 

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from replicate.outcome import Outcome
+from replicate.run.outcome import Outcome
 from replicate.report.words import CLAIM_VERDICTS, VERDICTS, Word
 from replicate.terminal.colours import colour
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from replicate.exhibits import Paper
 from replicate.verdicts.rows import Judgement
 from replicate.exhibits.results import Results
-from replicate.run import Progress, failures, run
+from replicate.run.parallel import Progress, failures, run
 from replicate.verdicts.judge import judge
 
 Selection = Collection[tuple[str, str]]
@@ -62,7 +62,7 @@ def recompute(
     selection
         ``(paper, exhibit)`` pairs; all exhibits if not given.
     jobs, cache_dir, progress
-        As for `replicate.run.run`.
+        As for `replicate.run.parallel.run`.
 
     Raises
     ------
