@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from replicate.exhibits import Paper
 from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
-from replicate.junit import junit
+from replicate.display.junit import junit
 from replicate.exhibits.results import FigureResult, Results, TableResult
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from replicate.exhibits import Finding, Paper
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, TableResult
 from replicate.report import build_report
-from replicate.report.markdown import MarkdownBatch
-from replicate.report.numbers import aligned, shown
+from replicate.display.markdown import MarkdownBatch
+from replicate.display.numbers import aligned, shown
 from replicate.resources import templates_dir
 from replicate.verdicts.judge import judge
 

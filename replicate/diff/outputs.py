@@ -19,7 +19,7 @@ from replicate.diff.comparison import Comparison
 from replicate.diff.counts import summary
 from replicate.diff.page import page
 from replicate.errors import OutputError
-from replicate.junit import add_case, count_cases, xml_text
+from replicate.display.junit import add_case, count_cases, xml_text
 from replicate.run.outcome import Outcome
 
 SUMMARY_VARIABLE = "GITHUB_STEP_SUMMARY"

@@ -16,8 +16,8 @@ from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
 from replicate.figures.wording import percent
 from replicate.exhibits import Paper
 from replicate.run.outcome import Outcome
-from replicate.report.labels import heading
-from replicate.report.rendering import render
+from replicate.display.labels import heading
+from replicate.display.rendering import render
 
 # A change of a rule may move every value of a table.
 _MOST_CELLS = 200

@@ -12,9 +12,9 @@ from replicate.handout.tree import Element, inlines, plain, span, string
 from replicate.verdicts.rows import VerdictRow
 from replicate.exhibits.printed import MINUS
 from replicate.exhibits.results import TableResult
-from replicate.report.numbers import aligned
-from replicate.report.tables import Cell, TableView, Value, table_view
-from replicate.report.words import MATCHES, VERDICTS
+from replicate.display.numbers import aligned
+from replicate.display.tables import Cell, TableView, Value, table_view
+from replicate.display.words import MATCHES, VERDICTS
 
 # What the signs say to a reader who has not seen the report; a verdict of no more words is its own name.
 _MATCHES = {

@@ -32,8 +32,8 @@ from replicate.handout.key_table import Choice, key_table, legend
 from replicate.handout.tree import Element
 from replicate.verdicts.rows import VerdictRow
 from replicate.exhibits.results import FigureResult, Results, TableResult
-from replicate.report.figures import description
-from replicate.report.tables import table_view
+from replicate.display.inline_svg import description
+from replicate.display.tables import table_view
 
 TEXT_WIDTH = 6.3  # inches between the margins of the printed page
 

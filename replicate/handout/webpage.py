@@ -12,8 +12,8 @@ from markupsafe import Markup
 import replicate
 from replicate.handout.edition import Document
 from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, transform
-from replicate.report.figures import inline_svg
-from replicate.report.sources import highlight
+from replicate.display.inline_svg import inline_svg
+from replicate.display.source_code import highlight
 from replicate.resources import templates_dir
 
 TEMPLATE = "handout.html"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from replicate.report.tables import Note
+from replicate.display.tables import Note
 from replicate.report.views import ClaimView, ExhibitView
 
 _TITLES = {

@@ -17,9 +17,9 @@ from replicate.verdicts.rows import Judgement, VerdictRow
 from replicate.exhibits.file_names import display_name
 from replicate.verdicts.prose import Prose
 from replicate.exhibits.results import Results
-from replicate.report.labels import part_of
+from replicate.display.labels import part_of
 from replicate.report.notes import Piece, pieces, place
-from replicate.report.rendering import render
+from replicate.display.rendering import render
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
 

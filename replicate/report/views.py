@@ -13,11 +13,11 @@ from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
 from replicate.exhibits.printed import PrintedValue, parse_number
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
 from replicate.report import numbers, scores
-from replicate.report.figures import description, inline_svg
-from replicate.report.labels import heading
-from replicate.report.scores import Score
-from replicate.report.sources import Source, sources
-from replicate.report.tables import TableView, table_view
+from replicate.display.inline_svg import description, inline_svg
+from replicate.display.labels import heading
+from replicate.display.scores import Score
+from replicate.display.source_code import Source, sources
+from replicate.display.tables import TableView, table_view
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from replicate.run.outcome import Outcome
 from replicate.outputs import number_text
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
-from replicate.report.numbers import shown
-from replicate.report.words import MATCHES, WORDS
+from replicate.display.numbers import shown
+from replicate.display.words import MATCHES, WORDS
 from replicate.terminal.colours import colour
 from replicate.terminal.console import print_whole
 from replicate.terminal.mathtext import readable

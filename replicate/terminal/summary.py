@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from replicate.run.outcome import Outcome
-from replicate.report.words import CLAIM_VERDICTS, VERDICTS, Word
+from replicate.display.words import CLAIM_VERDICTS, VERDICTS, Word
 from replicate.terminal.colours import colour
 
 

@@ -11,7 +11,7 @@ from markupsafe import Markup
 
 from replicate.report import environment, numbers, scores, words
 from replicate.report.errata import errata
-from replicate.report.markdown import MarkdownBatch
+from replicate.display.markdown import MarkdownBatch
 from replicate.resources import templates_dir
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from replicate.verdicts.rows import HOLDING, VerdictRow
-from replicate.report.words import CLAIM_VERDICTS, VERDICTS, Word
+from replicate.display.words import CLAIM_VERDICTS, VERDICTS, Word
 
 
 @dataclass(frozen=True)
