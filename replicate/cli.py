@@ -188,7 +188,7 @@ def chart(
 def report(papers: Papers = None, jobs: Jobs = None, out: Out = BUILD, no_cache: NoCache = False) -> None:
     """Recompute every exhibit and write the report."""
     from replicate.run.discovery import find_papers
-    from replicate.outputs import write_outputs
+    from replicate.report.data import write_outputs
     from replicate.report.pages import build_report
     from replicate.staging import staged
     from replicate.terminal.console import console
@@ -216,7 +216,7 @@ def check(
 
     And that nothing differs from the accepted state.
     """
-    from replicate.check import problems as find_problems
+    from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
     from replicate.run.discovery import find_papers
 
@@ -276,8 +276,8 @@ def accept(
     accepted: Accepted = None,
 ) -> None:
     """Make the present state the accepted one."""
-    from replicate.accept import accept as accept_state
-    from replicate.accept import require_reason
+    from replicate.diff.accept import accept as accept_state
+    from replicate.diff.accept import require_reason
     from replicate.run.discovery import select
     from replicate.terminal.console import console
     from replicate.terminal.differences import print_changes
@@ -328,7 +328,7 @@ def new(
 ) -> None:
     """Make the package of a new paper in the current folder."""
     from replicate.run.discovery import known_papers
-    from replicate.scaffold import new_paper
+    from replicate.new_paper import new_paper
 
     if paper in known_papers():
         msg = f"there is a paper '{paper}' already; choose another id"

@@ -15,8 +15,8 @@ import pytest
 import synthetic
 from PIL import Image
 
-from replicate.accept import LOG, accept
-from replicate.check import check
+from replicate.diff.accept import LOG, accept
+from replicate.diff.check import check
 from replicate.diff.comparison import compare as compare_all
 from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from replicate import plotstyle
-from replicate.accepted import FigureState, figure_state
+from replicate.diff.accepted import FigureState, figure_state
 from replicate.figures.off_screen import capture, read_figure
 from replicate.figures.axes import compare_axes
 from replicate.diff.comparison import ExhibitDiff

@@ -15,7 +15,7 @@ import pytest
 from installed_paper import contents
 from rich.console import Console
 
-from replicate.accepted import TableState
+from replicate.diff.accepted import TableState
 from replicate.diff.changes import Change
 from replicate.diff.comparison import Comparison, ExhibitDiff
 from replicate.terminal.differences import print_changes

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from replicate.check import check
+from replicate.diff.check import check
 from replicate.run.discovery import find_papers
 from replicate.verdicts.ledger import Ledger
 from replicate.run.outcome import Outcome, recompute

@@ -13,7 +13,7 @@ import synthetic
 
 from replicate.errors import OutputError
 from replicate.verdicts.rows import Judgement
-from replicate.outputs import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, table_text, write_outputs
+from replicate.report.data import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, table_text, write_outputs
 from replicate.staging import staged
 from replicate.verdicts.judge import judge
 

@@ -10,7 +10,7 @@ import pytest
 
 from replicate.errors import OutputError, PaperDefinitionError
 from replicate.run.outcome import recompute
-from replicate.scaffold import new_paper
+from replicate.new_paper import new_paper
 
 
 def test_a_new_paper_holds(tmp_path, monkeypatch):

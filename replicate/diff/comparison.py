@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from replicate.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
+from replicate.diff.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
 from replicate.figures.axes import compare_axes
 from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change

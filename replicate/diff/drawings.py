@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from replicate.accepted import FigureState
+from replicate.diff.accepted import FigureState
 from replicate.diff.comparison import ExhibitDiff
 from replicate.figures.curves import Pair
 from replicate.diff.redraw import MOST_CURVES, differences, overlay, picture

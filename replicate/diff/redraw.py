@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from replicate import plotstyle
-from replicate.accepted import FigureState
+from replicate.diff.accepted import FigureState
 from replicate.figures.off_screen import svg_text
 from replicate.figures.axes import matched_panels, symbol
 from replicate.figures.curves import Pair

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from replicate.accepted import TableState, read_state
+from replicate.diff.accepted import TableState, read_state
 from replicate.exhibits import Exhibit, NotComputable, Paper, Table
 from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.exhibits.results import TableResult

@@ -14,7 +14,7 @@ from rich.text import Text
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
 from replicate.verdicts.rows import ResultRow, VerdictRow
 from replicate.run.outcome import Outcome
-from replicate.outputs import number_text
+from replicate.report.data import number_text
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
 from replicate.display.numbers import shown

@@ -15,10 +15,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from replicate.accepted_files import keyed, read_axes, read_cells, read_curves
+from replicate.diff.accepted_files import keyed, read_axes, read_cells, read_curves
 from replicate.errors import AcceptedStateError
 from replicate.run.outcome import Outcome
-from replicate.outputs import csv_text, curves_text, number_text
+from replicate.report.data import csv_text, curves_text, number_text
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.figures.polylines import Points
 

@@ -1,6 +1,6 @@
 """Read the files of the accepted state; a damaged one is named with its line and with what is allowed.
 
-They are written by `replicate.accepted` and compared by hand in reviews, so a merge or an editor may damage
+They are written by `replicate.diff.accepted` and compared by hand in reviews, so a merge or an editor may damage
 them. Nothing is guessed then: half a file would look like a change of the results.
 """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from replicate.accepted import files_of, state_files
+from replicate.diff.accepted import files_of, state_files
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import ReplicateError
 from replicate.run.outcome import Outcome
