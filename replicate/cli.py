@@ -111,8 +111,8 @@ def list_(
 
     Of each exhibit: whether it is done, and if it cannot be computed, why.
     """
-    from replicate.run.discovery import find_paper, find_papers
     from replicate.resources import accepted_dir
+    from replicate.run.discovery import find_paper, find_papers
     from replicate.terminal.console import console
     from replicate.terminal.inventory import print_exhibits, print_papers
 
@@ -139,8 +139,8 @@ def show(
 
     With the explanations of those that do not hold.
     """
-    from replicate.run.discovery import find_exhibit, find_paper
     from replicate.exhibits import Table
+    from replicate.run.discovery import find_exhibit, find_paper
     from replicate.terminal.console import console
     from replicate.terminal.show import print_exhibit
 
@@ -187,9 +187,9 @@ def chart(
 @app.command()
 def report(papers: Papers = None, jobs: Jobs = None, out: Out = BUILD, no_cache: NoCache = False) -> None:
     """Recompute every exhibit and write the report."""
-    from replicate.run.discovery import find_papers
     from replicate.report.data import write_outputs
     from replicate.report.pages import build_report
+    from replicate.run.discovery import find_papers
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
@@ -304,8 +304,8 @@ def handout(
     no_cache: NoCache = False,
 ) -> None:
     """Build teaching handouts, without and with solutions."""
-    from replicate.run.discovery import find_papers
     from replicate.handout import build_handouts, checked_format, with_handout
+    from replicate.run.discovery import find_papers
     from replicate.staging import staged
 
     chosen = with_handout(find_papers(papers or ()), all_needed=bool(papers))
@@ -327,8 +327,8 @@ def new(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
 ) -> None:
     """Make the package of a new paper in the current folder."""
-    from replicate.run.discovery import known_papers
     from replicate.new_paper import new_paper
+    from replicate.run.discovery import known_papers
 
     if paper in known_papers():
         msg = f"there is a paper '{paper}' already; choose another id"

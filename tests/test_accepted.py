@@ -20,8 +20,8 @@ from replicate.diff.check import check
 from replicate.diff.comparison import compare as compare_all
 from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
-from replicate.run.outcome import Outcome
 from replicate.exhibits.results import FigureResult, Results
+from replicate.run.outcome import Outcome
 from replicate.verdicts.judge import judge
 
 AXES: list[dict[str, Any]] = [

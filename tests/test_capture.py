@@ -13,11 +13,11 @@ from matplotlib.figure import Figure as Canvas
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from replicate import plotstyle
-from replicate.figures.off_screen import capture
 from replicate.exhibits import Figure
-from replicate.figures.readback import MOST_POINTS
 from replicate.exhibits.results import FigureResult
+from replicate.figures import style as plotstyle
+from replicate.figures.readback import MOST_POINTS
+from replicate.run.drawing import capture
 
 
 def captured(draw: Callable[[Canvas], object]) -> FigureResult:

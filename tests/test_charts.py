@@ -11,9 +11,9 @@ import pytest
 from matplotlib.figure import Figure as Canvas
 
 from replicate import cli
-from replicate.run.charts import file_name, find_chart, read_parameters, write_chart
 from replicate.errors import OutputError, PaperDefinitionError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
+from replicate.run.charts import file_name, find_chart, read_parameters, write_chart
 
 
 @pytest.fixture

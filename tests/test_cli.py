@@ -49,9 +49,9 @@ def test_list_says_what_is_done_and_what_cannot_be_and_why(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On the thesis, against the printed CSV and the definitions themselves."""
-    from replicate.run.discovery import find_paper
     from replicate.exhibits import NotComputable
     from replicate.resources import accepted_dir
+    from replicate.run.discovery import find_paper
     from replicate.terminal.console import console
     from replicate.terminal.inventory import print_exhibits
 

@@ -15,15 +15,16 @@ from matplotlib.figure import Figure as Canvas
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from replicate import plotstyle
 from replicate.diff.accepted import FigureState, figure_state
-from replicate.figures.off_screen import capture, read_figure
-from replicate.figures.axes import compare_axes
 from replicate.diff.comparison import ExhibitDiff
+from replicate.exhibits import Figure
+from replicate.figures import style as plotstyle
+from replicate.figures.axes import compare_axes
 from replicate.figures.curves import compare_curves
 from replicate.figures.distance import distances, exact_distances
+from replicate.figures.off_screen import read_figure
 from replicate.figures.values import WINDOW, compare_values
-from replicate.exhibits import Figure
+from replicate.run.drawing import capture
 
 Array = NDArray[np.float64]
 Draw = Callable[[Canvas], object]
@@ -56,8 +57,8 @@ def plot(*curves: tuple[str, Any, Any], xlim: Any = (0.0, 10.0), ylim: Any = (0.
 
 def changes(before: Draw, after: Draw) -> list[str]:
     old, new = state(before), state(after)
-    found = compare_curves("toy", "fig-1", (old.curves, old.axes), (new.curves, new.axes))
-    axes = compare_axes("toy", "fig-1", old.axes, new.axes)
+    found = compare_curves((old.curves, old.axes), (new.curves, new.axes))
+    axes = compare_axes(old.axes, new.axes)
     unchanged = found.unchanged if found.changes else 0  # of other curves, when it is about curves
     return ExhibitDiff("toy", "fig-1", "figure", [*axes, *found.changes], unchanged).texts
 
@@ -246,7 +247,7 @@ def test_other_fonts_sizes_and_resolutions() -> None:
     assert one.svg != other.svg
     assert one.axes == other.axes
     before, after = ((figure_state(drawn.curves, drawn.axes).curves, drawn.axes) for drawn in (one, other))
-    found = compare_curves("toy", "fig-1", before, after)
+    found = compare_curves(before, after)
     assert (found.changes, found.unchanged) == ([], 2)
 
 

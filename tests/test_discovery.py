@@ -3,8 +3,8 @@ import re
 import pytest
 
 import replicate.papers
-from replicate.run.discovery import known_papers
 from replicate.errors import PaperDefinitionError
+from replicate.run.discovery import known_papers
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ import pytest
 import synthetic
 
 import replicate
-from replicate.run.discovery import find_paper, known_papers
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.handout import build_handouts, with_handout
 from replicate.handout.edition import Document, edition
 from replicate.handout.formulas import convert
@@ -22,10 +22,10 @@ from replicate.handout.printout import markup, pdf
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
-from replicate.verdicts.ledger import Ledger
+from replicate.run.discovery import find_paper, known_papers
 from replicate.run.outcome import recompute
-from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.verdicts.judge import judge
+from replicate.verdicts.ledger import Ledger
 
 SVG = (
     '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 100 50" width="100" height="50">'
@@ -216,7 +216,8 @@ def test_a_changed_result_changes_the_handout(made: Made, monkeypatch: pytest.Mo
     frames = {**table.frames, "as-written": frame}
     changed: Results = {**made.outcome.results, (id, exhibit): replace(table, frames=frames)}
     drawing = next(result for result in made.outcome.results.values() if isinstance(result, FigureResult))
-    monkeypatch.setattr("replicate.figures.off_screen.capture", lambda *_: drawing)  # the figures are not what changes here
+    # The figures are not what changes here.
+    monkeypatch.setattr("replicate.run.drawing.capture", lambda *_: drawing)
     before, after = markup(made.documents[False]), markup(made.edition(changed, solutions=False))
     assert not re.search(r"\b98\.[78]", before)
     assert re.search(r"\b98\.(?:8|77|765)\b", after)  # in the prose, with the digits of the sentence

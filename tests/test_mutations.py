@@ -11,11 +11,11 @@ from pathlib import Path
 import pytest
 
 from replicate.diff.check import check
-from replicate.run.discovery import find_papers
-from replicate.verdicts.ledger import Ledger
-from replicate.run.outcome import Outcome, recompute
 from replicate.exhibits.printed import PrintedValue
+from replicate.run.discovery import find_papers
+from replicate.run.outcome import Outcome, recompute
 from replicate.verdicts.judge import judge, read_all_printed
+from replicate.verdicts.ledger import Ledger
 
 ROOT = Path(__file__).parent.parent
 HOLDS = {"reproduced", "reconstructed", "near"}

@@ -11,11 +11,12 @@ import pandas as pd
 import pytest
 import synthetic
 
+from replicate.display.csv_text import table_text
 from replicate.errors import OutputError
-from replicate.verdicts.rows import Judgement
-from replicate.report.data import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, table_text, write_outputs
+from replicate.report.data import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, write_outputs
 from replicate.staging import staged
 from replicate.verdicts.judge import judge
+from replicate.verdicts.rows import Judgement
 
 
 def written(folder: Path, **changes: object) -> Path:

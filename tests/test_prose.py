@@ -6,9 +6,9 @@ import pytest
 import synthetic
 
 from replicate.errors import TemplateError
+from replicate.verdicts.judge import judge
 from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.verdicts.prose import Prose
-from replicate.verdicts.judge import judge
 
 COMPUTED = "computed: 'table-1', 'fig-1', 'claims'"
 VERDICTS = (

@@ -6,15 +6,15 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from replicate.figures.off_screen import capture
+from replicate.display.markdown import MarkdownBatch
+from replicate.display.numbers import aligned, shown
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Finding, Paper
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, TableResult
 from replicate.report import build_report
-from replicate.display.markdown import MarkdownBatch
-from replicate.display.numbers import aligned, shown
 from replicate.resources import templates_dir
+from replicate.run.drawing import capture
 from replicate.verdicts.judge import judge
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}

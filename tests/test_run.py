@@ -9,10 +9,11 @@ from pathlib import Path
 import installed_paper
 import pytest
 
-from replicate import discovery, run
 from replicate.errors import PaperDefinitionError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import ClaimsResult, FigureResult, Results, TableResult
+from replicate.run import discovery
+from replicate.run import parallel as run
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ import sys
 import pytest
 
 from replicate.errors import OutputError, PaperDefinitionError
-from replicate.run.outcome import recompute
 from replicate.new_paper import new_paper
+from replicate.run.outcome import recompute
 
 
 def test_a_new_paper_holds(tmp_path, monkeypatch):

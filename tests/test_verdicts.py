@@ -12,10 +12,10 @@ import synthetic
 from synthetic import frame, printed, results
 
 from replicate.exhibits import AS_WRITTEN, Finding
-from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
-from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.exhibits.results import FigureResult, TableResult
 from replicate.verdicts.judge import judge
+from replicate.verdicts.ledger import Ledger, LedgerEntry
+from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
 
 A_X = ("A", "x")
 

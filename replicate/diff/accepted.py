@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from replicate.diff.accepted_files import keyed, read_axes, read_cells, read_curves
+from replicate.display.csv_text import csv_text, curves_text, number_text
 from replicate.errors import AcceptedStateError
-from replicate.run.outcome import Outcome
-from replicate.report.data import csv_text, curves_text, number_text
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.figures.polylines import Points
+from replicate.run.outcome import Outcome
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from replicate.diff.changes import Change, Kind, moved, relative, same_number
+from replicate.diff.changes import Change, Kind, moved, relative
 from replicate.exhibits import AS_WRITTEN
+from replicate.figures.differences import same_number
 
 #: Of an accepted table, by (row, column, reading): the other columns. A claim has neither column nor reading.
 Cells = Mapping[tuple[str, ...], Mapping[str, str]]

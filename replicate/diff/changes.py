@@ -6,10 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-#: Computed values are the same up to this, relative: well above the rounding of another processor ...
-RELATIVE = 1e-7
-#: ... and up to this, absolute, where a value is zero but for rounding.
-ABSOLUTE = 1e-10
+from replicate.figures.differences import Difference
 
 _DIGITS = (6, 7, 8, 9)
 
@@ -42,25 +39,14 @@ class Change:
     after: str = ""
     size: float | None = None
 
+    @classmethod
+    def of_figure(cls, paper: str, exhibit: str, found: Difference) -> Change:
+        """Return what differs in a figure as a change of the exhibit."""
+        return cls(paper, exhibit, found.kind, found.text, found.where, found.before, found.after, found.size)
+
     def __str__(self) -> str:
         """Return the whole sentence, for the terminal and the log."""
         return f"{self.paper}/{self.exhibit}: {self.text}"
-
-
-def same_number(before: str, after: str) -> bool:
-    """Whether two texts are equal, or numbers that differ by no more than rounding.
-
-    Examples
-    --------
-    >>> same_number("6.96800001", "6.968"), same_number("6.969", "6.968"), same_number("", "0")
-    (True, False, False)
-    """
-    if before == after:
-        return True
-    try:
-        return math.isclose(float(before), float(after), rel_tol=RELATIVE, abs_tol=ABSOLUTE)
-    except ValueError:
-        return False
 
 
 def moved(before: str, after: str) -> str:

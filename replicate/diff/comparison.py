@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import Literal
 
 from replicate.diff.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
-from replicate.figures.axes import compare_axes
 from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
-from replicate.figures.curves import Pair, compare_curves
-from replicate.run.discovery import known_papers
 from replicate.errors import AcceptedStateError
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, errors_of
+from replicate.figures.axes import compare_axes
+from replicate.figures.curves import compare_curves
+from replicate.figures.pair import Pair
+from replicate.run.discovery import known_papers
 from replicate.run.outcome import Outcome
-from replicate.exhibits.results import ClaimsResult, FigureResult, Result
-from replicate.run.units import errors_of
 
 Kind = Literal["table", "claims", "figure", ""]
 
@@ -163,8 +163,9 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         missing = Change(paper, exhibit, "new", f"has no accepted state: {paper}/{before} is missing")
         return ExhibitDiff(paper, exhibit, kind, [missing], after=after)
     if isinstance(before, FigureState) and isinstance(after, FigureState):
-        found = compare_curves(paper, exhibit, (before.curves, before.axes), (after.curves, after.axes))
-        changes = [*compare_axes(paper, exhibit, before.axes, after.axes), *found.changes]
+        found = compare_curves((before.curves, before.axes), (after.curves, after.axes))
+        differences = [*compare_axes(before.axes, after.axes), *found.changes]
+        changes = [Change.of_figure(paper, exhibit, difference) for difference in differences]
         picture = f"{paper}/{exhibit}.png"
         if not (folder / picture).is_file():
             changes.append(Change(paper, exhibit, "new", f"its picture for people, {picture}, is missing", "picture"))

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from replicate.diff.accepted import FigureState
 from replicate.diff.comparison import ExhibitDiff
-from replicate.figures.curves import Pair
 from replicate.diff.redraw import MOST_CURVES, differences, overlay, picture
 from replicate.display.inline_svg import description, inline_svg
+from replicate.figures.pair import Pair
 
 #: Pictures of more figures than this would make the page too heavy; it says how to see the others.
 MOST_FIGURES = 24

@@ -18,8 +18,8 @@ from replicate.diff.changes import Change
 from replicate.diff.comparison import Comparison
 from replicate.diff.counts import summary
 from replicate.diff.page import page
-from replicate.errors import OutputError
 from replicate.display.junit import add_case, count_cases, xml_text
+from replicate.errors import OutputError
 from replicate.run.outcome import Outcome
 
 SUMMARY_VARIABLE = "GITHUB_STEP_SUMMARY"

@@ -13,11 +13,11 @@ from replicate.diff.changes import relative
 from replicate.diff.comparison import Comparison, ExhibitDiff
 from replicate.diff.counts import summary
 from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
-from replicate.figures.wording import percent
-from replicate.exhibits import Paper
-from replicate.run.outcome import Outcome
 from replicate.display.labels import heading
 from replicate.display.rendering import render
+from replicate.exhibits import Paper
+from replicate.figures.wording import percent
+from replicate.run.outcome import Outcome
 
 # A change of a rule may move every value of a table.
 _MOST_CELLS = 200

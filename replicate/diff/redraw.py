@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from replicate import plotstyle
 from replicate.diff.accepted import FigureState
-from replicate.figures.off_screen import svg_text
+from replicate.figures import style as plotstyle
 from replicate.figures.axes import matched_panels, symbol
-from replicate.figures.curves import Pair
 from replicate.figures.distance import exact_distances
-from replicate.figures.scaling import finite, from_units, in_units
+from replicate.figures.off_screen import svg_text
+from replicate.figures.pair import Pair
 from replicate.figures.polylines import Points
+from replicate.figures.scaling import finite, from_units, in_units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

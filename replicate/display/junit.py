@@ -10,9 +10,8 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
+from replicate.exhibits.results import Results, errors_of
 from replicate.verdicts.rows import Judgement, VerdictRow
-from replicate.exhibits.results import Results
-from replicate.run.units import errors_of
 
 
 def junit(papers: Sequence[str], results: Results, judgement: Judgement) -> str:

@@ -9,10 +9,21 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from replicate.report import environment, numbers, scores, words
-from replicate.report.errata import errata
+from replicate.display import environment, numbers, scores, words
 from replicate.display.markdown import MarkdownBatch
 from replicate.resources import templates_dir
+
+
+def html_environment() -> jinja2.Environment:
+    """Return the environment of all templates that make HTML: escaped, and with nothing silently empty."""
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir()),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
 
 
 def render(template: str, name: str, **context: Any) -> str:
@@ -33,14 +44,7 @@ def render(template: str, name: str, **context: Any) -> str:
         If a text of the page cannot be converted.
     """
     batch = MarkdownBatch(name)
-    loader = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir()),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    loader = html_environment()
     loader.filters |= {
         "md": batch.block, "inline": batch.inline, "plain": batch.plain, "key": partial(_key, batch),
     }  # fmt: skip
@@ -51,7 +55,6 @@ def render(template: str, name: str, **context: Any) -> str:
         words=words,
         scores=scores,
         numbers=numbers,
-        errata=errata,
         versions=environment.versions(),
     )
     return batch.substitute(text)

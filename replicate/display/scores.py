@@ -6,8 +6,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from replicate.verdicts.rows import HOLDING, VerdictRow
 from replicate.display.words import CLAIM_VERDICTS, VERDICTS, Word
+from replicate.verdicts.rows import HOLDING, VerdictRow
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from replicate.exhibits.frames import CellError, cell
+from replicate.display import numbers
 from replicate.exhibits import Reading, Table
-from replicate.verdicts.rows import HOLDING, VerdictRow
+from replicate.exhibits.frames import CellError, cell
 from replicate.exhibits.matching import Match, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
-from replicate.report import numbers
+from replicate.verdicts.rows import HOLDING, VerdictRow
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -18,8 +18,8 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from replicate.errors import PrintedFileError
-from replicate.exhibits.vocabulary import Table
 from replicate.exhibits.file_names import display_name
+from replicate.exhibits.vocabulary import Table
 
 MINUS = "\N{MINUS SIGN}"
 ALLOWED = "digits with an optional sign, decimal point and exponent"

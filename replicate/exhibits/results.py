@@ -77,3 +77,10 @@ class ClaimsResult:
 
 Result = TableResult | FigureResult | ClaimsResult
 Results = dict[tuple[str, str], Result]
+
+
+def errors_of(result: Result) -> dict[str, str]:
+    """Return what went wrong, by reading or claim (by the empty text for a figure)."""
+    if isinstance(result, FigureResult):
+        return {"": result.error} if result.error else {}
+    return result.errors

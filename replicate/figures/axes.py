@@ -8,14 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from replicate.diff.changes import Change, same_number
+from replicate.figures.differences import Difference, same_number
 from replicate.figures.scaling import TOLERANCE, in_units
 
 Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
 
 
-def compare_axes(paper: str, exhibit: str, before: Sequence[Axes], after: Sequence[Axes]) -> list[Change]:
+def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Difference]:
     """Compare the panels of a figure, matched by name.
 
     Parameters
@@ -29,14 +29,14 @@ def compare_axes(paper: str, exhibit: str, before: Sequence[Axes], after: Sequen
         panel = str((old or new or {})["panel"])
         if old is None or new is None:
             what, kind = ("gone", "removed") if new is None else ("new", "new")
-            changes.append(Change(paper, exhibit, "axes", f"panel '{panel}' is {what}", panel, kind))
+            changes.append(Difference("axes", f"panel '{panel}' is {what}", panel, kind))
             continue
         prefix = f"'{panel}': " if several else ""
         for name in dict.fromkeys((*old, *new)):
             one, other = old.get(name), new.get(name)
             if name != "panel" and not _same(one, other) and not _as_drawn(name, old, new):
                 changes += [
-                    Change(paper, exhibit, "axes", prefix + text, f"{panel} / {name}", _shown(one), _shown(other))
+                    Difference("axes", prefix + text, f"{panel} / {name}", _shown(one), _shown(other))
                     for text in _words(name, old, new)
                 ]
     return changes

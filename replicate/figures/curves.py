@@ -12,13 +12,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from replicate.figures.axes import Axes, matched_panels
-from replicate.diff.changes import Change, Kind
+from replicate.figures.differences import Difference, FigureChange
 from replicate.figures.distance import Distances, distances, point_distances
-from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
-from replicate.figures.values import WINDOW, Array, ValueDifference, compare_values, is_function
-from replicate.figures.wording import moved_words
-from replicate.figures.readback import TOLERANCE as THINNING
+from replicate.figures.pair import Pair
 from replicate.figures.polylines import Points
+from replicate.figures.readback import TOLERANCE as THINNING
+from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
+from replicate.figures.values import WINDOW, Array, compare_values, is_function
+from replicate.figures.wording import moved_words
 
 # A function of x that moved by less than this needs no second measure that says whether it moved sideways.
 _LITTLE = 10.0 * TOLERANCE
@@ -27,36 +28,11 @@ _LITTLE = 10.0 * TOLERANCE
 Curves = Mapping[tuple[str, str], Points]
 
 
-@dataclass(frozen=True)
-class Pair:
-    """A curve in both states, and how they differ.
-
-    Attributes
-    ----------
-    before, after
-        In data coordinates.
-    values
-        For functions of x.
-    distance
-        Of the new curve from the accepted one, then the other way round; empty for functions of x whose values
-        tell enough.
-    """
-
-    axes: Axes  # the accepted description of the panel: all fractions are of these axes
-    name: str
-    before: Points
-    after: Points
-    moved: bool
-    tolerance: float
-    values: ValueDifference | None = None
-    distance: tuple[Distances, ...] = ()
-
-
 @dataclass
 class CurveComparison:
     """All curves of a figure."""
 
-    changes: list[Change] = field(default_factory=list)
+    changes: list[Difference] = field(default_factory=list)
     pairs: list[Pair] = field(default_factory=list)
 
     @property
@@ -65,9 +41,7 @@ class CurveComparison:
         return sum(not pair.moved for pair in self.pairs)
 
 
-def compare_curves(
-    paper: str, exhibit: str, before: tuple[Curves, Sequence[Axes]], after: tuple[Curves, Sequence[Axes]]
-) -> CurveComparison:
+def compare_curves(before: tuple[Curves, Sequence[Axes]], after: tuple[Curves, Sequence[Axes]]) -> CurveComparison:
     """Compare the curves of a figure.
 
     Parameters
@@ -79,7 +53,7 @@ def compare_curves(
     several = len(before[1]) > 1
     for old, new in matched_panels(before[1], after[1]):
         if old is not None and new is not None:
-            panel = _Panel(paper, exhibit, old, new, f" in '{old['panel']}'" if several else "")
+            panel = _Panel(old, new, f" in '{old['panel']}'" if several else "")
             one, other = (
                 {name: points for (owner, name), points in curves.items() if owner == axes["panel"]}
                 for curves, axes in ((before[0], old), (after[0], new))
@@ -91,8 +65,7 @@ def compare_curves(
 class _Panel:
     """One panel in both states."""
 
-    def __init__(self, paper: str, exhibit: str, old: Axes, new: Axes, suffix: str) -> None:
-        self.paper, self.exhibit = paper, exhibit
+    def __init__(self, old: Axes, new: Axes, suffix: str) -> None:
         self.old, self.new = old, new
         self.suffix = suffix
         self.view = _view(old, new)
@@ -134,7 +107,7 @@ class _Panel:
     def say(
         self,
         found: CurveComparison,
-        kind: Kind,
+        kind: FigureChange,
         text: str,
         name: str,
         before: str = "",
@@ -145,7 +118,7 @@ class _Panel:
         where = f"{self.old['panel']} / {name}"
         text += self.suffix if suffix is None else suffix
         after = name if before else ""
-        found.changes.append(Change(self.paper, self.exhibit, kind, text, where, before, after, size))
+        found.changes.append(Difference(kind, text, where, before, after, size))
 
     def pair(self, old_name: str, new_name: str, one: Points, other: Points) -> Pair:
         """Compare two curves, which need not have the same name."""

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from replicate.figures.scaling import finite
 from replicate.figures.polylines import Points, distance_to_segments
+from replicate.figures.scaling import finite
 
 Array = NDArray[np.float64]
 

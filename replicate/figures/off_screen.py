@@ -1,9 +1,4 @@
-"""Draw a figure off-screen and read what it shows back out of its axes.
-
-A paper's function draws on an ordinary matplotlib figure and knows nothing of files. Here the figure becomes
-an SVG, a PNG, the curves as data (for download and for comparing with the accepted state) and a description
-of its axes.
-"""
+"""What becomes of a drawn matplotlib figure: an SVG, a PNG, its curves as data and a description of its axes."""
 
 from __future__ import annotations
 
@@ -13,55 +8,20 @@ import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import pandas as pd
-from matplotlib.figure import Figure as Canvas
 
-from replicate import plotstyle
-from replicate.exhibits import Figure
+from replicate.figures import style
 from replicate.figures.readback import read_panel
-from replicate.exhibits.results import FigureResult
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure as Canvas
 
 _LONGEST_NAME = 24
 
 
-def capture(paper: str, exhibit: Figure) -> FigureResult:
-    """Draw a figure exhibit.
-
-    Parameters
-    ----------
-    paper
-        Id of the paper; with the exhibit's id it seeds the ids inside the SVG.
-
-    Returns
-    -------
-    FigureResult
-        SVG (transparent, ink and paper colours as in `replicate.figures.style`), PNG (white), curves and axes.
-
-    Raises
-    ------
-    Exception
-        Whatever the exhibit's own function raises.
-    """
-    with plotstyle.style(hashsalt=f"{paper}/{exhibit.id}"):
-        canvas = Canvas(figsize=exhibit.size)
-        exhibit.draw(canvas)
-        curves, described = read_figure(canvas)
-        return FigureResult(
-            paper=paper,
-            exhibit=exhibit.id,
-            svg=svg_text(canvas, exhibit.title),
-            png=_png(canvas),
-            curves=curves,
-            axes=described,
-        )
-
-
 def read_figure(canvas: Canvas) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
-    """Return the curves of a drawn figure, and the description of its axes, as in `FigureResult`."""
+    """Return the curves of a drawn figure, and the description of its axes."""
     panels = [read_panel(name, axes) for name, axes in _panels(canvas)]
     rows = [row for rows, _ in panels for row in rows]
     frame = pd.DataFrame(rows, columns=["panel", "curve", "x", "y"])
@@ -69,12 +29,6 @@ def read_figure(canvas: Canvas) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
     if described:
         described[0] |= _outside_the_axes(canvas)
     return frame.astype({"panel": object, "curve": object, "x": float, "y": float}), described
-
-
-def no_figure(paper: str, exhibit: str, error: str) -> FigureResult:
-    """Return the record of a figure that could not be drawn."""
-    curves = pd.DataFrame({"panel": [], "curve": [], "x": np.empty(0), "y": np.empty(0)})
-    return FigureResult(paper, exhibit, svg="", png=b"", curves=curves, axes=[], error=error)
 
 
 def _panels(canvas: Canvas) -> Iterator[tuple[str, Axes]]:
@@ -112,9 +66,9 @@ def svg_text(canvas: Canvas, title: str) -> str:
     buffer = io.StringIO()
     unknown = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     canvas.savefig(buffer, format="svg", transparent=True, metadata={**unknown, "Title": title})
-    svg = _settled_ids(buffer.getvalue()).replace("#000000", plotstyle.INK)
+    svg = _settled_ids(buffer.getvalue()).replace("#000000", style.INK)
     # matplotlib writes no fill for black shapes and texts: let them inherit the ink colour.
-    return svg.replace("<g ", f'<g fill="{plotstyle.INK}" ', 1)
+    return svg.replace("<g ", f'<g fill="{style.INK}" ', 1)
 
 
 def _settled_ids(svg: str) -> str:
@@ -135,7 +89,8 @@ def _settled_ids(svg: str) -> str:
     return re.sub(r"(?<=[\"#])[a-z][0-9a-f]{10}(?=[\")])", settled, svg)
 
 
-def _png(canvas: Canvas) -> bytes:
+def png_bytes(canvas: Canvas) -> bytes:
+    """Return a drawn figure as a PNG on white, without versions."""
     buffer = io.BytesIO()
-    canvas.savefig(buffer, format="png", dpi=plotstyle.PNG_DPI, facecolor="white", metadata={"Software": None})
+    canvas.savefig(buffer, format="png", dpi=style.PNG_DPI, facecolor="white", metadata={"Software": None})
     return buffer.getvalue()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.diff.changes import RELATIVE
+from replicate.figures.differences import RELATIVE
 from replicate.figures.polylines import Points
 
 #: Curves are the same up to this fraction of the size of their axes: far less than one could see, and a few

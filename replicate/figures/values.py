@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.figures.scaling import TOLERANCE, finite
-from replicate.figures.readback import TOLERANCE as THINNING
 from replicate.figures.polylines import Points
+from replicate.figures.readback import TOLERANCE as THINNING
+from replicate.figures.scaling import TOLERANCE, finite
 
 Array = NDArray[np.float64]
 

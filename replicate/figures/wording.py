@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from replicate.figures.axes import Axes, symbol
+from replicate.figures.pair import Pair
+from replicate.figures.polylines import Points
 from replicate.figures.scaling import finite, from_units, in_units
 from replicate.figures.values import Array, ValueDifference
-from replicate.figures.polylines import Points
-
-if TYPE_CHECKING:
-    from replicate.figures.curves import Pair
 
 # Consecutive points no further apart along x than this, and further along y, are a jump.
 _JUMP_WIDTH, _JUMP_HEIGHT = 1e-6, 1e-3

@@ -8,9 +8,9 @@ from typing import Literal, get_args
 
 from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Paper
+from replicate.exhibits.results import Results
 from replicate.handout.edition import FILE, edition
 from replicate.verdicts.rows import VerdictRow
-from replicate.exhibits.results import Results
 
 Format = Literal["pdf", "html"]
 

@@ -12,14 +12,14 @@ import pypandoc
 
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
+from replicate.exhibits.file_names import display_name
+from replicate.exhibits.results import Results
 from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, located
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
 from replicate.handout.tree import Blocks, Element, classes, div, elements, plain, string, text_of, transform
-from replicate.verdicts.rows import VerdictRow
-from replicate.exhibits.file_names import display_name
 from replicate.verdicts.prose import Prose
-from replicate.exhibits.results import Results
+from replicate.verdicts.rows import VerdictRow
 
 FILE = "handout.md"
 

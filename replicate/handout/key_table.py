@@ -6,15 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from replicate.errors import TemplateError
-from replicate.exhibits import Table
-from replicate.handout.tree import Element, inlines, plain, span, string
-from replicate.verdicts.rows import VerdictRow
-from replicate.exhibits.printed import MINUS
-from replicate.exhibits.results import TableResult
 from replicate.display.numbers import aligned
 from replicate.display.tables import Cell, TableView, Value, table_view
 from replicate.display.words import MATCHES, VERDICTS
+from replicate.errors import TemplateError
+from replicate.exhibits import Table
+from replicate.exhibits.printed import MINUS
+from replicate.exhibits.results import TableResult
+from replicate.handout.tree import Element, inlines, plain, span, string
+from replicate.verdicts.rows import VerdictRow
 
 # What the signs say to a reader who has not seen the report; a verdict of no more words is its own name.
 _MATCHES = {

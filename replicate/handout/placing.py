@@ -24,16 +24,16 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
-from replicate import capture
-from replicate.errors import PaperDefinitionError, TemplateError
-from replicate.exhibits.exercises import Answer, Exercises
-from replicate.exhibits import Figure, Paper, Table
-from replicate.handout.key_table import Choice, key_table, legend
-from replicate.handout.tree import Element
-from replicate.verdicts.rows import VerdictRow
-from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.display.inline_svg import description
 from replicate.display.tables import table_view
+from replicate.errors import PaperDefinitionError, TemplateError
+from replicate.exhibits import Figure, Paper, Table
+from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.results import FigureResult, Results, TableResult
+from replicate.handout.key_table import Choice, key_table, legend
+from replicate.handout.tree import Element
+from replicate.run import drawing
+from replicate.verdicts.rows import VerdictRow
 
 TEXT_WIDTH = 6.3  # inches between the margins of the printed page
 
@@ -146,7 +146,7 @@ class Placing:
             if size is not None:
                 drawn, width = replace(drawn, size=size), min(1.0, size[0] / TEXT_WIDTH)
             with _said_by(f"figure('{name}')"):
-                result = capture.capture(f"{self.paper.id}-handout", drawn)
+                result = drawing.capture(f"{self.paper.id}-handout", drawn)
             return self._mark(Drawing(name, result.svg, description(drawn.alt, result.axes), width))
         known = self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):

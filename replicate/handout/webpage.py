@@ -5,16 +5,15 @@ from __future__ import annotations
 import html
 import json
 
-import jinja2
 import pypandoc
 from markupsafe import Markup
 
 import replicate
+from replicate.display.inline_svg import inline_svg
+from replicate.display.rendering import html_environment
+from replicate.display.source_code import highlight
 from replicate.handout.edition import Document
 from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, transform
-from replicate.display.inline_svg import inline_svg
-from replicate.display.source_code import highlight
-from replicate.resources import templates_dir
 
 TEMPLATE = "handout.html"
 
@@ -31,20 +30,16 @@ def webpage(document: Document) -> str:
             extra_args=["--wrap=none", "--fail-if-warnings", "--shift-heading-level-by=1"],
         )
     )
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir()),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    return environment.get_template(TEMPLATE).render(
-        title=document.title,
-        paper=document.paper,
-        solutions=document.solutions,
-        body=Markup(body.replace("\r\n", "\n")),  # noqa: S704  -- the project's own text
-        software=f"replicate {replicate.__version__}",
+    return (
+        html_environment()
+        .get_template(TEMPLATE)
+        .render(
+            title=document.title,
+            paper=document.paper,
+            solutions=document.solutions,
+            body=Markup(body.replace("\r\n", "\n")),  # noqa: S704  -- the project's own text
+            software=f"replicate {replicate.__version__}",
+        )
     )
 
 

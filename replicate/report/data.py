@@ -5,20 +5,18 @@ Same results, same bytes: no clock, no absolute paths, rows in the order of the 
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Sequence
-from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from replicate.exhibits import Paper
-from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
+from replicate.display.csv_text import csv_text, curves_text, table_text
 from replicate.display.junit import junit
+from replicate.exhibits import Paper
 from replicate.exhibits.results import FigureResult, Results, TableResult
+from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
 
 if TYPE_CHECKING:
-    import pandas as pd
+    pass
 
 RESULT_COLUMNS = ("paper", "exhibit", "row", "column", "printed", "reading", "computed", "match")
 VERDICT_COLUMNS = (
@@ -35,9 +33,6 @@ VERDICT_COLUMNS = (
     "explanation",
 )
 EXHIBIT_COLUMNS = ("paper", "exhibit", "kind", "title", "status", "reason")
-
-#: Digits of every computed number in the tables; twelve are far more than any paper prints.
-DIGITS = 12
 
 
 def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> None:
@@ -72,44 +67,6 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
             _write(place / f"{exhibit}.svg", result.svg)
             _write(place / f"{exhibit}.png", result.png)
             _write(place / f"{exhibit}.csv", curves_text(result.curves))
-
-
-def csv_text(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    r"""Return a CSV with ``\n`` line ends; ``None`` and NaN become blank cells.
-
-    Examples
-    --------
-    >>> print(csv_text(["row", "Mp"], [["PA", 0.1 + 0.2], ["ZN", None]]), end="")
-    row,Mp
-    PA,0.3
-    ZN,
-    """
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([number_text(cell) for cell in row] for row in rows)
-    return buffer.getvalue()
-
-
-def number_text(value: object, digits: int = DIGITS) -> str:
-    """Return a cell as text: numbers with the given significant digits, nothing for ``None`` and NaN."""
-    if value is None:
-        return ""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return "" if str(value) in {"<NA>", "NaT"} else str(value)
-    number = float(value) + 0.0  # no negative zero
-    return "" if number != number else f"{number:.{digits}g}"  # noqa: PLR0124  -- NaN
-
-
-def table_text(frame: pd.DataFrame) -> str:
-    """Return a reading as CSV in the paper's own layout: row keys in the first column, then the columns."""
-    header = ["row" if frame.index.name is None else str(frame.index.name), *map(str, frame.columns)]
-    return csv_text(header, frame.itertuples(index=True, name=None))
-
-
-def curves_text(curves: pd.DataFrame) -> str:
-    """Return the curves of a figure as CSV; they come rounded to nine significant digits."""
-    return csv_text(list(curves.columns), curves.itertuples(index=False, name=None))
 
 
 def _records(records: Iterable[ResultRow | VerdictRow | ExhibitRow], columns: Sequence[str]) -> str:

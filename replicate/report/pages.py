@@ -11,17 +11,18 @@ from dataclasses import dataclass
 from itertools import dropwhile, takewhile
 from pathlib import Path
 
+from replicate.display.labels import part_of
+from replicate.display.rendering import render
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Paper
-from replicate.verdicts.rows import Judgement, VerdictRow
 from replicate.exhibits.file_names import display_name
-from replicate.verdicts.prose import Prose
 from replicate.exhibits.results import Results
-from replicate.display.labels import part_of
+from replicate.report.errata import errata
 from replicate.report.notes import Piece, pieces, place
-from replicate.display.rendering import render
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
+from replicate.verdicts.prose import Prose
+from replicate.verdicts.rows import Judgement, VerdictRow
 
 INDEX = "index.html"
 METHODS = "methods.html"
@@ -114,7 +115,7 @@ def build_report(papers: Sequence[Paper], results: Results, judgement: Judgement
     }
     for pages in site.values():
         for page in pages:
-            texts[page.file] = render("paper.html", page.file, page=page, pages=pages)
+            texts[page.file] = render("paper.html", page.file, page=page, pages=pages, mistakes=errata(page.exhibits))
     written = []
     for name, text in texts.items():
         path = out_dir / name

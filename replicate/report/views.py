@@ -8,16 +8,16 @@ from typing import Any
 
 from markupsafe import Markup
 
-from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
-from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
-from replicate.exhibits.printed import PrintedValue, parse_number
-from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
-from replicate.report import numbers, scores
+from replicate.display import numbers, scores
 from replicate.display.inline_svg import description, inline_svg
 from replicate.display.labels import heading
 from replicate.display.scores import Score
 from replicate.display.source_code import Source, sources
 from replicate.display.tables import TableView, table_view
+from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
+from replicate.exhibits.printed import PrintedValue, parse_number
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
+from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
 
 
 @dataclass(frozen=True)

@@ -100,7 +100,7 @@ def write_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: P
     OutputError
         If the file cannot be written or its name does not tell one of the two formats.
     """
-    from replicate.figures.off_screen import capture
+    from replicate.run.drawing import capture
 
     if path.suffix.lower() not in FORMATS:
         msg = f"{path}: the name must end in {' or '.join(FORMATS)}"

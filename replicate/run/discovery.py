@@ -32,7 +32,7 @@ def known_papers() -> dict[str, Paper]:
     papers: dict[str, Paper] = {}
     for where, paper in (*_own_papers(), *_installed_papers()):
         if not isinstance(paper, Paper):
-            msg = f"{where}: defines no 'paper' that is a replicate.exhibits.vocabulary.Paper"
+            msg = f"{where}: defines no 'paper' that is a replicate.exhibits.Paper"
             raise PaperDefinitionError(msg)
         if paper.id in papers:
             msg = f"{where}: there is a paper '{paper.id}' already, in {papers[paper.id].package}"

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from replicate.exhibits import Paper
-from replicate.verdicts.rows import Judgement
 from replicate.exhibits.results import Results
 from replicate.run.parallel import Progress, failures, run
 from replicate.verdicts.judge import judge
+from replicate.verdicts.rows import Judgement
 
 Selection = Collection[tuple[str, str]]
 

@@ -15,11 +15,11 @@ from pathlib import Path
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
-from replicate.run.cache import Cache  # noqa: E402  -- after the environment is set
 from replicate.errors import ReplicateError  # noqa: E402
 from replicate.exhibits import Exhibit, Paper  # noqa: E402
-from replicate.exhibits.results import Result, Results, TableResult  # noqa: E402
-from replicate.run.units import Unit, compute, errors_of, units_of  # noqa: E402
+from replicate.exhibits.results import Result, Results, TableResult, errors_of  # noqa: E402
+from replicate.run.cache import Cache  # noqa: E402  -- after the environment is set
+from replicate.run.units import Unit, compute, units_of  # noqa: E402
 
 CACHE_DIR = Path("build/cache")
 

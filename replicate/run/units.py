@@ -57,13 +57,6 @@ def compute(unit: Unit) -> Result:
     raise TypeError(msg)
 
 
-def errors_of(result: Result) -> dict[str, str]:
-    """Return what went wrong, by reading or claim (by the empty text for a figure)."""
-    if isinstance(result, FigureResult):
-        return {"": result.error} if result.error else {}
-    return result.errors
-
-
 def reason(error: Exception) -> str:
     """Return one line that says what was raised, and where in the paper's own code or the core."""
     text = " ".join(str(error).split())
@@ -91,7 +84,7 @@ def _compute_reading(unit: Unit, table: Table) -> TableResult:
 
 
 def _draw(unit: Unit, figure: Figure) -> FigureResult:
-    from replicate.figures.off_screen import capture, no_figure
+    from replicate.run.drawing import capture, no_figure
 
     try:
         return capture(unit.paper, figure)

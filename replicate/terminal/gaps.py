@@ -6,8 +6,8 @@ from pathlib import Path
 
 from replicate.diff.accepted import TableState, read_state
 from replicate.exhibits import Exhibit, NotComputable, Paper, Table
-from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.exhibits.results import TableResult
+from replicate.verdicts.ledger import Ledger, LedgerEntry
 
 LOST = ("measured", "unavailable")  # causes that leave nothing to compute
 

@@ -11,18 +11,17 @@ from rich.padding import Padding
 from rich.table import Table as Grid
 from rich.text import Text
 
-from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
-from replicate.verdicts.rows import ResultRow, VerdictRow
-from replicate.run.outcome import Outcome
-from replicate.report.data import number_text
-from replicate.exhibits.printed import PrintedValue
-from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
+from replicate.display.csv_text import number_text
 from replicate.display.numbers import shown
 from replicate.display.words import MATCHES, WORDS
+from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
+from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult, errors_of
+from replicate.run.outcome import Outcome
 from replicate.terminal.colours import colour
 from replicate.terminal.console import print_whole
 from replicate.terminal.mathtext import readable
-from replicate.run.units import errors_of
+from replicate.verdicts.rows import ResultRow, VerdictRow
 
 _DIGITS = 9
 

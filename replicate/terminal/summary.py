@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from replicate.run.outcome import Outcome
 from replicate.display.words import CLAIM_VERDICTS, VERDICTS, Word
+from replicate.run.outcome import Outcome
 from replicate.terminal.colours import colour
 
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from replicate.exhibits import AS_WRITTEN, Claim, Claims, Finding
+from replicate.exhibits.matching import computed_text, match
+from replicate.exhibits.printed import ALLOWED, parse_number
+from replicate.exhibits.results import ClaimsResult
 from replicate.verdicts.rows import (
     CLAIM_COLUMN,
     CLAIM_VERDICTS,
@@ -14,9 +17,6 @@ from replicate.verdicts.rows import (
     Status,
     VerdictRow,
 )
-from replicate.exhibits.matching import computed_text, match
-from replicate.exhibits.printed import ALLOWED, parse_number
-from replicate.exhibits.results import ClaimsResult
 
 
 def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement:

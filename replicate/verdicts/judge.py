@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from replicate.verdicts.claims import judge_claims
 from replicate.errors import TemplateError
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Paper, Table
-from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, Status, VerdictRow
-from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.exhibits.printed import Key, PrintedValue, read_printed
-from replicate.verdicts.prose import Prose
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
+from replicate.verdicts.claims import judge_claims
+from replicate.verdicts.ledger import Ledger, LedgerEntry
+from replicate.verdicts.prose import Prose
+from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, Status, VerdictRow
 from replicate.verdicts.tables import TableJudge
 
 __all__ = ["ExhibitRow", "Judgement", "ResultRow", "VerdictRow", "judge", "read_all_printed"]

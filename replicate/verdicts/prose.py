@@ -26,11 +26,11 @@ import traceback
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from replicate.exhibits.frames import CellError, cell
 from replicate.errors import TemplateError
 from replicate.exhibits import AS_WRITTEN, Finding, Paper
-from replicate.verdicts.rows import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
+from replicate.exhibits.frames import CellError, cell
 from replicate.exhibits.results import ClaimsResult, Result, TableResult
+from replicate.verdicts.rows import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
 
 if TYPE_CHECKING:
     import jinja2

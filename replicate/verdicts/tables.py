@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from replicate.exhibits.frames import cells
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.verdicts.rows import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
-from replicate.verdicts.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.exhibits.frames import cells
 from replicate.exhibits.matching import Match, computed_text, format_like, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
+from replicate.verdicts.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.verdicts.rows import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "misprint": "misprint",

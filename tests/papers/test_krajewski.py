@@ -10,7 +10,6 @@ import pytest
 from loops.references import ReferenceLoop
 from scipy.optimize import brentq
 
-from replicate.figures.off_screen import capture
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski import paper
 from replicate.papers.krajewski.combined_chart import combined_chart
@@ -39,6 +38,7 @@ from replicate.papers.krajewski.robustness import VERTICES, at_vertices, designs
 from replicate.papers.krajewski.sensitivity_locus import constant_sensitivity, sensitivity_points
 from replicate.papers.krajewski.table_1 import MARGINS, hyperbola_fit, upper_ends
 from replicate.papers.krajewski.table_1_errors import residuals, sign_changes
+from replicate.run.drawing import capture
 
 RANDOM = np.random.default_rng(69)
 

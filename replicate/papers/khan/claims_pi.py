@@ -10,8 +10,8 @@ from scipy.optimize import brentq, minimize_scalar
 from scipy.special import lambertw
 
 from replicate.exhibits import ClaimVerdict, Finding
-from replicate.loops import PI, Loop
 from replicate.exhibits.matching import meets
+from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.bryant import gain_for_damping
 from replicate.papers.khan.claims import claims

@@ -8,8 +8,8 @@ from functools import cache
 
 import pandas as pd
 
-from replicate.loops import PI, Loop, Signal
 from replicate.exhibits.matching import meets
+from replicate.loops import PI, Loop, Signal
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
 from replicate.papers.khan.sweep import stability_limit

@@ -1,0 +1,37 @@
+"""How a paper describes itself: the words for its exhibits, its printed values, and what computing them gives."""
+
+from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.paper import Paper
+from replicate.exhibits.vocabulary import (
+    AS_WRITTEN,
+    Chart,
+    Claim,
+    Claims,
+    ClaimVerdict,
+    Exhibit,
+    Figure,
+    FigureKind,
+    Finding,
+    NotComputable,
+    Reading,
+    Table,
+    TableKind,
+)
+
+__all__ = [
+    "AS_WRITTEN",
+    "Chart",
+    "Claim",
+    "ClaimVerdict",
+    "Claims",
+    "Exercises",
+    "Exhibit",
+    "Figure",
+    "FigureKind",
+    "Finding",
+    "NotComputable",
+    "Paper",
+    "Reading",
+    "Table",
+    "TableKind",
+]

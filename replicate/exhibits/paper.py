@@ -1,0 +1,188 @@
+"""One paper: who wrote it, where it appeared, and its exhibits in the paper's order."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import importlib.resources
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources.abc import Traversable
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from replicate.errors import PaperDefinitionError
+from replicate.exhibits.vocabulary import Chart, Claims, Exhibit, Figure, FigureKind, NotComputable, Table, TableKind
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure as MatplotlibFigure
+
+
+@dataclass
+class Paper:
+    """One paper: who wrote it, where it appeared, and its exhibits in the paper's order.
+
+    Attributes
+    ----------
+    id
+        Short ASCII name, the folder's name.
+    package
+        Import name of the paper's package (``__name__``); its folder holds ``printed/*.csv``, ``ledger.toml``,
+        ``notes.md`` and ``handout.md``.
+    modules
+        Modules of the package that define exhibits, imported in this order by `load`, which is the paper's order.
+    numbered
+        Ids of every numbered table, figure and example of the paper: `replicate check` demands that each is in the
+        inventory.
+    charts
+        Figures for parameters of the reader's choice; the first is the one that ``replicate chart`` draws if none is
+        named.
+    """
+
+    id: str
+    package: str
+    title: str
+    authors: tuple[str, ...]
+    citation: str
+    year: int
+    modules: tuple[str, ...]
+    numbered: tuple[str, ...]
+    summary: str = ""
+    exhibits: dict[str, Exhibit] = field(default_factory=dict)
+    charts: dict[str, Chart] = field(default_factory=dict)
+    _loaded: bool = False
+
+    def load(self) -> Paper:
+        """Import the modules that define the exhibits (once) and return the paper itself."""
+        if not self._loaded:
+            for module in self.modules:
+                importlib.import_module(f"{self.package}.{module}")
+            self._loaded = True
+        return self
+
+    def folder(self) -> Traversable:
+        """Return the package's folder, for its data files."""
+        return importlib.resources.files(self.package)
+
+    def printed_cells(self, exhibit: str) -> Mapping[tuple[str, str], str]:
+        """Return what the paper prints in a table, by row and column, for exhibits that weigh the print as evidence.
+
+        Blank cells are left out. The file is not validated here; `replicate.exhibits.printed.read_printed` does that.
+        """
+        return _printed_cells(self.package, exhibit)
+
+    def printed_numbers(self, exhibit: str) -> dict[tuple[str, str], float]:
+        """Return the printed cells of a table as numbers."""
+        return {key: float(cell) for key, cell in self.printed_cells(exhibit).items()}
+
+    def _add(self, exhibit: Exhibit) -> None:
+        if exhibit.id in self.exhibits:
+            msg = f"{self.id}: exhibit '{exhibit.id}' is defined twice"
+            raise PaperDefinitionError(msg)
+        self.exhibits[exhibit.id] = exhibit
+
+    def table(
+        self,
+        id: str,
+        title: str,
+        *,
+        rows: Sequence[str] = (),
+        columns: Sequence[str] = (),
+        kind: TableKind = "table",
+        caption: str = "",
+        labels: dict[str, str] | None = None,
+        units: dict[str, str] | None = None,
+        significant_digits: int | None = None,
+        printed: bool = True,
+    ) -> Table:
+        """Add a table, worked example or formula; ``printed=False`` where the paper prints no numbers in it.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If the id is taken, or a printed exhibit names no rows or columns.
+        """
+        if printed and not (rows and columns):
+            msg = f"{self.id}: {id} has printed values, so its row and column keys must be given"
+            raise PaperDefinitionError(msg)
+        exhibit = Table(
+            id,
+            kind,
+            title,
+            caption,
+            tuple(rows),
+            tuple(columns),
+            labels or {},
+            units or {},
+            significant_digits,
+            printed,
+        )
+        self._add(exhibit)
+        return exhibit
+
+    def figure(
+        self,
+        id: str,
+        title: str,
+        *,
+        kind: FigureKind = "figure",
+        caption: str = "",
+        alt: str = "",
+        size: tuple[float, float] = (6.4, 4.0),
+        stands_for: str = "",
+    ) -> Callable[[Callable[[MatplotlibFigure], None]], Callable[[MatplotlibFigure], None]]:
+        """Register the decorated function as a figure; it draws on an empty matplotlib figure."""
+
+        def register(draw: Callable[[MatplotlibFigure], None]) -> Callable[[MatplotlibFigure], None]:
+            self._add(Figure(id, kind, title, draw, caption, alt, size, stands_for))
+            return draw
+
+        return register
+
+    def chart(
+        self,
+        id: str,
+        title: str,
+        *,
+        parameters: dict[str, str],
+        size: tuple[float, float] = (6.4, 4.0),
+    ) -> Callable[[Callable[..., None]], Callable[..., None]]:
+        """Register the decorated function as a chart; it draws on an empty figure, given the parameters by name.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If there is a chart of that name, or no parameter.
+        """
+        if id in self.charts or not parameters:
+            msg = f"{self.id}: chart '{id}' " + ("is defined twice" if id in self.charts else "has no parameters")
+            raise PaperDefinitionError(msg)
+
+        def register(draw: Callable[..., None]) -> Callable[..., None]:
+            self.charts[id] = Chart(id, title, draw, parameters, size)
+            return draw
+
+        return register
+
+    def claims(self, id: str = "claims", title: str = "Claims made in the text") -> Claims:
+        """Add a collection of claims."""
+        exhibit = Claims(id, title)
+        self._add(exhibit)
+        return exhibit
+
+    def not_computable(self, id: str, title: str, reason: str, *, kind: TableKind | FigureKind = "figure") -> None:
+        """Add an exhibit that cannot be recomputed, with the reason."""
+        self._add(NotComputable(id, kind, title, reason))
+
+
+@cache
+def _printed_cells(package: str, exhibit: str) -> Mapping[tuple[str, str], str]:
+    text = (importlib.resources.files(package) / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
+    cells = {
+        (record["row"], column): cell
+        for record in csv.DictReader(text.splitlines())
+        for column, cell in record.items()
+        if column != "row" and cell
+    }
+    return MappingProxyType(cells)

@@ -1,0 +1,35 @@
+"""A curve in two states of a figure, and how they differ."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from replicate.figures.axes import Axes
+from replicate.figures.distance import Distances
+from replicate.figures.polylines import Points
+from replicate.figures.values import ValueDifference
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A curve in both states, and how they differ.
+
+    Attributes
+    ----------
+    before, after
+        In data coordinates.
+    values
+        For functions of x.
+    distance
+        Of the new curve from the accepted one, then the other way round; empty for functions of x whose values
+        tell enough.
+    """
+
+    axes: Axes  # the accepted description of the panel: all fractions are of these axes
+    name: str
+    before: Points
+    after: Points
+    moved: bool
+    tolerance: float
+    values: ValueDifference | None = None
+    distance: tuple[Distances, ...] = ()

@@ -1,0 +1,1 @@
+"""Find the papers, compute their exhibits in parallel processes, keep results between runs."""
