@@ -25,7 +25,7 @@ from typing import Any
 
 from replicate.exhibits import Paper
 
-_CORE = ("loops", "exhibits", "figures", "run", "rules.py", "classical_rules.toml")
+_CORE = ("loops", "exhibits", "figures", "run")
 _LIBRARIES = ("control", "matplotlib", "numpy", "pandas", "schemdraw", "scipy")
 _PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)|handout\.py")
 # Settings that choose the numerical kernels, and with them the last bits of a result.

@@ -17,7 +17,7 @@ from replicate.papers.bayhan.pole_assignment import (
     match_coefficients,
 )
 from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process
-from replicate.rules import Number
+from replicate.loops.tune import Number
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from replicate.rules import Number
+from replicate.loops.tune import Number
 
 
 class Assignment(NamedTuple):

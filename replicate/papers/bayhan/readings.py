@@ -10,7 +10,7 @@ from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import PI
 from replicate.papers.bayhan.processes import SPECIFICATIONS, Convention, Process, controllers, specifications
 from replicate.papers.bayhan.toolchain import sampled_specifications
-from replicate.rules import PRINTED
+from replicate.loops.tune import PRINTED
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -6,7 +6,7 @@ from functools import cache
 from importlib.resources import files
 
 from replicate.loops import PI, Loop, Plant
-from replicate.rules import TuningRule, load_rules
+from replicate.loops.tune import TuningRule, load_rules
 
 PRINTED, RESTORED, UNROUNDED = "printed", "restored", "unrounded"
 

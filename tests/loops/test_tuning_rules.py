@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from replicate.errors import PaperDefinitionError
-from replicate.rules import Gains, classical_rules, formula, load_rules
+from replicate.loops.tune import Gains, classical_rules, formula, load_rules
 
 FILE = """
 [[rule]]
