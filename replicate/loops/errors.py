@@ -3,7 +3,8 @@
 LoopError(ValueError)
 ├── ImproperLoopError      the loop contains a pure differentiator without a causal solution
 ├── UnstableLoopError      a quantity was asked for that only a stable loop has
-└── NotSettledError        the response has not settled inside its horizon
+├── NotSettledError        the response has not settled inside its horizon
+└── TuningRuleError        a tuning rule is incomplete, cannot be read, or lacks a parameter
 
 A design that finds no controller is not an error: it returns a result whose status says so.
 """
@@ -25,3 +26,7 @@ class UnstableLoopError(LoopError):
 
 class NotSettledError(LoopError):
     """The response has not settled, or not reached the level asked for, inside its horizon."""
+
+
+class TuningRuleError(LoopError):
+    """A tuning rule is incomplete, cannot be read, or lacks a parameter."""

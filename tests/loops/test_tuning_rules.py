@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from replicate.errors import PaperDefinitionError
+from replicate.loops.errors import TuningRuleError
 from replicate.loops.tune import Gains, classical_rules, formula, load_rules
 
 FILE = """
@@ -38,7 +38,7 @@ def test_formula_follows_the_usual_precedence_and_stays_exact():
     "text", ["", "1 +", "x if y else z", "f(x)", "x.y", "'a'", "True", "x % 2", "~x", "x == 1", "1j"]
 )
 def test_formula_refuses_everything_but_arithmetic(text):
-    with pytest.raises(PaperDefinitionError):
+    with pytest.raises(TuningRuleError):
         formula(text)
 
 
@@ -65,12 +65,12 @@ def test_a_variant_changes_only_what_it_names(tmp_path):
     ],
 )
 def test_a_damaged_file_is_refused_by_name_and_rule(tmp_path, text, message):
-    with pytest.raises(PaperDefinitionError, match=message):
+    with pytest.raises(TuningRuleError, match=message):
         load_rules(write(tmp_path, text))
 
 
 def test_a_missing_parameter_is_named(tmp_path):
-    with pytest.raises(PaperDefinitionError, match="rule X needs tau; given are K, L"):
+    with pytest.raises(TuningRuleError, match="rule X needs tau; given are K, L"):
         load_rules(write(tmp_path, FILE))["X"].evaluate(K=1.0, L=1.0)
 
 
@@ -123,7 +123,7 @@ def test_a_rule_of_the_literature_is_borrowed_not_copied(tmp_path):
     ],
 )
 def test_a_wrong_reference_names_what_is_allowed(tmp_path, reference, message):
-    with pytest.raises(PaperDefinitionError, match=message):
+    with pytest.raises(TuningRuleError, match=message):
         load_rules(write(tmp_path, SECOND.replace('"cohen-coon"', f'"{reference}"')))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
+from replicate.loops.tune import Number
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.pole_assignment import (
     Assignment,
@@ -17,7 +18,6 @@ from replicate.papers.bayhan.pole_assignment import (
     match_coefficients,
 )
 from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process
-from replicate.loops.tune import Number
 
 if TYPE_CHECKING:
     import pandas as pd

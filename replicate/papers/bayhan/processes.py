@@ -13,9 +13,9 @@ from functools import cache
 from typing import Literal
 
 from replicate.loops import PI, Loop, Plant, Signal
+from replicate.loops.tune import PRINTED, TuningRule, load_rules
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.pole_assignment import Dominance, assign, dominance
-from replicate.loops.tune import PRINTED, TuningRule, load_rules
 
 RULES = ("PA", "ZN", "CC", "IMC", "ISE", "IAE", "IAESPC", "ITSE", "ITSESPC", "ITAE", "ITAESPC")
 SPECIFICATIONS = ("overshoot", "settling_time", "delay_time", "rise_time")

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import PI
+from replicate.loops.tune import PRINTED
 from replicate.papers.bayhan.processes import SPECIFICATIONS, Convention, Process, controllers, specifications
 from replicate.papers.bayhan.toolchain import sampled_specifications
-from replicate.loops.tune import PRINTED
 
 if TYPE_CHECKING:
     import pandas as pd

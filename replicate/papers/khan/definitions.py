@@ -10,11 +10,11 @@ import pandas as pd
 
 from replicate.exhibits.matching import meets
 from replicate.loops import PI, Loop, Signal
+from replicate.loops.tune import classical_rules
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
 from replicate.papers.khan.sweep import stability_limit
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES, RULES_1, RULES_2
-from replicate.loops.tune import classical_rules
 
 NEAR = 0.005  # half a per cent: the printed times carry errors of that size
 DEAD_TIMES = {"10": 10.0, "1": 1.0, "0.1": 0.1}  # by the label of ph; p = 1 throughout

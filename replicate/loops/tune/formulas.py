@@ -1,0 +1,77 @@
+"""Arithmetic expressions as text: exact for exact arguments, and nothing but arithmetic."""
+
+from __future__ import annotations
+
+import ast
+import operator
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from typing import Any
+
+from replicate.loops.errors import TuningRuleError
+
+Number = float | Fraction
+Formula = Callable[[Mapping[str, Number]], Number]
+
+_OPERATIONS: dict[type[ast.operator], Callable[[Any, Any], Number]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.Pow: operator.pow,
+}
+
+
+def formula(text: str) -> Formula:
+    """Parse an arithmetic expression into a function of its symbols.
+
+    Allowed are numbers, names, parentheses, a leading minus and ``+ - * / **``. Integers stay integers, so
+    that an expression without decimals is exact for exact (`fractions.Fraction`) arguments.
+
+    Parameters
+    ----------
+    text
+        The expression in Python notation, for example ``"tau/(K*(tau_cl + L))"``.
+
+    Returns
+    -------
+    Callable
+        Takes a mapping from symbol to number and returns the value; a missing symbol raises `KeyError`.
+
+    Raises
+    ------
+    TuningRuleError
+        If the text is not such an expression.
+
+    Examples
+    --------
+    >>> formula("tau/(K*(tau_cl + L))")({"tau": 1.0, "K": 1.0, "tau_cl": 0.25, "L": 1.0})
+    0.8
+    """
+    try:
+        tree = ast.parse(text, mode="eval").body
+    except SyntaxError as error:
+        msg = f"'{text}' is not an arithmetic expression"
+        raise TuningRuleError(msg) from error
+    for node in ast.walk(tree):
+        allowed = (ast.BinOp, ast.UnaryOp, ast.Name, ast.Constant, ast.operator, ast.USub, ast.Load)
+        number = not isinstance(node, ast.Constant) or type(node.value) in {int, float}
+        known = not isinstance(node, ast.BinOp) or type(node.op) in _OPERATIONS
+        if not (isinstance(node, allowed) and number and known):
+            msg = f"'{text}' may hold numbers, names and + - * / ** only"
+            raise TuningRuleError(msg)
+    return lambda symbols: _evaluate(tree, symbols)
+
+
+def _evaluate(node: ast.expr, symbols: Mapping[str, Number]) -> Number:
+    match node:
+        case ast.Constant(value=int() | float() as value):
+            return value
+        case ast.Name(id=name):
+            return symbols[name]
+        case ast.UnaryOp(operand=operand):
+            return -_evaluate(operand, symbols)
+        case ast.BinOp(left=left, op=op, right=right):
+            return _OPERATIONS[type(op)](_evaluate(left, symbols), _evaluate(right, symbols))
+        case _:  # pragma: no cover - `formula` has refused everything else
+            raise AssertionError
