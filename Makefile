@@ -27,7 +27,7 @@ handouts: $(VENV)/.ready ## build the handouts of all papers, build/handouts/*.p
 ##@ Does it still hold?
 
 .PHONY: test
-test: $(VENV)/.ready ## run the tests and the examples in the docstrings
+test: $(VENV)/.ready ## run the tests and the examples in the docstrings: make test [ARGS=--cov]
 	$(BIN)/python -m pytest -n auto --dist loadscope $(ARGS)
 
 .PHONY: check
@@ -65,9 +65,13 @@ lock: $(VENV)/.ready ## remake requirements.lock from pyproject.toml: make lock 
 	    --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 	    --custom-compile-command "make lock" $(ARGS)
 
+.PHONY: dist
+dist: $(VENV)/.ready ## build the source archive and the wheel in dist/
+	$(BIN)/hatchling build
+
 .PHONY: clean
 clean: ## remove what runs leave behind (build/ and caches); .venv stays
-	rm -rf build dist .hypothesis .mypy_cache .pytest_cache .ruff_cache
+	rm -rf build dist .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache
 	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
 
 .PHONY: help
