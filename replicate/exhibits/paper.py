@@ -13,7 +13,18 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
-from replicate.exhibits.vocabulary import Chart, Claims, Exhibit, Figure, FigureKind, NotComputable, Table, TableKind
+from replicate.exhibits.order import in_listed_order
+from replicate.exhibits.vocabulary import (
+    AS_WRITTEN,
+    Chart,
+    Claims,
+    Exhibit,
+    Figure,
+    FigureKind,
+    NotComputable,
+    Table,
+    TableKind,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
@@ -31,7 +42,8 @@ class Paper:
         Import name of the paper's package (``__name__``); its folder holds ``printed/*.csv``, ``ledger.toml``,
         ``notes.md`` and ``handout.md``.
     modules
-        Modules of the package that define exhibits, imported in this order by `load`, which is the paper's order.
+        Modules of the package that define exhibits, in the paper's order. Exhibits, claims and charts appear in this
+        order, those of one module as it defines them, whichever module imports which.
     numbered
         Ids of every numbered table, figure and example of the paper: `replicate check` demands that each is in the
         inventory.
@@ -54,12 +66,30 @@ class Paper:
     _loaded: bool = False
 
     def load(self) -> Paper:
-        """Import the modules that define the exhibits (once) and return the paper itself."""
+        """Import the modules that define the exhibits (once), put all in the paper's order, return the paper itself.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If an exhibit is defined in a module that `modules` does not list.
+        """
         if not self._loaded:
             for module in self.modules:
                 importlib.import_module(f"{self.package}.{module}")
+            self._put_in_order()
             self._loaded = True
         return self
+
+    def _put_in_order(self) -> None:
+        self.exhibits = in_listed_order(self.exhibits, self.package, self.modules)
+        self.charts = in_listed_order(self.charts, self.package, self.modules)
+        for exhibit in self.exhibits.values():
+            if isinstance(exhibit, Claims):
+                exhibit.claims = in_listed_order(exhibit.claims, self.package, self.modules)
+            elif isinstance(exhibit, Table):
+                others = dict(exhibit.readings)
+                first = {id: others.pop(id) for id in (AS_WRITTEN,) if id in others}
+                exhibit.readings = first | in_listed_order(others, self.package, self.modules)
 
     def folder(self) -> Traversable:
         """Return the package's folder, for its data files."""

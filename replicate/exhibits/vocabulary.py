@@ -4,7 +4,8 @@ A paper is a list of exhibits. A `Table` (a printed table, a worked example, a f
 functions that return the whole exhibit as a DataFrame with the row and column keys of its printed CSV; a
 `Figure` has one function that draws on an ordinary matplotlib figure; `Claims` collects sentences that can be
 true or false; `NotComputable` is an exhibit that exists in the paper but cannot be recomputed, with the reason.
-This module only describes: computing, judging and rendering happen elsewhere.
+This module only describes: computing, judging and rendering happen elsewhere. Everything described remembers in
+``module`` where it is defined, which decides its place (see `replicate.exhibits.order`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.order import module_being_imported
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -46,6 +48,7 @@ class Reading:
     title: str
     compute: Callable[[], pd.DataFrame]
     note: str = ""
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 @dataclass
@@ -76,6 +79,7 @@ class Table:
     significant_digits: int | None = None
     printed: bool = True
     readings: dict[str, Reading] = field(default_factory=dict)
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def reading(
         self, id: str, title: str, note: str = ""
@@ -107,6 +111,7 @@ class Figure:
     alt: str = ""
     size: tuple[float, float] = (6.4, 4.0)
     stands_for: str = ""  # set when a simulation stands in for a measurement; shown with the figure
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -127,6 +132,7 @@ class Chart:
     draw: Callable[..., None]
     parameters: dict[str, str]
     size: tuple[float, float] = (6.4, 4.0)
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -147,6 +153,7 @@ class Claim:
     check: Callable[[], Finding]
     where: str = ""
     printed: str = ""
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 @dataclass
@@ -157,6 +164,7 @@ class Claims:
     title: str
     kind: Literal["claims"] = "claims"
     claims: dict[str, Claim] = field(default_factory=dict)
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def claim(
         self, id: str, text: str, *, where: str = "", printed: str = ""
@@ -187,6 +195,7 @@ class NotComputable:
     kind: TableKind | FigureKind
     title: str
     reason: str
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 Exhibit = Table | Figure | Claims | NotComputable
