@@ -12,10 +12,10 @@ from scipy.optimize import brentq
 
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski import paper
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.combined_chart import combined_chart
 from replicate.papers.krajewski.design import design, first_order_parameters
 from replicate.papers.krajewski.drawing import bezier_path
-from replicate.papers.krajewski.fig_6 import TAUS
 from replicate.papers.krajewski.loci import (
     constant_crossover,
     constant_gain_ratio,

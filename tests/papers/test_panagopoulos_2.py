@@ -9,17 +9,21 @@ import sympy as sp
 from scipy import integrate
 
 from replicate.loops import PID, Loop
-from replicate.papers.panagopoulos import paper
-
-paper.load()
-
-from replicate.papers.panagopoulos.part_2 import example, feasible, filters, noise_figures, rounding, setpoint  # noqa: E402
-from replicate.papers.panagopoulos.part_2.designs import optimal, printed  # noqa: E402
-from replicate.papers.panagopoulos.part_2.printed_gains import printed_number  # noqa: E402
-from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split  # noqa: E402
-from replicate.papers.panagopoulos.part_2.setpoint_formulas import weight_peak  # noqa: E402
-from replicate.papers.panagopoulos.part_2.shape import largest_gain, largest_over  # noqa: E402
-from replicate.papers.panagopoulos.part_2.tables import printed_properties  # noqa: E402
+from replicate.papers.panagopoulos.part_2 import (
+    example,
+    example_controllers,
+    feasible,
+    filters,
+    noise_figures,
+    rounding,
+    setpoint,
+)
+from replicate.papers.panagopoulos.part_2.designs import optimal, printed
+from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
+from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split
+from replicate.papers.panagopoulos.part_2.setpoint_formulas import weight_peak
+from replicate.papers.panagopoulos.part_2.shape import largest_gain, largest_over
+from replicate.papers.panagopoulos.part_2.tables import printed_properties
 
 S = control.tf("s")
 
@@ -54,7 +58,7 @@ def test_peaks_of_a_row_by_another_library() -> None:
 
 
 def test_absolute_error_by_partial_fractions() -> None:
-    c = example.CONTROLLERS["kd=3"]
+    c = example_controllers.CONTROLLERS["kd=3"]
     den = np.polyadd(np.append(np.poly([-1.0] * 4), 0.0), [c.kd, c.k, c.ki])
     poles = np.roots(den)
     weights = poles / np.polyval(np.polyder(den), poles) / poles  # y = L^-1 of s/den * 1/s
@@ -69,7 +73,7 @@ def test_absolute_error_by_partial_fractions() -> None:
 
 def test_poles_of_the_example() -> None:
     frame = example.numbers()
-    for key, c in example.CONTROLLERS.items():
+    for key, c in example_controllers.CONTROLLERS.items():
         poles = control.feedback(g4() * (c.k + c.ki / S + c.kd * S), 1).poles()
         pairs = sorted((p for p in poles if p.imag > 1e-9), key=abs, reverse=True)
         assert frame.loc[key, "omega1"] == pytest.approx(abs(pairs[0]), rel=1e-9)

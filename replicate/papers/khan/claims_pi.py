@@ -15,9 +15,9 @@ from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.bryant import gain_for_damping
 from replicate.papers.khan.claims import claims
-from replicate.papers.khan.fig_8 import robustness
 from replicate.papers.khan.fits import rise_time_fit
 from replicate.papers.khan.processes import NAMES, PRINTED, RESTORED, gains, loop, plant, settling_after_load
+from replicate.papers.khan.robustness import robustness
 from replicate.papers.khan.sweep import stability_limit, sweep
 from replicate.papers.khan.tables import RULES_1, RULES_2
 

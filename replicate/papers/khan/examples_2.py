@@ -1,22 +1,17 @@
-"""The worked examples 2.1, 2.2, 2.3 and 3.1: every number printed in them."""
+"""The worked examples 2.1, 2.2 and 2.3: every number printed in them."""
 
 from __future__ import annotations
 
 import numpy as np
 import pandas as pd
 
-from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
-from replicate.papers.khan.processes import plant
 from replicate.papers.khan.sweep import stability_limit, sweep
 
 ROWS_21 = ("ph", "A1", "B1", "overshoot_estimate", "overshoot_actual", "overshoot_error", "A2", "B2", "C2", "D2",
            "tr_estimate", "tr_actual")  # fmt: skip
-ROWS_31 = ("L_IB", "L_PB", "Bryant_tr", "Bryant_ts", "L_IH", "L_PH", "Haalman_overshoot", "Haalman_tr", "Haalman_ts",
-           "overshoot_K0.28", "L_P")  # fmt: skip
-
-H = 1.82  # dead time of examples 2.1 and 3.1
+H = 1.82  # dead time of example 2.1
 
 example_2_1 = paper.table(
     "example-2-1",
@@ -129,43 +124,3 @@ def example_2_3_formulas() -> pd.DataFrame:
     gain = brentq(lambda k: float(rise_time_fit(1.0, k)) - 1.0, 0.2, 0.6, xtol=1e-13)
     values = [gain, float(rise_time_fit(1.0, 0.375)), overshoot_fit(1.0, 0.375)]
     return pd.DataFrame({"value": values}, index=list(example_2_3.rows))
-
-
-example_3_1 = paper.table(
-    "example-3-1",
-    "Bryant, Haalman and a gain for 5 % overshoot, $\\tau = 0.6$, $h = 1.82$",
-    kind="example",
-    rows=ROWS_31,
-    columns=("value",),
-    caption="Rise time from 10 % to 90 %, settling to 2 %, in seconds; overshoot in per cent.",
-    labels={
-        "L_IB": "$L_{IB}$", "L_PB": "$L_{PB}$", "L_IH": "$L_{IH}$", "L_PH": "$L_{PH}$", "L_P": "$L_P = 0.28\\,\\tau$",
-        "Bryant_tr": "Bryant $t_r$", "Bryant_ts": "Bryant $t_s$", "Haalman_overshoot": "Haalman overshoot (%)",
-        "Haalman_tr": "Haalman $t_r$", "Haalman_ts": "Haalman $t_s$", "overshoot_K0.28": "overshoot for $K = 0.28$ (%)",
-    },
-)  # fmt: skip
-
-
-def _example_3_1(overshoot: float) -> pd.DataFrame:
-    tau = 0.6
-    integral = 1.0 / tau
-    gain_bryant, gain_haalman = 0.368 * tau / H, 2.0 / 3.0 * tau / H
-    # L_P (1 + 1/(tau s)) e^{-hs}/(tau s + 1) = (L_P/tau) e^{-hs}/s: the zero cancels the pole (6)
-    bryant, haalman = (Loop(plant(0.0, H), PI(g / tau)).step() for g in (gain_bryant, gain_haalman))
-    values = [
-        integral, gain_bryant, bryant.rise_time(), bryant.settling_time(), integral, gain_haalman,
-        100.0 * haalman.overshoot(), haalman.rise_time(), haalman.settling_time(), overshoot, 0.28 * tau,
-    ]  # fmt: skip
-    return pd.DataFrame({"value": values}, index=list(ROWS_31))
-
-
-@example_3_1.reading("as-written", "exact")
-def example_3_1_exact() -> pd.DataFrame:
-    """Compute everything with the exact response."""
-    return _example_3_1(float(sweep(0.0, np.array([0.28 * H])).overshoot[0]))
-
-
-@example_3_1.reading("formulas", "overshoot for $K = 0.28$ by case I of (2)")
-def example_3_1_formulas() -> pd.DataFrame:
-    """Take the overshoot from the fit."""
-    return _example_3_1(overshoot_fit(0.0, 0.28 * H))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import NAMES, RESTORED, loop
+from replicate.papers.khan.robustness import robustness
 from replicate.papers.khan.tables import LOAD_AT, RULES_1, RULES_2
 
 if TYPE_CHECKING:
@@ -62,20 +62,6 @@ def small(fig: Figure) -> None:
     axes = fig.subplots()
     _responses(axes, RULES_2, 0.1, 10.0)
     axes.set_ylim(0.0, 2.0)
-
-
-@cache
-def robustness(variant: str, points: int = 61) -> tuple[np.ndarray, ...]:
-    """Return ph, gain margin, phase margin in radians and M_s of the proposed rule on 0.01..20."""
-    ph = np.geomspace(0.01, 20.0, points)
-    loops = [loop("Proposed", 1.0, float(x), variant) for x in ph]
-    margins = [closed.margins() for closed in loops]
-    return (
-        ph,
-        np.array([m.gain for m in margins]),
-        np.radians([m.phase for m in margins]),
-        np.array([float(closed.sensitivity_peak()) for closed in loops]),
-    )
 
 
 @paper.figure(

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
 from replicate.papers.krajewski import paper
-from replicate.papers.krajewski.fig_1 import asymptote, quadrant
-from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.loci import constant_phase_margin, stability_boundary, upper_end
 from replicate.papers.krajewski.normalised_loop import (
     crossover,
@@ -20,6 +19,7 @@ from replicate.papers.krajewski.normalised_loop import (
     loop,
     point,
 )
+from replicate.papers.krajewski.nyquist import asymptote, quadrant
 from replicate.papers.krajewski.points import response, text_point
 
 Array = NDArray[np.float64]

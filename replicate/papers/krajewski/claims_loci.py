@@ -6,9 +6,8 @@ from __future__ import annotations
 import numpy as np
 
 from replicate.exhibits import Finding
+from replicate.papers.krajewski.chart_values import FREQUENCIES, TAUS
 from replicate.papers.krajewski.claims import claims, interior
-from replicate.papers.krajewski.fig_4 import FREQUENCIES
-from replicate.papers.krajewski.fig_6 import TAUS
 from replicate.papers.krajewski.loci import (
     constant_gain_ratio,
     constant_phase_margin,

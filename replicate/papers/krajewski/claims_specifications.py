@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
 from replicate.loops import PI, Loop, Plant
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.claims import claims, interior
 from replicate.papers.krajewski.design import design
-from replicate.papers.krajewski.fig_6 import TAUS
 from replicate.papers.krajewski.loci import constant_crossover, constant_phase_margin
 from replicate.papers.krajewski.normalised_loop import (
     end_frequency,

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from replicate.papers.krajewski import paper
+from replicate.papers.krajewski.design_chart import design_chart, round_steps
 from replicate.papers.krajewski.drawing import draw_locus, fill_loci, inside, label_locus, plane
-from replicate.papers.krajewski.fig_6 import design_chart, round_steps
-from replicate.papers.krajewski.fig_7 import gain_chart
+from replicate.papers.krajewski.gain_chart import gain_chart
 from replicate.papers.krajewski.loci import (
     Locus,
     constant_crossover,

@@ -9,7 +9,7 @@ import numpy as np
 
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski import paper
-from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.normalised_loop import end_frequency, lag, point
 
 if TYPE_CHECKING:

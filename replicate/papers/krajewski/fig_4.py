@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from replicate.papers.krajewski import paper
+from replicate.papers.krajewski.chart_values import FREQUENCIES
 from replicate.papers.krajewski.drawing import draw_locus, label_locus, plane
 from replicate.papers.krajewski.loci import crossover_ellipse
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FREQUENCIES = tuple(0.25 * k for k in range(1, 9))
 
 
 @paper.figure(

@@ -11,7 +11,7 @@ from scipy import optimize
 
 from replicate.exhibits.exercises import Answer, Exercises
 from replicate.loops import Signal
-from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.normalised_loop import lag, loop, point
 from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, hyperbola_fit, printed_coefficients, upper_ends
 from replicate.papers.krajewski.table_1_errors import residuals, single_digit_slips

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.papers.krajewski import paper
-from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.normalised_loop import crossover, end_frequency, phase_margin, point
 from replicate.papers.krajewski.points import TAU, named_points
 from replicate.papers.krajewski.table_1 import MARGINS

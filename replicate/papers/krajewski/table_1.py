@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.papers.krajewski import paper
-from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.loci import upper_end
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from replicate.papers.krajewski import paper
-from replicate.papers.krajewski.fig_6 import TAUS
+from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.loci import upper_end
 from replicate.papers.krajewski.table_1 import (
     DECIMALS,

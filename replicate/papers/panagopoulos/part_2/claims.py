@@ -11,12 +11,11 @@ from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
 from replicate.papers.panagopoulos.part_2.designs import optimal, pi_controller, pid_design, printed
-from replicate.papers.panagopoulos.part_2.fig_2_3 import with_setpoint
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import G4, NEAR_INTEGRATING, PLANTS, ROWS, split
 from replicate.papers.panagopoulos.part_2.recommended import load_numbers
-from replicate.papers.panagopoulos.part_2.setpoint import Resonance, setpoint_gain
+from replicate.papers.panagopoulos.part_2.setpoint import Resonance, setpoint_gain, with_setpoint
 from replicate.papers.panagopoulos.part_2.setpoint_formulas import setpoint_peak
 from replicate.papers.panagopoulos.part_2.shape import largest_over, stated_range
 from replicate.papers.panagopoulos.part_2.tables import REPLACEMENT, SUPERSEDED, design_properties

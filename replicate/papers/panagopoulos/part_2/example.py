@@ -7,32 +7,16 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from replicate.loops import PID, Loop
+from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
+from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS, pole_numbers
 from replicate.papers.panagopoulos.part_2.processes import G4
 
 if TYPE_CHECKING:
     import pandas as pd
 
-CONTROLLERS = {"kd=1": PID(1.00, 0.50, 1.00), "kd=3": PID(1.00, 0.98, 3.00)}
 ROW_LABELS = {key: f"$k_d = {key[3:]}$" for key in ("kd=1", "kd=2", "kd=3", "kd=4")}
-
-
-def closed_loop_poles(controller: PID) -> np.ndarray:
-    """Return all five poles of the closed loop, real ones first, then pairs by descending frequency."""
-    numerator = [controller.kd, controller.k, controller.ki]
-    poles = np.roots(np.polyadd(np.append(G4.den, 0.0), np.polymul(numerator, G4.num)))
-    return np.asarray(sorted(poles, key=lambda p: (abs(p.imag) > 1e-9, -abs(p), -p.imag)))
-
-
-def pole_numbers(controller: PID) -> dict[str, float]:
-    """Return the real pole, and relative damping and frequency of the two pairs."""
-    real, first, _, second, _ = closed_loop_poles(controller)
-    numbers = {"p": float(real.real)}
-    for n, pole in enumerate((first, second), start=1):
-        numbers |= {f"zeta{n}": float(-pole.real / abs(pole)), f"omega{n}": float(abs(pole))}
-    return numbers
 
 
 example = paper.table(

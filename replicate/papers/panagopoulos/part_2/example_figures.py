@@ -8,7 +8,7 @@ import numpy as np
 
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
-from replicate.papers.panagopoulos.part_2.example import CONTROLLERS
+from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS
 from replicate.papers.panagopoulos.part_2.processes import G4
 
 if TYPE_CHECKING:

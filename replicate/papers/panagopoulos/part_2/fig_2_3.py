@@ -11,7 +11,7 @@ from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import optimal, pi_design, printed
 from replicate.papers.panagopoulos.part_2.processes import NEAR_INTEGRATING, PLANTS
-from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected, weight
+from replicate.papers.panagopoulos.part_2.setpoint import with_setpoint
 from replicate.papers.panagopoulos.part_2.tables import REPLACEMENT
 
 if TYPE_CHECKING:
@@ -21,19 +21,6 @@ if TYPE_CHECKING:
 HORIZONS = {"G1": 160.0, "G2": 120.0, "G3": 5.0, "G4": 60.0, "G5": 70.0, "G6": 80.0, "G7": 100.0, "G8": 60.0}
 LOADS = {"G1": 0.2, "G3": 10.0}  # where a unit load would leave the scale, or not be seen
 POINTS = 601
-
-
-def with_setpoint(row: str, controller: PID) -> PID:
-    """Return a controller with the weight and, where the weight is zero, the filter that bring |G_sp| to one."""
-    plant = PLANTS[row[:2]]
-    peak = Resonance.of(plant, controller)
-    return PID(
-        controller.k,
-        controller.ki,
-        controller.kd,
-        b=weight(controller, peak),
-        setpoint_filter=filter_corrected(controller, peak),
-    )
 
 
 def controller_of(row: str) -> PID:

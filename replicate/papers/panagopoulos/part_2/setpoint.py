@@ -16,6 +16,7 @@ from math import hypot, inf, sqrt
 import numpy as np
 
 from replicate.loops import PID, Loop, Plant
+from replicate.papers.panagopoulos.part_2.processes import PLANTS
 
 DEFAULT_GRID = np.logspace(-2.0, 2.0, 50)  # of Matlab, when the frequencies are left to it, rad/s
 
@@ -121,3 +122,15 @@ def setpoint_gain(c: PID, peak: Resonance, b: float, filter_time: float) -> floa
     w = peak.frequency
     gain = hypot(c.ki, b * c.k * w) / sqrt(squared_denominator(c, w)) * peak.value
     return gain / hypot(1.0, w * filter_time)
+
+
+def with_setpoint(row: str, controller: PID) -> PID:
+    """Return a controller with the weight and, where the weight is zero, the filter that bring |G_sp| to one."""
+    peak = Resonance.of(PLANTS[row[:2]], controller)
+    return PID(
+        controller.k,
+        controller.ki,
+        controller.kd,
+        b=weight(controller, peak),
+        setpoint_filter=filter_corrected(controller, peak),
+    )

@@ -7,7 +7,6 @@ from replicate.exhibits import Finding
 from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos.part_2.claims import ROUNDING, claims, number, share
 from replicate.papers.panagopoulos.part_2.designs import optimal
-from replicate.papers.panagopoulos.part_2.fig_2_3 import with_setpoint
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split
 from replicate.papers.panagopoulos.part_2.setpoint import (
     Resonance,
@@ -17,6 +16,7 @@ from replicate.papers.panagopoulos.part_2.setpoint import (
     setpoint_gain,
     weight_from_peak,
     weight_limit,
+    with_setpoint,
 )
 from replicate.papers.panagopoulos.part_2.setpoint_formulas import weight_peak
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Literal
 from replicate.loops import Loop, Signal
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import printed
-from replicate.papers.panagopoulos.part_2.fig_2_3 import with_setpoint
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
+from replicate.papers.panagopoulos.part_2.setpoint import with_setpoint
 from replicate.papers.panagopoulos.part_2.tables import REPLACEMENT, SUPERSEDED, one_sided_settling
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ from replicate.exhibits import Finding
 from replicate.loops import Loop
 from replicate.papers.panagopoulos.part_2 import feasible, filters
 from replicate.papers.panagopoulos.part_2.claims import claims, listed, number, share
-from replicate.papers.panagopoulos.part_2.example import CONTROLLERS, bottom_maximum, pole_numbers
+from replicate.papers.panagopoulos.part_2.example import bottom_maximum
+from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS, pole_numbers
 from replicate.papers.panagopoulos.part_2.noise_figures import NOISE_FREQUENCY, filtered
 from replicate.papers.panagopoulos.part_2.processes import G4
 from replicate.papers.panagopoulos.part_2.shape import largest_over

@@ -8,7 +8,7 @@ import numpy as np
 
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
-from replicate.papers.panagopoulos.part_2.example import CONTROLLERS
+from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
