@@ -60,8 +60,9 @@ def check(
     problems = find_problems(outcome, comparison)
     for problem in problems:
         typer.echo(problem)
-    compared = sum(row.match != "none" for row in outcome.judgement.results)
-    typer.echo(f"problems: {len(problems)}; comparisons: {compared}; exhibits: {len(outcome.results)}")
+    typer.echo(
+        f"problems: {len(problems)}; comparisons: {outcome.judgement.compared}; exhibits: {len(outcome.results)}"
+    )
     tell_failures(outcome)
     if comparison.broken:
         raise typer.Exit(BROKEN)

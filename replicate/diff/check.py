@@ -28,7 +28,7 @@ def problems(outcome: Outcome, comparison: Comparison) -> list[str]:
     """Return one line for each problem of a run that has been compared with the accepted state."""
     judgement = outcome.judgement
     found = list(judgement.problems)
-    if not any(row.match != "none" for row in judgement.results):
+    if not judgement.compared:
         found.append("no printed value was compared with a computed one")
     # Judging has named the exhibits that raised already.
     compared = Comparison([exhibit for exhibit in comparison.exhibits if not exhibit.failed])

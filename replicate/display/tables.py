@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from replicate.display import numbers
 from replicate.exhibits import Reading, Table
-from replicate.exhibits.frames import CellError, cell
-from replicate.exhibits.matching import Match, match
-from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.frames import FrameCells
+from replicate.exhibits.matching import Match
+from replicate.exhibits.printed import Key
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.rows import HOLDING, VerdictRow
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _MANY_CELLS = 6
 
@@ -98,14 +94,14 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         Rows and columns in the paper's order; without printed values, those of the first reading.
     """
     by_cell = {(verdict.row, verdict.column): verdict for verdict in verdicts}
-    frames = {id: result.frames[id] for id in table.readings if id in result.frames}
+    frames = {id: result.cells[id] for id in table.readings if id in result.cells}
     first = next(iter(frames.values()), None)
-    rows = list(table.rows) or ([] if first is None else [str(key) for key in first.index])
-    columns = list(table.columns) or ([] if first is None else [str(key) for key in first.columns])
+    rows = list(table.rows) or ([] if first is None else list(first.rows))
+    columns = list(table.columns) or ([] if first is None else list(first.columns))
     notes = _notes(by_cell.values())
     note_of = {where: note.number for note, cells in notes for where in cells}
     cells = {
-        (row, column): _cell(table, frames, row, column, by_cell.get((row, column)))
+        (row, column): _cell(table, frames, (row, column), by_cell.get((row, column)))
         for row in rows
         for column in columns
     }
@@ -127,25 +123,19 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
     )
 
 
-def _cell(table: Table, frames: Mapping[str, pd.DataFrame], row: str, column: str, verdict: VerdictRow | None) -> Cell:
-    printed = PrintedValue(verdict.printed, significant_digits=table.significant_digits) if verdict else None
+def _cell(table: Table, frames: Mapping[str, FrameCells], key: Key, verdict: VerdictRow | None) -> Cell:
+    judged = {one.reading: one for one in verdict.values} if verdict else {}
+    printed = verdict.value if verdict else None
     values = []
-    for id, frame in frames.items():
+    for id, cells in frames.items():
         reading = table.readings[id]
-        try:
-            number = cell(frame, row, column)
-        except CellError:  # a word such as "unstable" is shown as it is, a missing cell as blank
-            values.append(Value(reading, _held(frame, row, column), "", Match("none")))
+        if key in cells.words:  # a word such as "unstable" is shown as it is
+            values.append(Value(reading, cells.words[key], "", Match("none")))
             continue
-        compared = match(printed, number) if printed is not None else Match("none")
-        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), compared))
-    return Cell(row, column, verdict.printed if verdict else "", verdict, values)
-
-
-def _held(frame: pd.DataFrame, row: str, column: str) -> str:
-    if row not in frame.index or column not in frame.columns:
-        return ""
-    return str(frame.loc[row, column])
+        number = cells.numbers.get(key)
+        found = judged[id].match if id in judged else Match("none")
+        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found))
+    return Cell(*key, verdict.printed if verdict else "", verdict, values)
 
 
 def _texts(cell: Cell) -> list[str]:

@@ -1,8 +1,10 @@
-"""Take single numbers out of the data frame that a reading returns, and say what is wrong with it."""
+"""A data frame that a reading returns, as a dictionary of its cells; and what is wrong with one of them."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
+from dataclasses import dataclass, field
 from numbers import Real
 from typing import TYPE_CHECKING
 
@@ -16,53 +18,98 @@ class CellError(Exception):
     """A cell that should hold a number does not."""
 
 
-def cell(frame: pd.DataFrame, row: str, column: str) -> float | None:
-    """Return one number of a frame; ``None`` where the reading computed nothing (``None``, NaN, ``pd.NA``).
+@dataclass(frozen=True)
+class FrameCells:
+    """The cells of one reading, read once.
 
-    Parameters
+    Attributes
     ----------
-    frame
-        Indexed by row key, with column keys as columns.
-
-    Raises
-    ------
-    CellError
-        If the row or column is missing or there twice, or the cell holds something else than a real number.
+    numbers
+        By (row, column); ``None`` where the reading computed nothing (``None``, NaN, ``pd.NA``).
+    words
+        What is held by a cell that holds something else than a real number, as its text.
+    wrong
+        Why such a cell is no number, by (row, column).
+    twice
+        Keys that occur more than once, each with its kind: ``("row", key)``.
     """
+
+    rows: tuple[str, ...]
+    columns: tuple[str, ...]
+    numbers: dict[Key, float | None] = field(default_factory=dict)
+    words: dict[Key, str] = field(default_factory=dict)
+    wrong: dict[Key, str] = field(default_factory=dict)
+    twice: frozenset[tuple[str, str]] = frozenset()
+
+    def number(self, row: str, column: str) -> float | None:
+        """Return one number; ``None`` where the reading computed nothing.
+
+        Raises
+        ------
+        CellError
+            If the row or column is missing or appears twice, or the cell holds something else than a real number.
+        """
+        for kind, key, keys in (("row", row, self.rows), ("column", column, self.columns)):
+            if (kind, key) in self.twice:
+                msg = f"{kind} '{key}' appears twice"
+                raise CellError(msg)
+            if key not in keys:
+                msg = f"{kind} '{key}' is missing"
+                raise CellError(msg)
+        if (row, column) in self.wrong:
+            raise CellError(self.wrong[row, column])
+        return self.numbers[row, column]
+
+    def pick(self, keys: Iterable[Key]) -> tuple[dict[Key, float], list[str]]:
+        """Return the numbers of the given cells, and one line for each thing that is wrong.
+
+        A missing row or column is named once, not once per cell.
+        """
+        found: dict[Key, float] = {}
+        problems: dict[str, None] = {}
+        for key in keys:
+            try:
+                number = self.number(*key)
+            except CellError as error:
+                problems[str(error)] = None
+            else:
+                if number is not None:
+                    found[key] = number
+        return found, list(problems)
+
+
+def read_frame(frame: pd.DataFrame) -> FrameCells:
+    """Return the cells of a frame that is indexed by row key, with column keys as columns.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> cells = read_frame(pd.DataFrame({"Mp": [0.25, None]}, index=["ZN", "PA"]))
+    >>> cells.number("ZN", "Mp"), cells.number("PA", "Mp")
+    (0.25, None)
+    """
+    rows, columns = (tuple(map(str, keys)) for keys in (frame.index, frame.columns))
+    cells = FrameCells(rows, columns, twice=_twice("row", rows) | _twice("column", columns))
+    for row, values in zip(rows, frame.itertuples(index=False, name=None), strict=True):
+        for column, value in zip(columns, values, strict=True):
+            _read(cells, (row, column), value)
+    return cells
+
+
+def _read(cells: FrameCells, key: Key, value: object) -> None:
     import numpy as np
     import pandas as pd
 
-    places = []
-    for kind, key, keys in (("row", row, frame.index), ("column", column, frame.columns)):
-        found = np.flatnonzero(keys == key)
-        if len(found) != 1:
-            msg = f"{kind} '{key}' is {'there twice' if len(found) else 'missing'}"
-            raise CellError(msg)
-        places.append(int(found[0]))
-    value: object = frame.iloc[places[0], places[1]]
     if value is None or value is pd.NA or value is pd.NaT:
-        return None
-    if isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+        cells.numbers[key] = None
+    elif isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         kind = "text" if isinstance(value, str) else type(value).__name__
-        msg = f"row '{row}', column '{column}' holds {kind} ({value!r}), needed: a number"
-        raise CellError(msg)
-    number = float(value)
-    return None if number != number else number  # noqa: PLR0124  -- NaN
+        cells.words[key] = str(value)
+        cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds {kind} ({value!r}), needed: a number"
+    else:
+        number = float(value)
+        cells.numbers[key] = None if number != number else number  # noqa: PLR0124  -- NaN
 
 
-def cells(frame: pd.DataFrame, keys: Iterable[Key]) -> tuple[dict[Key, float], list[str]]:
-    """Return the numbers of the given cells, and one line for each thing that is wrong.
-
-    A missing row or column is named once, not once per cell.
-    """
-    numbers: dict[Key, float] = {}
-    problems: dict[str, None] = {}
-    for row, column in keys:
-        try:
-            number = cell(frame, row, column)
-        except CellError as error:
-            problems[str(error)] = None
-        else:
-            if number is not None:
-                numbers[row, column] = number
-    return numbers, list(problems)
+def _twice(kind: str, keys: Iterable[str]) -> frozenset[tuple[str, str]]:
+    return frozenset((kind, key) for key, count in Counter(keys).items() if count > 1)

@@ -5,9 +5,12 @@ The records hold data only, no functions: a worker process can send them back an
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from replicate.exhibits.frames import FrameCells, read_frame
 from replicate.exhibits.vocabulary import Finding
 
 if TYPE_CHECKING:
@@ -31,6 +34,11 @@ class TableResult:
     exhibit: str
     frames: dict[str, pd.DataFrame] = field(default_factory=dict)
     errors: dict[str, str] = field(default_factory=dict)
+
+    @cached_property
+    def cells(self) -> Mapping[str, FrameCells]:
+        """The cells of every frame by reading id; each frame is read once."""
+        return {reading: read_frame(frame) for reading, frame in self.frames.items()}
 
 
 @dataclass(frozen=True)

@@ -33,13 +33,10 @@ class Outcome:
     @property
     def judgement(self) -> Judgement:
         """The judgements of all papers as one, in the order of the papers."""
-        parts = self.judgements.values()
-        return Judgement(
-            results=[row for part in parts for row in part.results],
-            verdicts=[row for part in parts for row in part.verdicts],
-            exhibits=[row for part in parts for row in part.exhibits],
-            problems=[problem for part in parts for problem in part.problems],
-        )
+        together = Judgement()
+        for part in self.judgements.values():
+            together.extend(part)
+        return together
 
     @property
     def failures(self) -> list[str]:

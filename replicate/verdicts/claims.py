@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from replicate.exhibits import AS_WRITTEN, Claim, Claims, Finding
+from replicate.exhibits import AS_WRITTEN, Claims, Finding
 from replicate.exhibits.matching import computed_text, match
-from replicate.exhibits.printed import ALLOWED, parse_number
+from replicate.exhibits.printed import ALLOWED, PrintedValue, parse_number
 from replicate.exhibits.results import ClaimsResult
 from replicate.verdicts.rows import (
     CLAIM_COLUMN,
     CLAIM_VERDICTS,
+    Computed,
     ExhibitRow,
     Judgement,
-    ResultRow,
     Status,
     VerdictRow,
 )
@@ -49,11 +49,13 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
                 judgement.problems.append(f"{place}: {finding.verdict}, but its evidence is empty")
             computed = computed_text(finding.value)
             row = replace(row, verdict=finding.verdict, computed=computed, explanation=evidence)
-        judgement.verdicts.append(row)
         if claim.printed and parse_number(claim.printed) is None:
             judgement.problems.append(f"{place}: printed = '{claim.printed}' is not a number; allowed: {ALLOWED}")
         elif claim.printed:
-            judgement.results.append(_result_row(row, claim, None if wrong else finding))
+            number = None if finding is None or wrong else finding.value
+            value = PrintedValue(claim.printed)
+            row = replace(row, value=value, values=(Computed(AS_WRITTEN, number, match(value, number)),))
+        judgement.verdicts.append(row)
     status: Status = "done"
     if failed:
         status = "partly" if len(failed) < len(exhibit.claims) else "not-computable"
@@ -70,18 +72,3 @@ def _wrong(finding: Finding | None, error: str | None) -> str:
     if finding.verdict not in CLAIM_VERDICTS:
         return f"verdict '{finding.verdict}'; allowed: {', '.join(CLAIM_VERDICTS)}"
     return ""
-
-
-def _result_row(row: VerdictRow, claim: Claim, finding: Finding | None) -> ResultRow:
-    found = match(claim.printed, finding.value if finding else None)
-    return ResultRow(
-        paper=row.paper,
-        exhibit=row.exhibit,
-        row=row.row,
-        column=row.column,
-        printed=claim.printed,
-        reading=AS_WRITTEN,
-        computed=row.computed,
-        match=found.kind,
-        how=found.how,
-    )

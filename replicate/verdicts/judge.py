@@ -94,7 +94,7 @@ def judge(
             values = printed.get(id, {}) if exhibit.printed else {}
             table = TableJudge(paper.id, exhibit, result, values, ledger)
             explained += [(len(judgement.verdicts) + index, entry) for index, entry in table.judge()]
-            _extend(judgement, table.judgement)
+            judgement.extend(table.judgement)
             judgement.exhibits.append(_row(paper, exhibit, *table.status()))
         elif isinstance(exhibit, Figure) and isinstance(result, FigureResult):
             if result.error:
@@ -102,7 +102,7 @@ def judge(
             status: Status = "not-computable" if result.error else "done"
             judgement.exhibits.append(_row(paper, exhibit, status, result.error))
         elif isinstance(exhibit, Claims) and isinstance(result, ClaimsResult):
-            _extend(judgement, judge_claims(paper.id, exhibit, result))
+            judgement.extend(judge_claims(paper.id, exhibit, result))
         else:
             judgement.problems.append(f"{paper.id} {id}: was not computed")
             judgement.exhibits.append(_row(paper, exhibit, "not-computable", "was not computed"))
@@ -112,13 +112,6 @@ def judge(
 
 def _row(paper: Paper, exhibit: Exhibit, status: Status, reason: str) -> ExhibitRow:
     return ExhibitRow(paper.id, exhibit.id, exhibit.kind, exhibit.title, status, reason)
-
-
-def _extend(judgement: Judgement, part: Judgement) -> None:
-    judgement.results.extend(part.results)
-    judgement.verdicts.extend(part.verdicts)
-    judgement.exhibits.extend(part.exhibits)
-    judgement.problems.extend(part.problems)
 
 
 def _explain(

@@ -28,7 +28,7 @@ from typing import TYPE_CHECKING
 
 from replicate.errors import TemplateError
 from replicate.exhibits import AS_WRITTEN, Finding, Paper
-from replicate.exhibits.frames import CellError, cell
+from replicate.exhibits.frames import CellError
 from replicate.exhibits.results import ClaimsResult, Result, TableResult
 from replicate.verdicts.rows import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
 
@@ -169,11 +169,11 @@ class Prose:
         if reading not in result.frames:
             msg = f"{where}: no such reading; allowed: {_listed(result.frames)}"
             raise _MissingResultError(msg)
-        frame = result.frames[reading]
+        cells = result.cells[reading]
         try:
-            number = cell(frame, row, column)
+            number = cells.number(row, column)
         except CellError as error:
-            msg = f"{where}: {error}; rows: {_listed(frame.index)}; columns: {_listed(frame.columns)}"
+            msg = f"{where}: {error}; rows: {_listed(cells.rows)}; columns: {_listed(cells.columns)}"
             raise _MissingResultError(msg) from error
         if number is None:
             msg = f"{where}: nothing is computed there"

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from replicate.exhibits import ClaimVerdict
-from replicate.exhibits.matching import MatchHow, MatchKind
+from replicate.exhibits.matching import Match, MatchHow, MatchKind, computed_text
+from replicate.exhibits.printed import PrintedValue
 
 ValueVerdict = Literal["reproduced", "reconstructed", "near", "misprint", "discrepant", "unexplained", "not-computable"]
 Verdict = ValueVerdict | ClaimVerdict
@@ -43,8 +44,22 @@ class ResultRow:
 
 
 @dataclass(frozen=True)
+class Computed:
+    """What one reading gives for a printed value: the number, ``None`` if there is none, and its match."""
+
+    reading: str
+    number: float | None
+    match: Match
+
+    @property
+    def text(self) -> str:
+        """The number with 12 significant digits."""
+        return computed_text(self.number)
+
+
+@dataclass(frozen=True)
 class VerdictRow:
-    """The verdict on one printed value or claim.
+    """The verdict on one printed value or claim: read once, matched once, and carried into every table.
 
     Attributes
     ----------
@@ -55,6 +70,10 @@ class VerdictRow:
     cause, explanation
         From the ledger; for a reconstructed value the reading's title, for a claim its evidence. Markdown,
         one line.
+    value
+        The print as it was read; ``None`` for a claim that prints no number.
+    values
+        What each reading gives for it, in the exhibit's order; empty for a claim that prints no number.
     """
 
     paper: str
@@ -68,6 +87,26 @@ class VerdictRow:
     corrected: str = ""
     cause: str = ""
     explanation: str = ""
+    value: PrintedValue | None = None
+    values: tuple[Computed, ...] = ()
+
+    @property
+    def results(self) -> list[ResultRow]:
+        """One row of ``results.csv`` for each reading."""
+        return [
+            ResultRow(
+                self.paper,
+                self.exhibit,
+                self.row,
+                self.column,
+                self.printed,
+                one.reading,
+                one.text,
+                one.match.kind,
+                one.match.how,
+            )
+            for one in self.values
+        ]
 
 
 @dataclass(frozen=True)
@@ -92,7 +131,22 @@ class Judgement:
         One line each: what keeps `replicate check` from passing.
     """
 
-    results: list[ResultRow] = field(default_factory=list)
     verdicts: list[VerdictRow] = field(default_factory=list)
     exhibits: list[ExhibitRow] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+
+    @property
+    def results(self) -> list[ResultRow]:
+        """Every printed value under every reading."""
+        return [result for verdict in self.verdicts for result in verdict.results]
+
+    @property
+    def compared(self) -> int:
+        """How many printed values were compared with a computed one, each reading counted."""
+        return sum(one.match.kind != "none" for verdict in self.verdicts for one in verdict.values)
+
+    def extend(self, part: Judgement) -> None:
+        """Add what is said about another part."""
+        self.verdicts.extend(part.verdicts)
+        self.exhibits.extend(part.exhibits)
+        self.problems.extend(part.problems)

@@ -6,12 +6,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.exhibits.frames import cells
 from replicate.exhibits.matching import Match, computed_text, format_like, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
-from replicate.verdicts.rows import Judgement, ResultRow, Status, ValueVerdict, VerdictRow
+from replicate.verdicts.rows import Computed, Judgement, Status, ValueVerdict, VerdictRow
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "misprint": "misprint",
@@ -37,7 +36,7 @@ class TableJudge:
     printed
         The printed values by (row, column); empty where the paper prints none.
     judgement
-        What `judge` fills: results, verdicts and problems.
+        What `judge` fills: verdicts and problems.
     """
 
     paper: str
@@ -57,9 +56,6 @@ class TableJudge:
         held = {key: self._held(key) for key in self.printed}
         entries = dict(self._assign({key for key, verdict in held.items() if verdict is None}))
         for key, value in self.printed.items():
-            self.judgement.results.extend(
-                self._result_row(key, value, reading, self.matches[reading][key]) for reading in self.table.readings
-            )
             entry = entries.get(key)
             verdict = held[key] or (self._explained(key, value, entry) if entry else self._unexplained(key, value))
             if entry:
@@ -91,13 +87,13 @@ class TableJudge:
     def _read(self, reading: str) -> None:
         """Take the numbers of one reading and compare them."""
         numbers: dict[Key, float] = {}
-        frame = self.result.frames.get(reading)
+        found = self.result.cells.get(reading)
         if reading in self.result.errors:
             self._problem(f"reading '{reading}' failed: {self.result.errors[reading]}")
-        elif frame is None:
+        elif found is None:
             self._problem(f"reading '{reading}' was not computed")
         else:
-            numbers, wrong = cells(frame, self.printed)
+            numbers, wrong = found.pick(self.printed)
             for line in wrong:
                 self._problem(f"reading '{reading}': {line}")
         self.numbers[reading] = numbers
@@ -185,13 +181,18 @@ class TableJudge:
         self._problem(f"{_cell(key)}: printed {value.text}, computed {', '.join(computed)}: has no ledger entry")
         return self._verdict_row(key, "unexplained", AS_WRITTEN)
 
-    def _result_row(self, key: Key, value: PrintedValue, reading: str, found: Match) -> ResultRow:
-        computed = computed_text(self.numbers[reading].get(key))
-        return ResultRow(self.paper, self.table.id, *key, value.text, reading, computed, found.kind, found.how)
-
     def _verdict_row(self, key: Key, verdict: ValueVerdict, reading: str) -> VerdictRow:
-        computed = computed_text(self.numbers[reading].get(key))
-        return VerdictRow(self.paper, self.table.id, *key, self.printed[key].text, verdict, reading, computed)
+        return VerdictRow(
+            self.paper,
+            self.table.id,
+            *key,
+            self.printed[key].text,
+            verdict,
+            reading,
+            computed_text(self.numbers[reading].get(key)),
+            value=self.printed[key],
+            values=tuple(Computed(id, self.numbers[id].get(key), self.matches[id][key]) for id in self.table.readings),
+        )
 
     def _problem(self, text: str) -> None:
         self.judgement.problems.append(f"{self.paper} {self.table.id}: {text}")
