@@ -22,6 +22,7 @@ from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.exhibits.results import FigureResult, Results
 from replicate.run.outcome import Outcome
+from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
 
 AXES: list[dict[str, Any]] = [
@@ -64,7 +65,7 @@ def outcome(folder: Path, drawn: FigureResult | None = None, **changes: Any) -> 
     toy = synthetic.paper(folder)
     results: Results = synthetic.results(**changes)
     results["toy", "fig-1"] = drawn or figure()
-    return Outcome([toy], results, {"toy": judge(toy, results, printed=synthetic.printed())})
+    return Outcome([toy], results, {"toy": judge(toy, results, Inputs(synthetic.printed()))})
 
 
 def compare(present: Outcome, folder: Path) -> list[str]:

@@ -24,6 +24,7 @@ from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
 from replicate.run.discovery import find_paper, known_papers
 from replicate.run.outcome import recompute
+from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.ledger import Ledger
 
@@ -88,7 +89,7 @@ def make(tmp_path: Path) -> Make:
         (tmp_path / "toy" / "handout.md").write_text(text, encoding="utf-8")
         paper = synthetic.paper(tmp_path / "toy")
         results = run(**cells)
-        judged = judge(paper, results, printed=synthetic.printed(), ledger=Ledger("toy/ledger.toml", ()))
+        judged = judge(paper, results, Inputs(synthetic.printed(), Ledger("toy/ledger.toml", ())))
         return edition(paper, results, judged.verdicts, solutions=solutions)
 
     return document

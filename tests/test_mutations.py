@@ -14,8 +14,8 @@ from replicate.diff.check import check
 from replicate.exhibits.printed import PrintedValue
 from replicate.run.discovery import find_papers
 from replicate.run.outcome import Outcome, recompute
-from replicate.verdicts.judge import judge, read_all_printed
-from replicate.verdicts.ledger import Ledger
+from replicate.verdicts.inputs import Inputs, read_inputs
+from replicate.verdicts.judge import judge
 
 ROOT = Path(__file__).parent.parent
 HOLDS = {"reproduced", "reconstructed", "near"}
@@ -50,15 +50,17 @@ def test_altering():
 
 
 def _mutants(paper, cells, by):
-    return {
+    inputs = read_inputs(paper)
+    printed = {
         exhibit: {
             key: PrintedValue(altered(value.text, by), *key, value.line, significant_digits=value.significant_digits)
             if (exhibit, *key) in cells
             else value
             for key, value in values.items()
         }
-        for exhibit, values in read_all_printed(paper).items()
+        for exhibit, values in inputs.printed.items()
     }
+    return Inputs(printed, inputs.ledger)
 
 
 def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
@@ -66,12 +68,12 @@ def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
     before = outcome.judgements[paper.id]
     cells = {(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in HOLDS}
     assert cells
-    after = judge(paper, outcome.results, printed=_mutants(paper, cells, 3))
+    after = judge(paper, outcome.results, _mutants(paper, cells, 3))
     old = {(v.exhibit, v.row, v.column): v.verdict for v in before.verdicts}
     new = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}
     unchanged = {cell for cell in cells if new[cell] == old[cell]}
     # among many readings one may meet the mutant by chance; it will not meet a second one
-    again = judge(paper, outcome.results, printed=_mutants(paper, unchanged, 2))
+    again = judge(paper, outcome.results, _mutants(paper, unchanged, 2))
     assert not sorted(
         (v.exhibit, v.row, v.column)
         for v in again.verdicts
@@ -88,7 +90,7 @@ def test_a_verdict_without_its_ledger_entry_fails_check(outcome):
     (paper,) = outcome.papers
     before = outcome.judgements[paper.id]
     cells = [(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in EXPLAINED and v.column != "claim"]
-    after = judge(paper, outcome.results, ledger=Ledger())
+    after = judge(paper, outcome.results, Inputs(read_inputs(paper).printed))
     told = "\n".join(after.problems)
     changed = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}
     old = {(v.exhibit, v.row, v.column): v.verdict for v in before.verdicts}

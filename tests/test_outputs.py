@@ -15,6 +15,7 @@ from replicate.display.csv_text import table_text
 from replicate.errors import OutputError
 from replicate.report.data import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, write_outputs
 from replicate.staging import staged
+from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.rows import Judgement
 
@@ -24,7 +25,7 @@ def written(folder: Path, **changes: object) -> Path:
     data.mkdir(parents=True)
     toy = synthetic.paper(data)
     results = synthetic.results(**changes)  # type: ignore[arg-type]
-    judgement = judge(toy, results, printed=synthetic.printed(by="4.6"))
+    judgement = judge(toy, results, Inputs(synthetic.printed(by="4.6")))
     out = folder / "out"
     with staged(out) as fresh:
         write_outputs([toy], results, judgement, fresh)

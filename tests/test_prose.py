@@ -6,6 +6,7 @@ import pytest
 import synthetic
 
 from replicate.errors import TemplateError
+from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.verdicts.prose import Prose
@@ -25,7 +26,7 @@ def prose(functions: dict[str, Callable[..., object]] | None = None, **errors: s
         errors={key.replace("_", "-"): text for key, text in errors.items()},
     )
     ledger = Ledger("toy/ledger.toml", (LedgerEntry("table-1", ("A",), ("y",), "misprint", "Why."),))
-    judgement = judge(paper, run, printed=synthetic.printed(ay="6.67"), ledger=ledger)
+    judgement = judge(paper, run, Inputs(synthetic.printed(ay="6.67"), ledger))
     return Prose(paper, run, judgement.verdicts, functions)
 
 

@@ -15,6 +15,7 @@ from replicate.exhibits.results import ClaimsResult, TableResult
 from replicate.report import build_report
 from replicate.resources import templates_dir
 from replicate.run.drawing import capture
+from replicate.verdicts.inputs import read_inputs
 from replicate.verdicts.judge import judge
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
@@ -149,7 +150,7 @@ def make(tmp_path, monkeypatch):
             ("synthetic", f"{prefix}fig-1"): capture("synthetic", paper.exhibits[f"{prefix}fig-1"]),
             ("synthetic", "claims"): ClaimsResult("synthetic", "claims", {"margin": check_claim()}),
         }
-        judgement = judge(paper, results)
+        judgement = judge(paper, results, read_inputs(paper))
         return {path.name: path.read_text("utf-8") for path in build_report([paper], results, judgement, out)}
 
     return build

@@ -12,10 +12,13 @@ import synthetic
 from synthetic import frame, printed, results
 
 from replicate.exhibits import AS_WRITTEN, Finding
+from replicate.exhibits.matching import Match
+from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import FigureResult, TableResult
+from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.ledger import Ledger, LedgerEntry
-from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
+from replicate.verdicts.rows import Computed, ExhibitRow, Judgement, ResultRow, VerdictRow
 
 A_X = ("A", "x")
 
@@ -48,8 +51,7 @@ def judged(*entries: LedgerEntry, run: dict | None = None, **texts: str) -> Judg
     return judge(
         synthetic.paper(),
         results() if run is None else run,
-        printed=printed(**texts),
-        ledger=Ledger("toy/ledger.toml", entries),
+        Inputs(printed(**texts), Ledger("toy/ledger.toml", entries)),
     )
 
 
@@ -247,7 +249,7 @@ def test_a_reading_without_frame_or_error_is_a_problem() -> None:
         (lambda made: made.drop(index="A"), "row 'A' is missing"),
         (lambda made: made.drop(columns="y"), "column 'y' is missing"),
         (lambda made: made.reset_index(drop=True), "row 'A' is missing"),
-        (lambda made: pd.concat([made, made.loc[["B"]]]), "row 'B' is there twice"),
+        (lambda made: pd.concat([made, made.loc[["B"]]]), "row 'B' appears twice"),
     ],
 )
 def test_missing_keys_are_named_once(change: Callable[[pd.DataFrame], pd.DataFrame], message: str) -> None:
@@ -306,7 +308,7 @@ def test_blank_cells_have_no_rows() -> None:
 def test_significant_digits() -> None:
     run = results(as_written=frame(ax=6.968004), authors=frame(ax=6.96801))
     made = printed("6.968", significant_digits=6)
-    judgement = judge(synthetic.paper(significant_digits=6), run, printed=made, ledger=Ledger())
+    judgement = judge(synthetic.paper(significant_digits=6), run, Inputs(made))
     kinds = [row.match for row in judgement.results if (row.row, row.column) == A_X]
     assert kinds == ["equal", "near"]
 
@@ -323,6 +325,8 @@ def test_claims() -> None:
         "as-written",
         "3.1",
         explanation="The smallest is 3.1.",
+        value=PrintedValue("2.5"),
+        values=(Computed("as-written", 3.1, Match("differs")),),
     )
     assert verdict(judgement, "smooth", "claim").verdict == "fails"
     assert [row for row in judgement.results if row.exhibit == "claims"] == [
@@ -367,9 +371,8 @@ def test_a_partial_run_judges_what_was_asked_for() -> None:
     judgement = judge(
         synthetic.paper(),
         {("toy", "table-1"): results()["toy", "table-1"]},
+        Inputs(printed()),
         exhibits=["table-1"],
-        printed=printed(),
-        ledger=Ledger(),
     )
     assert judgement.problems == []
     assert [row.exhibit for row in judgement.exhibits] == ["table-1"]
@@ -378,7 +381,7 @@ def test_a_partial_run_judges_what_was_asked_for() -> None:
 def test_numbered_exhibits_must_be_in_the_inventory() -> None:
     paper = synthetic.paper()
     paper.numbered += ("table-2",)
-    judgement = judge(paper, results(), printed=printed(), ledger=Ledger())
+    judgement = judge(paper, results(), Inputs(printed()))
     assert judgement.problems == ["toy: numbered exhibit 'table-2' is not in the inventory"]
 
 
@@ -408,7 +411,8 @@ def test_files_are_read_from_the_papers_folder(tmp_path: Path) -> None:
         '[[entry]]\nexhibit = "table-1"\nrows = ["A"]\ncolumns = ["x"]\ncause = "method"\nexplanation = "Coarse."\n',
         encoding="utf-8",
     )
-    judgement = judge(synthetic.paper(folder), results())
+    paper = synthetic.paper(folder)
+    judgement = judge(paper, results(), read_inputs(paper))
     assert judgement.problems == []
     assert verdict(judgement).explanation == "Coarse."
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import importlib
 import importlib.resources
 from collections.abc import Callable, Mapping, Sequence
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.order import in_listed_order
+from replicate.exhibits.printed import read_texts
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
     Chart,
@@ -208,11 +208,4 @@ class Paper:
 
 @cache
 def _printed_cells(package: str, exhibit: str) -> Mapping[tuple[str, str], str]:
-    text = (importlib.resources.files(package) / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
-    cells = {
-        (record["row"], column): cell
-        for record in csv.DictReader(text.splitlines())
-        for column, cell in record.items()
-        if column != "row" and cell
-    }
-    return MappingProxyType(cells)
+    return MappingProxyType(read_texts(importlib.resources.files(package) / "printed" / f"{exhibit}.csv"))

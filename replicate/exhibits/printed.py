@@ -130,24 +130,45 @@ def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedVal
         or column is missing, unknown, out of order or there twice. The message names file, line and cell.
     """
     name = display_name(path)
+    (header_line, columns), body = _grid(path, name, table.columns)
+    _check_keys(f"{name}:{header_line}", "column", [(header_line, key) for key in columns], table.columns)
+    _check_keys(name, "row", [(line, row) for line, row, _ in body], table.rows)
+    return {
+        (row, column): _value(name, (text, row, column, line), table.significant_digits)
+        for line, row, texts in body
+        for column, text in zip(columns, texts, strict=True)
+        if text
+    }
+
+
+def read_texts(path: Traversable | Path) -> dict[Key, str]:
+    """Return the cells of a printed CSV as texts by (row, column), for exhibits that weigh the print as evidence.
+
+    Blank cells are left out. Nothing is compared with the exhibit's keys: `read_printed` does that.
+
+    Raises
+    ------
+    PrintedFileError
+        If the file cannot be read or its rows are of different lengths.
+    """
+    (_, columns), body = _grid(path, display_name(path), ("row",))
+    return {(row, column): text for _, row, texts in body for column, text in zip(columns, texts, strict=True) if text}
+
+
+def _grid(
+    path: Traversable | Path, name: str, needed: Sequence[str]
+) -> tuple[tuple[int, list[str]], list[tuple[int, str, list[str]]]]:
+    """Return line and column keys of the header, then line, row key and cells of every row."""
     records = _records(path, name)
     if not records:
-        msg = f"{name}:1: the file is empty; needed: a header with the columns {_listed(table.columns)}"
+        msg = f"{name}:1: the file is empty; needed: a header with the columns {_listed(needed)}"
         raise PrintedFileError(msg)
     (header_line, header), *body = records
-    columns = header[1:]
-    _check_keys(f"{name}:{header_line}", "column", [(header_line, key) for key in columns], table.columns)
     for line, cells in body:
         if len(cells) != len(header):
             msg = f"{name}:{line}: row '{cells[0]}' has {len(cells)} cells, the header has {len(header)}"
             raise PrintedFileError(msg)
-    _check_keys(name, "row", [(line, cells[0]) for line, cells in body], table.rows)
-    return {
-        (cells[0], column): _value(name, (text, cells[0], column, line), table.significant_digits)
-        for line, cells in body
-        for column, text in zip(columns, cells[1:], strict=True)
-        if text
-    }
+    return (header_line, header[1:]), [(line, cells[0], cells[1:]) for line, cells in body]
 
 
 def _records(path: Traversable | Path, name: str) -> list[tuple[int, list[str]]]:

@@ -14,7 +14,7 @@ from replicate.display.labels import heading
 from replicate.display.scores import Score
 from replicate.display.source_code import Source, sources
 from replicate.display.tables import TableView, table_view
-from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, NotComputable, Paper, Table
+from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, Paper, Table
 from replicate.exhibits.printed import PrintedValue, parse_number
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
 from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
@@ -81,23 +81,22 @@ def exhibit_views(
         _view(
             exhibit,
             results.get((paper.id, exhibit.id)),
-            _common(exhibit, rows.get(exhibit.id), verdicts.get(exhibit.id, []), page_of(exhibit.id)),
+            _common(exhibit, rows[exhibit.id], verdicts.get(exhibit.id, []), page_of(exhibit.id)),
         )
         for exhibit in paper.exhibits.values()
     ]
 
 
-def _common(exhibit: Exhibit, row: ExhibitRow | None, verdicts: list[VerdictRow], page: str) -> dict[str, Any]:
-    """Return the fields that every kind of exhibit has; without an inventory row it was not asked for."""
+def _common(exhibit: Exhibit, row: ExhibitRow, verdicts: list[VerdictRow], page: str) -> dict[str, Any]:
+    """Return the fields that every kind of exhibit has."""
     label, title = heading(exhibit.id, exhibit.title)
-    reason = exhibit.reason if isinstance(exhibit, NotComputable) else ""
     return {
         "id": exhibit.id,
         "label": label,
         "title": title,
         "kind": exhibit.kind,
-        "status": row.status if row else "not-computable",
-        "reason": reason or (row.reason if row else "not part of this run"),
+        "status": row.status,
+        "reason": row.reason,
         "page": page,
         "score": scores.claims(verdicts) if isinstance(exhibit, Claims) else scores.values(verdicts),
         "verdicts": verdicts,

@@ -9,6 +9,7 @@ from pathlib import Path
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.run.parallel import Progress, failures, run
+from replicate.verdicts.inputs import read_inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.rows import Judgement
 
@@ -66,9 +67,10 @@ def recompute(
     ReplicateError
         If a data file of a paper is malformed, or a worker process died. An exhibit that raises is a result.
     """
+    inputs = {paper.id: read_inputs(paper) for paper in papers}  # before computing: a typing error is reported at once
     results = run(papers, selection, jobs=jobs, cache_dir=cache_dir, progress=progress)
     judgements = {}
     for paper in papers:
         exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]
-        judgements[paper.id] = judge(paper, results, exhibits=exhibits)
+        judgements[paper.id] = judge(paper, results, inputs[paper.id], exhibits=exhibits)
     return Outcome(papers, results, judgements, complete=selection is None)

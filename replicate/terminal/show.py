@@ -21,7 +21,7 @@ from replicate.run.outcome import Outcome
 from replicate.terminal.colours import colour
 from replicate.terminal.console import print_whole
 from replicate.terminal.mathtext import readable
-from replicate.verdicts.rows import ResultRow, VerdictRow
+from replicate.verdicts.rows import Computed, VerdictRow
 
 _DIGITS = 9
 
@@ -41,8 +41,7 @@ def print_exhibit(outcome: Outcome, paper: str, exhibit: Exhibit, readings: Sequ
         console.print(Text(f"not computable: {exhibit.reason}"))
     elif isinstance(exhibit, Table) and isinstance(result, TableResult):
         if verdicts:
-            results = [row for row in outcome.judgements[paper].results if row.exhibit == exhibit.id]
-            print_whole(_comparison(exhibit, readings, results, verdicts), console)
+            print_whole(_comparison(readings, verdicts), console)
         else:
             _print_frames(result, readings, console)
         _print_readings(exhibit, readings, console)
@@ -56,29 +55,27 @@ def print_exhibit(outcome: Outcome, paper: str, exhibit: Exhibit, readings: Sequ
             console.print(Text(f"failed{f' ({part})' if part else ''}: {why}", style="red"))
 
 
-def _comparison(table: Table, readings: Sequence[str], results: list[ResultRow], verdicts: list[VerdictRow]) -> Grid:
+def _comparison(readings: Sequence[str], verdicts: list[VerdictRow]) -> Grid:
     """Return one line per printed value; computed values have a digit or two more than the print."""
     grid = _grid("row", "", ">printed", *(f">{reading}" for reading in readings), "verdict")
-    found = {(row.row, row.column, row.reading): row for row in results}
     previous = ""
     for verdict in verdicts:
-        printed = PrintedValue(verdict.printed, significant_digits=table.significant_digits)
-        computed = [found.get((verdict.row, verdict.column, reading)) for reading in readings]
+        by_reading = {one.reading: one for one in verdict.values}
         grid.add_row(
             "" if verdict.row == previous else verdict.row,
             verdict.column,
             verdict.printed,
-            *(_computed(row, printed) for row in computed),
+            *(_computed(by_reading.get(reading), verdict.value) for reading in readings),
             _verdict(verdict),
         )
         previous = verdict.row
     return grid
 
 
-def _computed(row: ResultRow | None, printed: PrintedValue) -> str:
-    if row is None or not row.computed:
+def _computed(one: Computed | None, printed: PrintedValue | None) -> str:
+    if one is None or not one.text:
         return ""
-    return f"{shown(float(row.computed), printed)} {MATCHES[row.match][0]:1}"
+    return f"{shown(one.number, printed)} {MATCHES[one.match.kind][0]:1}"
 
 
 def _print_frames(result: TableResult, readings: Sequence[str], console: Console) -> None:

@@ -12,9 +12,7 @@ from replicate.verdicts.rows import (
     CLAIM_COLUMN,
     CLAIM_VERDICTS,
     Computed,
-    ExhibitRow,
     Judgement,
-    Status,
     VerdictRow,
 )
 
@@ -30,11 +28,9 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
     Returns
     -------
     Judgement
-        One verdict per claim, one result per claim that prints a number, and the exhibit's row. A claim whose
-        check failed is unexplained, and a problem.
+        One verdict per claim. A claim whose check failed is unexplained, and a problem.
     """
     judgement = Judgement()
-    failed = []
     for id, claim in exhibit.claims.items():
         place = f"{paper} {exhibit.id}: claim '{id}'"
         finding = result.findings.get(id)
@@ -42,7 +38,6 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
         row = VerdictRow(paper, exhibit.id, id, CLAIM_COLUMN, claim.printed, "unexplained", AS_WRITTEN, "")
         if finding is None or wrong:
             judgement.problems.append(f"{place}: {wrong}")
-            failed.append(id)
         else:
             evidence = " ".join(finding.evidence.split())
             if not evidence and finding.verdict != "holds":
@@ -56,11 +51,6 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
             value = PrintedValue(claim.printed)
             row = replace(row, value=value, values=(Computed(AS_WRITTEN, number, match(value, number)),))
         judgement.verdicts.append(row)
-    status: Status = "done"
-    if failed:
-        status = "partly" if len(failed) < len(exhibit.claims) else "not-computable"
-    reason = f"not checked: {', '.join(failed)}" if failed else ""
-    judgement.exhibits.append(ExhibitRow(paper, exhibit.id, exhibit.kind, exhibit.title, status, reason))
     return judgement
 
 

@@ -2,8 +2,7 @@
 
 `judge` is a pure function of the paper's description, its printed numbers, its ledger and the results of a
 run: it draws nothing, computes no exhibit and writes no file. What goes wrong in one exhibit becomes a
-*problem*, one line that names the place, and never hides the verdicts on the others; only a malformed data
-file raises.
+*problem*, one line that names the place, and never hides the verdicts on the others.
 """
 
 from __future__ import annotations
@@ -12,70 +11,42 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from replicate.errors import TemplateError
-from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Paper, Table
-from replicate.exhibits.printed import Key, PrintedValue, read_printed
+from replicate.exhibits import Claims, Figure, NotComputable, Paper, Table
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.verdicts.claims import judge_claims
+from replicate.verdicts.inputs import Inputs
+from replicate.verdicts.inventory import NOT_COMPUTED, inventory_row
 from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.verdicts.prose import Prose
-from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, Status, VerdictRow
+from replicate.verdicts.rows import Judgement
 from replicate.verdicts.tables import TableJudge
-
-__all__ = ["ExhibitRow", "Judgement", "ResultRow", "VerdictRow", "judge", "read_all_printed"]
-
-Printed = Mapping[str, Mapping[Key, PrintedValue]]
-
-
-def read_all_printed(paper: Paper) -> dict[str, dict[Key, PrintedValue]]:
-    """Read the printed numbers of every table of a paper, by exhibit id.
-
-    Raises
-    ------
-    PrintedFileError
-        If a file is missing or malformed.
-    """
-    folder = paper.load().folder() / "printed"
-    return {
-        id: read_printed(folder / f"{id}.csv", exhibit)
-        for id, exhibit in paper.exhibits.items()
-        if isinstance(exhibit, Table) and exhibit.printed
-    }
 
 
 def judge(
     paper: Paper,
     results: Mapping[tuple[str, str], Result],
+    inputs: Inputs,
     *,
     exhibits: Collection[str] | None = None,
-    printed: Printed | None = None,
-    ledger: Ledger | None = None,
 ) -> Judgement:
     """Compare what a run computed with what the paper prints.
 
     Parameters
     ----------
     paper
-        The paper; it is loaded if it is not yet.
+        The loaded paper.
     results
         By (paper, exhibit); results of other papers are ignored.
+    inputs
+        The paper's printed numbers and ledger, as `replicate.verdicts.inputs.read_inputs` returns them.
     exhibits
         The exhibits to judge, for a partial run. Default: all, and a missing result is a problem.
-    printed, ledger
-        The paper's printed numbers and ledger. Default: read from its folder.
 
     Returns
     -------
     Judgement
         Rows in the order of the paper, its rows, columns and readings.
-
-    Raises
-    ------
-    PrintedFileError, LedgerError
-        If a data file of the paper is malformed.
     """
-    paper.load()
-    printed = read_all_printed(paper) if printed is None else printed
-    ledger = Ledger.load_all(paper.folder(), paper) if ledger is None else ledger
     judgement = Judgement()
     if exhibits is None:
         judgement.problems.extend(
@@ -88,30 +59,22 @@ def judge(
         if exhibits is not None and id not in exhibits:
             continue
         result = results.get((paper.id, id))
-        if isinstance(exhibit, NotComputable):
-            judgement.exhibits.append(_row(paper, exhibit, "not-computable", exhibit.reason))
-        elif isinstance(exhibit, Table) and isinstance(result, TableResult):
-            values = printed.get(id, {}) if exhibit.printed else {}
-            table = TableJudge(paper.id, exhibit, result, values, ledger)
+        part = Judgement()
+        if isinstance(exhibit, Table) and isinstance(result, TableResult):
+            values = inputs.printed.get(id, {}) if exhibit.printed else {}
+            table = TableJudge(paper.id, exhibit, result, values, inputs.ledger, part)
             explained += [(len(judgement.verdicts) + index, entry) for index, entry in table.judge()]
-            judgement.extend(table.judgement)
-            judgement.exhibits.append(_row(paper, exhibit, *table.status()))
+        elif isinstance(exhibit, Claims) and isinstance(result, ClaimsResult):
+            part = judge_claims(paper.id, exhibit, result)
         elif isinstance(exhibit, Figure) and isinstance(result, FigureResult):
             if result.error:
-                judgement.problems.append(f"{paper.id} {id}: drawing failed: {result.error}")
-            status: Status = "not-computable" if result.error else "done"
-            judgement.exhibits.append(_row(paper, exhibit, status, result.error))
-        elif isinstance(exhibit, Claims) and isinstance(result, ClaimsResult):
-            judgement.extend(judge_claims(paper.id, exhibit, result))
-        else:
-            judgement.problems.append(f"{paper.id} {id}: was not computed")
-            judgement.exhibits.append(_row(paper, exhibit, "not-computable", "was not computed"))
-    _explain(paper, results, judgement, ledger, explained)
+                part.problems.append(f"{paper.id} {id}: drawing failed: {result.error}")
+        elif not isinstance(exhibit, NotComputable):
+            part.problems.append(f"{paper.id} {id}: {NOT_COMPUTED}")
+        part.exhibits.append(inventory_row(paper.id, exhibit, result, part.verdicts))
+        judgement.extend(part)
+    _explain(paper, results, judgement, inputs.ledger, explained)
     return judgement
-
-
-def _row(paper: Paper, exhibit: Exhibit, status: Status, reason: str) -> ExhibitRow:
-    return ExhibitRow(paper.id, exhibit.id, exhibit.kind, exhibit.title, status, reason)
 
 
 def _explain(

@@ -24,6 +24,7 @@ from __future__ import annotations
 import re
 import traceback
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import TYPE_CHECKING
 
 from replicate.errors import TemplateError
@@ -70,7 +71,8 @@ class Prose:
         self._results = results
         self._verdicts = [row for row in verdicts if row.paper == paper.id]
         self._by_cell = {(row.exhibit, row.row, row.column): row for row in self._verdicts}
-        self._environment = _environment()
+        self._environment = _environment().overlay()
+        self._environment.globals = dict(self._environment.globals)
         self._environment.globals.update(
             value=self._value,
             number=self._number,
@@ -246,6 +248,24 @@ class Prose:
         )
 
 
+def check_syntax(text: str, source: str, first_line: int = 1) -> None:
+    """Check that a text is a well-formed template; what it asks for is known only after computing.
+
+    Raises
+    ------
+    TemplateError
+        If it is not; the message names file and line.
+    """
+    import jinja2
+
+    try:
+        _environment().parse(text)
+    except jinja2.TemplateSyntaxError as error:
+        msg = f"{source}:{first_line + error.lineno - 1}: {error.message}"
+        raise TemplateError(msg) from error
+
+
+@cache
 def _environment() -> jinja2.Environment:
     import jinja2
 

@@ -10,7 +10,7 @@ from replicate.exhibits.matching import Match, computed_text, format_like, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
-from replicate.verdicts.rows import Computed, Judgement, Status, ValueVerdict, VerdictRow
+from replicate.verdicts.rows import Computed, Judgement, ValueVerdict, VerdictRow
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "misprint": "misprint",
@@ -27,7 +27,7 @@ _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
 
 @dataclass
 class TableJudge:
-    """The judging of one table: first `judge`, then `status`.
+    """The judging of one table.
 
     Attributes
     ----------
@@ -62,27 +62,6 @@ class TableJudge:
                 explained.append((len(self.judgement.verdicts), entry))
             self.judgement.verdicts.append(verdict)
         return explained
-
-    def status(self) -> tuple[Status, str]:
-        """Return the exhibit's status and, unless it is done, the reason."""
-        failed = [f"reading '{reading}' failed: {error}" for reading, error in self.result.errors.items()]
-        if not self.printed:
-            done = len(self.result.frames) > 0
-            return ("partly" if done and failed else "done" if done else "not-computable"), "; ".join(failed)
-        missing = [
-            verdict
-            for verdict in self.judgement.verdicts
-            if verdict.verdict == "not-computable"
-            or not any((verdict.row, verdict.column) in numbers for numbers in self.numbers.values())
-        ]
-        if not missing:
-            return "done", ""
-        reason = f"{len(missing)} of {len(self.judgement.verdicts)} printed values cannot be computed"
-        causes = sorted({verdict.cause for verdict in missing if verdict.cause})
-        if causes:
-            reason += f" ({', '.join(causes)})"
-        status: Status = "partly" if len(missing) < len(self.judgement.verdicts) else "not-computable"
-        return status, "; ".join([reason, *failed])
 
     def _read(self, reading: str) -> None:
         """Take the numbers of one reading and compare them."""

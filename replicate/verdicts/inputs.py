@@ -1,0 +1,57 @@
+"""What judging a paper needs besides its results: printed numbers and ledger, read and checked before computing.
+
+A typing error in a data file is reported at once, not after the run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from replicate.exhibits import Paper, Table
+from replicate.exhibits.file_names import display_name
+from replicate.exhibits.printed import Key, PrintedValue, read_printed
+from replicate.verdicts.ledger import Ledger
+from replicate.verdicts.prose import check_syntax
+
+Printed = Mapping[str, Mapping[Key, PrintedValue]]
+
+_TEXTS = ("notes", "handout")
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """A paper's own data files.
+
+    Attributes
+    ----------
+    printed
+        By exhibit id: the printed numbers by (row, column).
+    """
+
+    printed: Printed = field(default_factory=dict)
+    ledger: Ledger = field(default_factory=Ledger)
+
+
+def read_inputs(paper: Paper) -> Inputs:
+    """Read printed numbers and ledger of a paper, and check the syntax of its texts.
+
+    Raises
+    ------
+    PrintedFileError, LedgerError, TemplateError
+        If a file is missing or malformed; the message names file, line and cell.
+    """
+    folder = paper.load().folder()
+    printed = {
+        id: read_printed(folder / "printed" / f"{id}.csv", exhibit)
+        for id, exhibit in paper.exhibits.items()
+        if isinstance(exhibit, Table) and exhibit.printed
+    }
+    ledger = Ledger.load_all(folder, paper)
+    for entry in ledger.entries:
+        for text in (entry.explanation, entry.evidence):
+            check_syntax(text, entry.file or ledger.name, entry.line)
+    for file in sorted(folder.iterdir(), key=lambda file: file.name):
+        if file.name.endswith(".md") and file.name.startswith(_TEXTS):
+            check_syntax(file.read_text(encoding="utf-8"), display_name(file))
+    return Inputs(printed, ledger)
