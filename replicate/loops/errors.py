@@ -4,6 +4,7 @@ LoopError(ValueError)
 ├── ImproperLoopError      the loop contains a pure differentiator without a causal solution
 ├── UnstableLoopError      a quantity was asked for that only a stable loop has
 ├── NotSettledError        the response has not settled inside its horizon
+├── NotationError          a text is no plant or controller
 └── TuningRuleError        a tuning rule is incomplete, cannot be read, or lacks a parameter
 
 A design that finds no controller is not an error: it returns a result whose status says so.
@@ -30,3 +31,27 @@ class NotSettledError(LoopError):
 
 class TuningRuleError(LoopError):
     """A tuning rule is incomplete, cannot be read, or lacks a parameter."""
+
+
+class NotationError(LoopError):
+    """A text that should name a plant or a controller does not; the message names the column.
+
+    Attributes
+    ----------
+    text : str
+        The whole text.
+    column : int
+        Where it stops making sense, from 1.
+    reason : str
+        What is wrong there, and what is allowed.
+    """
+
+    def __init__(self, what: str, text: str, column: int, reason: str) -> None:
+        super().__init__(what, text, column, reason)
+        self.text = text
+        self.column = column
+        self.reason = reason
+
+    def __str__(self) -> str:
+        what, text, column, reason = self.args
+        return f"{what} '{''.join(' ' if c.isspace() else c for c in text)}', column {column}: {reason}"
