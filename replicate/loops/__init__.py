@@ -6,7 +6,7 @@ metrics read from the piecewise polynomial, poles, sensitivity peaks and margins
 
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PI, PID
-from replicate.loops.design_pi import PIDesign, design_pi, setpoint_weight
+from replicate.loops.design_pi import design_pi
 from replicate.loops.design_pid import design_pid, search_range
 from replicate.loops.errors import ImproperLoopError, LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.gamma_norm import Weight, gamma_norm, stability_margin
@@ -14,10 +14,12 @@ from replicate.loops.loop import Loop, Response, step_responses
 from replicate.loops.margins import Margins
 from replicate.loops.nu_gap import WindingCount, chordal_distance, nu_gap, winding_count
 from replicate.loops.nyquist_constraints import Constraint
-from replicate.loops.pid_design import PIDDesign, pid_setpoint_weight
+from replicate.loops.peaks import FrequencyPeak, Peak
+from replicate.loops.pi_result import PIDesign
+from replicate.loops.pid_result import PIDDesign
 from replicate.loops.plant import Plant
-from replicate.loops.sensitivity import FrequencyPeak
-from replicate.loops.signal import Peak, Signal
+from replicate.loops.setpoint_weights import pid_setpoint_weight, setpoint_weight
+from replicate.loops.signal import Signal
 
 __all__ = [
     "PI",

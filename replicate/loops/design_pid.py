@@ -17,12 +17,13 @@ import numpy as np
 
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PI
-from replicate.loops.design_pi import design_grid, design_pi, gain_is_negative
+from replicate.loops.design_pi import design_pi, gain_is_negative
 from replicate.loops.errors import LoopError
+from replicate.loops.frequency_grids import design_grid
 from replicate.loops.loop import Loop
 from replicate.loops.nyquist_constraints import Constraint
-from replicate.loops.pid_design import PIDDesign, Status
 from replicate.loops.pid_optimality import GridProblem
+from replicate.loops.pid_result import PIDDesign, Status
 from replicate.loops.pid_search import Search
 from replicate.loops.plant import Plant
 

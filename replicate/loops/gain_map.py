@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.circles import Circle
+from replicate.loops.gaps import Gaps
 from replicate.loops.nyquist_constraints import Kind, LoopJet
 
 Array = NDArray[np.float64]
@@ -26,6 +27,7 @@ ComplexArray = NDArray[np.complex128]
 GAINS = np.concatenate([[-1.0, -0.3, -0.1, -0.03, 0.0], np.geomspace(0.01, 0.3, 6), np.geomspace(0.4, 30.0, 16)])
 DERIVATIVES = np.concatenate([[-0.3, -0.1, 0.0], np.geomspace(0.03, 0.3, 4), np.geomspace(0.42, 60.0, 16)])
 EDGE = 1.0 - 1e-9
+NO_GAP = 1e-9  # relative width below which a gap is none
 FREQUENCIES = 160  # of each constraint, on the map
 
 ZOOM = np.linspace(-1.0, 1.0, 7)  # the window of an ascent, in units of its half-width
@@ -77,13 +79,10 @@ def summits(
     k, kd = gain * _denser(GAINS, density), gain / frequency * _denser(DERIVATIVES, density)
     kd = np.unique(np.clip(kd, -largest_kd, largest_kd))
     gaps = _gaps([(kind, _thinned(jet)) for kind, jet in jets], circle, k, kd)
-    found = []
-    for (i, j), here in gaps.items():
-        around = [g for di in (-1, 0, 1) for dj in (-1, 0, 1) if di or dj for g in gaps.get((i + di, j + dj), ())]
-        for bottom, top in here:
-            connected = [g for g in around if g[0] < top and g[1] > bottom]
-            if all(top >= g[1] for g in connected):
-                found.append(Summit(float(k[i]), top, float(kd[j]), 0.5 * (bottom + top), (gain, gain / frequency)))
+    found = [
+        Summit(float(k[i]), gap.top, float(kd[j]), 0.5 * (gap.bottom + gap.top), (gain, gain / frequency))
+        for (i, j), gap, _ in gaps.maxima()
+    ]
     return sorted(found, key=lambda s: -s.ki)
 
 
@@ -110,10 +109,10 @@ def ascend(
         kd = best.kd + width * max(abs(best.kd), 0.1 * start.reach[1]) * ZOOM
         kd = np.clip(kd, -largest_kd, largest_kd)
         connected = [
-            Summit(float(k[i]), top, float(kd[j]), 0.5 * (max(bottom, 0.5 * top) + top), start.reach)
-            for (i, j), gaps in _gaps(jets, circle, k, kd, slack).items()
-            for bottom, top in gaps
-            if bottom < best.inside < top
+            Summit(float(k[i]), gap.top, float(kd[j]), 0.5 * (max(gap.bottom, 0.5 * gap.top) + gap.top), start.reach)
+            for (i, j), gaps in _gaps(jets, circle, k, kd, slack).at.items()
+            for gap in gaps
+            if gap.bottom < best.inside < gap.top
         ]
         highest = max(connected, key=lambda s: s.ki, default=best)
         if highest.ki > best.ki * (1.0 + 0.02 * width):
@@ -128,19 +127,9 @@ def _thinned(jet: LoopJet) -> LoopJet:
     return LoopJet(jet.w[::step], jet.phi[:, :, ::step])
 
 
-def _gaps(
-    jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float = 0.0
-) -> dict[tuple[int, int], list[tuple[float, float]]]:
-    """Return the gaps (lower end, upper end) of ki at the indices (i, j) of k and kd."""
-    low, high = _forbidden(jets, circle, k, kd, slack)
-    order = np.argsort(low, axis=-1)
-    low = np.take_along_axis(low, order, axis=-1)
-    covered = np.maximum.accumulate(np.take_along_axis(high, order, axis=-1), axis=-1)
-    floor = np.maximum(np.concatenate([np.zeros_like(low[..., :1]), covered[..., :-1]], axis=-1), 0.0)
-    gaps: dict[tuple[int, int], list[tuple[float, float]]] = {}
-    for i, j, n in zip(*np.nonzero((low > floor * (1.0 + 1e-9)) & np.isfinite(low)), strict=True):
-        gaps.setdefault((int(i), int(j)), []).append((float(floor[i, j, n]), float(low[i, j, n])))
-    return gaps
+def _gaps(jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float = 0.0) -> Gaps:
+    """Return the gaps of ki at the indices (i, j) of k and kd."""
+    return Gaps.between(*_forbidden(jets, circle, k, kd, slack), rounding=NO_GAP)
 
 
 def _forbidden(

@@ -25,10 +25,11 @@ from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
+from replicate.loops.frequency_grids import wide_grid
 from replicate.loops.loop import Loop
+from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
-from replicate.loops.sensitivity import FrequencyPeak, highest_peak
-from replicate.loops.stability import frequency_grid
+from replicate.loops.sensitivity import highest_peak
 
 Array = NDArray[np.float64]
 
@@ -145,17 +146,7 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
         return float(change[0])
 
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
-    near = [p.imag + abs(p.real) * np.linspace(-3.0, 3.0, 25) for p in poles if p.imag > 0.0]
-    w = np.unique(np.concatenate([frequency_grid(transfer, end, per_decade=80), *near]))
-    w = w[w > 0.0]
-    start, end = float(w[0]), float(w[-1])
-    w = np.concatenate(
-        [
-            np.geomspace(start * 10.0**-DECADES, start, 20 * DECADES)[:-1],
-            w,
-            np.geomspace(end, end * 10.0**DECADES, 80 * DECADES)[1:],
-        ]
-    )
+    w = wide_grid(transfer, end, poles, DECADES)
     best = highest_peak(magnitude, slope, w)
     for frequency, name in ((w[0] / FAR, 0.0), (w[-1] * FAR, float("inf"))):
         with np.errstate(over="ignore", invalid="ignore"):

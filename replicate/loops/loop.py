@@ -14,8 +14,8 @@ from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.margins import Margins
+from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
-from replicate.loops.sensitivity import FrequencyPeak
 from replicate.loops.signal import Signal
 
 ComplexArray = NDArray[np.complex128]

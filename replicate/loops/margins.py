@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
-from replicate.loops.stability import frequency_grid
 
 Array = NDArray[np.float64]
 
@@ -102,7 +102,7 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
         end += 2.5 * np.pi / transfer.dead_time  # one full turn more, so that a crossover below one is always included
     elif not transfer.plant.is_rational:
         end = transfer.beyond(1e-6)
-    w = frequency_grid(transfer, end, per_decade=80)
+    w = loop_grid(transfer, end, per_decade=80)
     value = transfer(1j * w)
     turned = value.imag[:-1] * value.imag[1:] < 0.0
     negative = value.real[:-1] + value.real[1:] < 0.0
@@ -124,7 +124,7 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
 
 def _gain_crossovers(transfer: LoopTransfer) -> Array:
     """Return all frequencies with |L| = 1, for plants given by a function."""
-    w = frequency_grid(transfer, transfer.beyond(0.5), per_decade=200)
+    w = loop_grid(transfer, transfer.beyond(0.5), per_decade=200)
 
     def excess(x: float) -> float:
         return float(np.log(np.abs(complex(transfer(1j * x)))))

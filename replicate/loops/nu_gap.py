@@ -20,18 +20,17 @@ from numpy.typing import NDArray
 
 from replicate.loops import stability
 from replicate.loops.errors import LoopError
+from replicate.loops.frequency_grids import plants_grid
 from replicate.loops.gamma_norm import Weight
 from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
-from replicate.loops.sensitivity import FrequencyPeak, highest_peak
+from replicate.loops.sensitivity import highest_peak
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 DECADES = 6  # how far the search goes beyond the corners of the plants, towards both limits
-PER_DECADE = 200
-PER_TURN = 60
-MOST_TURNS = 5000
 
 
 @dataclass(frozen=True)
@@ -121,7 +120,7 @@ def nu_gap(first: Plant, second: Plant, weight: Weight | None = None) -> Frequen
             change = change - np.abs(value) ** 2 / (1.0 + np.abs(value) ** 2) * rate.real
         return float(change[0])
 
-    w = _grid(first, second)
+    w = plants_grid(first, second, DECADES)
     with np.errstate(divide="ignore", invalid="ignore"):  # identical plants: no slope, and a gap of zero
         best = highest_peak(magnitude, slope, w)
     for frequency, name in ((w[0] * 1e-6, 0.0), (w[-1] * 1e6, float("inf"))):
@@ -129,23 +128,6 @@ def nu_gap(first: Plant, second: Plant, weight: Weight | None = None) -> Frequen
         if limit > best.value:
             best = FrequencyPeak(limit, name)
     return FrequencyPeak(min(best.value, 1.0), best.frequency)
-
-
-def _grid(first: Plant, second: Plant) -> Array:
-    """Return frequencies that resolve the corners and resonances of both plants and the turns of their dead times."""
-    corners = np.concatenate([part for plant in (first, second) for part in (plant.poles(), plant.zeros())])
-    corners = corners[np.abs(corners) > 0.0]
-    delays = [plant.dead_time for plant in (first, second) if plant.dead_time]
-    moduli = [*np.abs(corners).tolist(), *(1.0 / delay for delay in delays)] or [1.0]
-    low, high = min(moduli) * 10.0**-DECADES, max(moduli) * 10.0**DECADES
-    parts = [np.geomspace(low, high, int(PER_DECADE * np.log10(high / low)))]
-    if delays:
-        turn = 2.0 * np.pi / max(delays)
-        parts.append(np.arange(1, MOST_TURNS) * turn / PER_TURN)
-    spread = np.linspace(-5.0, 5.0, 41)
-    parts += [p.imag + max(abs(p.real), 1e-9 * abs(p)) * spread for p in corners if p.imag > abs(p.real)]
-    w = np.unique(np.concatenate(parts))
-    return np.asarray(w[(w >= low) & (w <= high)])
 
 
 def _mirrored(polynomial: Array) -> Array:

@@ -13,13 +13,14 @@ from scipy.optimize import minimize_scalar, nnls, root
 
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PID
-from replicate.loops.design_pi import design_grid
 from replicate.loops.errors import LoopError
+from replicate.loops.frequency_grids import design_grid
 from replicate.loops.loop import Loop
 from replicate.loops.nyquist_constraints import Constraint, LoopJet
-from replicate.loops.pid_design import ActiveConstraint, PIDDesign, Status, pid_setpoint_weight
+from replicate.loops.pid_result import ActiveConstraint, PIDDesign, Status
 from replicate.loops.plant import Plant
 from replicate.loops.sensitivity import sensitivity_peak
+from replicate.loops.setpoint_weights import pid_setpoint_weight
 
 Array = NDArray[np.float64]
 

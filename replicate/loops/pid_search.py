@@ -16,8 +16,8 @@ from scipy.optimize import minimize
 
 from replicate.loops.gain_map import Summit, ascend, summits
 from replicate.loops.nyquist_constraints import Kind, LoopJet
-from replicate.loops.pid_design import PIDDesign
 from replicate.loops.pid_optimality import NEARLY, GridProblem
+from replicate.loops.pid_result import PIDDesign
 
 Array = NDArray[np.float64]
 

@@ -15,40 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from replicate.loops.frequency_grids import peak_grid
 from replicate.loops.loop_transfer import LoopTransfer, stationary_frequencies
-from replicate.loops.stability import frequency_grid
+from replicate.loops.peaks import FrequencyPeak
 
 Array = NDArray[np.float64]
 
 TIE = 1e-9  # a design at two tangencies makes two peaks equal to within its own convergence
-
-
-class FrequencyPeak(float):
-    """The peak of a frequency response; a float that also knows its frequency.
-
-    Attributes
-    ----------
-    value : float
-        The peak itself.
-    frequency : float
-        Where it is reached, rad per unit of time; ``inf`` if only in the limit, 0 if at steady state.
-    """
-
-    frequency: float
-
-    def __new__(cls, value: float, frequency: float) -> FrequencyPeak:
-        """Return the peak with its frequency."""
-        peak = super().__new__(cls, value)
-        peak.frequency = frequency
-        return peak
-
-    @property
-    def value(self) -> float:
-        """The peak as a plain float."""
-        return float(self)
-
-    def __getnewargs__(self) -> tuple[float, float]:  # type: ignore[override]
-        return float(self), self.frequency
 
 
 @dataclass(frozen=True)
@@ -102,7 +75,7 @@ def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) ->
     if transfer.feedthrough and not transfer.dead_time:
         return _rational_peak(transfer, poles, kind)
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
-    w = _grid(transfer, end, poles)
+    w = peak_grid(transfer, end, poles)
     best = highest_peak(kind.magnitude, kind.slope, w)
     # Extend the band until the bound on the rest is below the best peak, or the limit at infinity is the supremum.
     limit = kind.bound(transfer.feedthrough)
@@ -110,7 +83,7 @@ def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) ->
         if kind.bound(float(abs(transfer(1j * end)))) <= max(best.value, limit):
             break
         wider = end * 1.5
-        beyond = _grid(transfer, wider, poles, start=0.98 * end)
+        beyond = peak_grid(transfer, wider, poles, start=0.98 * end)
         best = _highest(best, highest_peak(kind.magnitude, kind.slope, beyond))
         end = wider
     return _with_ends(transfer, kind, best, limit)
@@ -121,7 +94,7 @@ def _rational_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: 
     # beyond its last stationary point the magnitude is monotone and tends to its limit
     stationary = stationary_frequencies(*kind.ratio)
     end = 2.0 * max([1e-6, *stationary.tolist(), *np.abs(transfer.corner_frequencies).tolist()])
-    best = highest_peak(kind.magnitude, kind.slope, _grid(transfer, end, poles))
+    best = highest_peak(kind.magnitude, kind.slope, peak_grid(transfer, end, poles))
     num, den = kind.ratio
     limit = float(abs(num[0] / den[0])) if num.size == den.size else 0.0
     return _with_ends(transfer, kind, best, limit)
@@ -141,14 +114,6 @@ def _at_rest(transfer: LoopTransfer, kind: _Kind) -> float:
     if transfer.den[-1] == 0.0:  # integral action: S = 0, T = 1
         return 1.0 if kind.bound(0.0) == 0.0 else 0.0
     return float(kind.magnitude(np.array([0.0]))[0])
-
-
-def _grid(transfer: LoopTransfer, end: float, poles: NDArray[np.complex128], start: float = 0.0) -> Array:
-    w = frequency_grid(transfer, end, per_decade=80)
-    spread = np.concatenate([-np.geomspace(10.0, 0.03, 12), [0.0], np.geomspace(0.03, 10.0, 12)])
-    near = [p.imag + abs(p.real) * spread for p in poles if p.imag > 0.0]
-    w = np.unique(np.concatenate([w, *near, [start, end]]))  # both ends, so that bands that overlap leave no gap
-    return w[(w > 0.0) & (w >= start) & (w <= end)]
 
 
 def highest_peak(magnitude: Callable[[Array], Array], slope: Callable[[float], float], w: Array) -> FrequencyPeak:

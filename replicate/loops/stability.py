@@ -16,13 +16,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.errors import ImproperLoopError, LoopError
+from replicate.loops.errors import ImproperLoopError
+from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
 
 Array = NDArray[np.float64]
 
 LARGEST_TURN = 0.8  # rad between neighbouring points; anything below pi/2 identifies the branch
-MOST_POINTS = 2_000_000
 ON_AXIS = 1e-14  # relative distance from the axis at which a root is on it to rounding
 DEEPEST = 60  # bisections of one interval before a zero is taken to lie on the axis
 
@@ -44,7 +44,7 @@ def unstable_poles(transfer: LoopTransfer) -> int:
         roots = np.roots(closed)
         return int(np.sum(roots.real >= -ON_AXIS * np.abs(roots)))
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
-    w = frequency_grid(transfer, end)
+    w = loop_grid(transfer, end)
     w = np.concatenate([[0.0], w]) if transfer.plant.is_rational else w
     turn = _argument_change(transfer, w)
     if turn is None:
@@ -64,31 +64,6 @@ def is_stable(transfer: LoopTransfer) -> bool:
         return unstable_poles(transfer) == 0
     except ImproperLoopError:
         return False
-
-
-def frequency_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Array:
-    """Return frequencies that resolve every corner, resonance and dead-time rotation of L up to ``end``."""
-    corners = transfer.corner_frequencies
-    moduli = np.abs(corners)
-    slow = [end, *moduli.tolist()]
-    if transfer.dead_time:
-        slow.append(1.0 / transfer.dead_time)
-    start = 1e-4 * min(slow)
-    if not transfer.plant.is_rational:
-        start = min(start, 1e-8 * end)
-    count = max(2, int(per_decade * np.log10(end / start)))
-    parts = [np.geomspace(start, end, count)]
-    if transfer.dead_time:
-        step = np.pi / (10.0 * transfer.dead_time)
-        if end > step * MOST_POINTS:
-            msg = f"|L| stays near one for {MOST_POINTS // 20} turns of the dead time: stability is not resolved"
-            raise LoopError(msg)
-        parts.append(np.arange(step, end, step))
-    resonant = corners[(np.abs(corners.real) < 0.3 * moduli) & (corners.imag > 0.0)]
-    spread = np.concatenate([-np.geomspace(30.0, 0.1, 12), [0.0], np.geomspace(0.1, 30.0, 12)])
-    parts += [root.imag + max(abs(root.real), 1e-12 * abs(root)) * spread for root in resonant]
-    w = np.unique(np.concatenate(parts))
-    return w[(w > 0.0) & (w <= end)]
 
 
 def _argument_change(transfer: LoopTransfer, w: Array) -> float | None:

@@ -10,7 +10,7 @@ from scipy.optimize import fsolve
 
 from replicate.exhibits import Finding
 from replicate.loops import PI, Circle, Loop
-from replicate.loops.design_pi import smooth_gains
+from replicate.loops.pi_tangency import smooth_gains
 from replicate.papers.panagopoulos.part_1 import theorem_1
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
 from replicate.papers.panagopoulos.part_1.corner import (

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from replicate.loops.controller import PID
 from replicate.loops.nyquist_constraints import Kind
 
@@ -75,20 +73,3 @@ class PIDDesign:
     def controller(self) -> PID:
         """The controller itself, with ideal derivative of the measurement."""
         return PID(self.k, self.ki, self.kd, b=self.b)
-
-
-def pid_setpoint_weight(controller: PID, frequency: float, peak: float) -> float:
-    """Return the set-point weight b in [0, 1] for which |G_sp| is one where |T| has its peak (13).
-
-    Parameters
-    ----------
-    frequency, peak
-        Frequency and value of the complementary sensitivity peak; a peak at rest puts no bound and gives 1.
-    """
-    if controller.k * controller.ki <= 0.0:
-        return 0.0
-    if peak <= 1.0 or frequency == 0.0:
-        return 1.0
-    size = (controller.k * frequency) ** 2 + (controller.ki - frequency**2 * controller.kd) ** 2
-    inside = size - (controller.ki * peak) ** 2
-    return min(1.0, float(np.sqrt(inside) / (abs(controller.k) * frequency * peak))) if inside > 0.0 else 0.0

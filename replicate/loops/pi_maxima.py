@@ -1,0 +1,67 @@
+r"""Where to look for the largest integral gain of a PI controller: local maxima over the proportional gain.
+
+For a fixed k each frequency forbids an interval of ki, the chord of an ellipse. What is left are gaps; the maxima of
+their upper ends over k are the candidates of `replicate.loops.design_pi`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.circles import Circle
+from replicate.loops.gaps import Gaps
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+
+GAIN_POINTS = 260
+NO_GAP = 1e-12  # relative width below which a gap is none
+
+
+@dataclass(frozen=True)
+class Maximum:
+    """The upper end ``ki`` of a gap at ``k`` that no connected gap exceeds; ``inside`` is a ki in the gap."""
+
+    k: float
+    ki: float
+    inside: float
+    frequency: float
+    neighbours: tuple[float, ...]  # frequencies of the bounds at k and at the neighbouring gains
+    open_end: tuple[float, float] | None  # (k, ki) in a connected gap without upper end: ki may grow on there
+
+
+def local_maxima(plant: Plant, circle: Circle, w: Array) -> list[Maximum]:
+    """Return the local maxima of ki over k on the grid of frequencies ``w``; stability is not looked at."""
+    value = plant(1j * w)
+    r, phase = np.abs(value), np.angle(value)
+    c, s = circle.center * np.cos(phase), circle.center * np.sin(phase)
+    gains = _gain_grid(np.concatenate([-c / r, (-c - circle.radius) / r, (-c + circle.radius) / r]), r)
+    # the forbidden interval of ki at each (k, w): (r ki / w + C sin phi)^2 < R^2 - (r k + C cos phi)^2
+    inside = circle.radius**2 - (gains[:, None] * r + c) ** 2
+    half = np.sqrt(np.maximum(inside, 0.0))
+    high = np.where(inside > 0.0, (half - s) * (w / r), -np.inf)
+    low = np.where(high > 0.0, (-half - s) * (w / r), np.inf)
+    gaps = Gaps.between(low, high, rounding=NO_GAP)
+    found = []
+    for (i,), gap, connected in gaps.maxima():
+        middle = 0.5 * (max([gap.bottom, *(g.bottom for g in connected)]) + gap.top)
+        neighbours = tuple(float(w[g.bound]) for g in (gap, *connected))
+        opened = [j for j in (i - 1, i + 1) if 0 <= j < gains.size and gap.top > gaps.uppermost[j]]
+        open_end = (float(gains[opened[-1]]), 2.0 * gap.top) if opened else None
+        if i == gains.size - 1 and connected:  # the end of the gain grid is no maximum either
+            open_end = (float(gains[i]), middle)
+        found.append(Maximum(float(gains[i]), gap.top, middle, float(w[gap.bound]), neighbours, open_end))
+    return found
+
+
+def _gain_grid(loci: Array, r: Array) -> Array:
+    """Return gains dense where the vertices of the ellipses are, on an asinh scale."""
+    unit = 0.01 / float(np.exp(np.median(np.log(r[: max(1, r.size // 2)]))))
+    finite = loci[np.isfinite(loci) & (np.abs(loci) < 1e8 * unit)]
+    mapped = np.unique(np.arcsinh(finite / unit))
+    even = np.linspace(mapped[0], mapped[-1], GAIN_POINTS // 2)
+    quantiles = np.quantile(mapped, np.linspace(0.0, 1.0, GAIN_POINTS // 2))
+    return np.asarray(np.unique(np.sinh(np.concatenate([even, quantiles, [0.0]])) * unit))

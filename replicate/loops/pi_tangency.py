@@ -1,0 +1,93 @@
+r"""Where the Nyquist curve of an optimal PI loop touches the circle: at one frequency, or at two.
+
+A smooth optimum is a root of h(w) (18), a corner of the envelope solves four equations (15).
+
+Reference: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on non-convex optimization", Automatica 34
+(1998) 585-601.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq, root
+
+from replicate.loops.circles import Circle
+from replicate.loops.pi_result import PIDesign
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+
+
+def smooth_condition(plant: Plant, circle: Circle, w: Array) -> Array:
+    """Evaluate h(w) / (2 R) of (18); a smooth optimum is a root of it."""
+    value = plant(1j * w)
+    slope = 1j * plant.log_derivative(1j * w)  # d log G / d w = r'/r + i phi'
+    phase = np.angle(value)
+    h = (circle.radius + circle.center * np.sin(phase)) * (slope.real - 1.0 / w) - circle.center * slope.imag * np.cos(
+        phase
+    )
+    return np.asarray(h)
+
+
+def smooth_gains(plant: Plant, circle: Circle, w: float) -> tuple[float, float]:
+    """Return (k, ki) of the lowest vertex of the ellipse at a frequency (17)."""
+    value = complex(plant(1j * w))
+    r, phase = abs(value), np.angle(value)
+    return (
+        float(-circle.center * np.cos(phase) / r),
+        float(-w / r * (circle.center * np.sin(phase) + circle.radius)),
+    )
+
+
+def smooth_optimum(plant: Plant, circle: Circle, w: Array, near: float) -> PIDesign | None:
+    """Return the optimum that touches the circle once, at the maximum of the lower vertex closest to ``near``."""
+    h = smooth_condition(plant, circle, w)
+    changes = np.nonzero((h[:-1] > 0.0) & (h[1:] < 0.0))[0]
+    if changes.size == 0:
+        return None
+    index = changes[np.argmin(np.abs(np.log(w[changes] / near)))]
+
+    def condition(x: float) -> float:
+        return float(smooth_condition(plant, circle, np.array([x]))[0])
+
+    frequency = float(brentq(condition, w[index], w[index + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200))
+    k, ki = smooth_gains(plant, circle, frequency)
+    return PIDesign(k, ki, float("nan"), frequency, (frequency,), "smooth", "optimal")
+
+
+def closest_frequencies(plant: Plant, circle: Circle, w: Array, k: float, ki: float) -> tuple[float, float]:
+    """Return the two frequencies at which the Nyquist curve comes closest to the circle's center, ascending."""
+    distance = np.abs(circle.center + (k - 1j * ki / w) * plant(1j * w))
+    inner = np.nonzero((distance[1:-1] <= distance[:-2]) & (distance[1:-1] <= distance[2:]))[0] + 1
+    closest = np.sort(inner[np.argsort(distance[inner])][:2])
+    return (float(w[closest[0]]), float(w[closest[-1]])) if closest.size else (0.0, 0.0)
+
+
+def corner_optimum(plant: Plant, circle: Circle, k: float, ki: float, w1: float, w2: float) -> PIDesign | None:
+    """Solve the four equations (15) for two tangencies by Newton's method, all unknowns scaled to one."""
+    if not (w2 > w1 * (1.0 + 1e-6) and ki > 0.0):
+        return None
+    scale = np.array([max(abs(k), 1e-3 * ki / w2), ki, w1, w2])
+
+    def equations(x: Array) -> Array:
+        gain, integral, *frequencies = x * scale
+        result = []
+        for frequency in frequencies:
+            s = 1j * frequency
+            controller = gain + integral / s
+            value = controller * complex(plant(s))
+            slope = 1j * value * (complex(plant.log_derivative(s)) - integral / (s**2 * controller))
+            offset = circle.center + value
+            result += [abs(offset) ** 2 / circle.radius**2 - 1.0, frequency * (np.conj(offset) * slope).real]
+        return np.array(result)
+
+    with np.errstate(all="ignore"):  # a start that is no corner may wander off; the residual tells
+        solution = root(equations, np.array([k, ki, w1, w2]) / scale, method="hybr", options={"xtol": 1e-15})
+    if not np.max(np.abs(solution.fun)) <= 1e-9:
+        return None
+    gain, integral, first, second = (float(v) for v in solution.x * scale)
+    if integral <= 0.0 or first <= 0.0 or second <= 0.0 or abs(first / second - 1.0) < 1e-6:
+        return None
+    first, second = sorted((first, second))
+    return PIDesign(gain, integral, float("nan"), first, (first, second), "corner", "optimal")
