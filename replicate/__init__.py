@@ -1,4 +1,4 @@
-"""Reproducible replications of papers on PI and PID control of processes with dead time.
+"""Reproducible replications of papers: which printed numbers can be trusted, and why not the others.
 
 Importing this package loads nothing else: take the numerical core from `replicate.loops`.
 """

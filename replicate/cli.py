@@ -15,7 +15,7 @@ from typing import Annotated
 
 import typer
 
-from replicate.commands import accepted, handouts, papers, report
+from replicate.commands import accepted, beginnings, handouts, papers, report
 from replicate.commands.options import BROKEN
 from replicate.errors import ReplicateError
 
@@ -23,7 +23,7 @@ TERMINATED = 143
 
 app = typer.Typer(
     name="replicate",
-    help="Recompute what papers on PI and PID control print, compare, and say why where it differs.",
+    help="Recompute what papers print, compare, and say why where it differs.",
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -95,4 +95,5 @@ app.command()(report.check)
 app.command()(accepted.diff)
 app.command()(accepted.accept)
 app.command()(handouts.handout)
-app.command()(papers.new)
+app.command()(beginnings.init)
+app.command()(beginnings.new)

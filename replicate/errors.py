@@ -2,6 +2,7 @@
 
 ReplicateError                 shown to the user as one line, exit status 2
 ├── PaperDefinitionError       a paper's package contradicts itself
+├── ProjectError               a project file is malformed (file, line)
 ├── UnknownPaperError          no such paper or exhibit
 ├── PrintedFileError           a printed CSV is malformed (file, line, cell)
 ├── LedgerError                a ledger entry names nothing, or no longer applies
@@ -21,6 +22,10 @@ class ReplicateError(Exception):
 
 class PaperDefinitionError(ReplicateError):
     """A paper's package contradicts itself (duplicate ids, missing keys)."""
+
+
+class ProjectError(ReplicateError):
+    """A project file is malformed, or there is no project where one is needed."""
 
 
 class UnknownPaperError(ReplicateError):

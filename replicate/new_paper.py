@@ -1,9 +1,10 @@
-"""The starting point of a new paper: an installable package with one table, one claim and nothing missing."""
+"""The starting point of a new paper: a package with one of each kind of exhibit, and nothing missing."""
 
 from __future__ import annotations
 
 import keyword
 import re
+import sys
 from pathlib import Path
 
 import jinja2
@@ -13,13 +14,15 @@ from replicate.resources import templates_dir
 from replicate.staging import staged
 
 _PLACES = {
-    "pyproject.toml": "pyproject.toml",
-    "__init__.py": "{package}/__init__.py",
-    "table_1.py": "{package}/table_1.py",
-    "claims.py": "{package}/claims.py",
-    "ledger.toml": "{package}/ledger.toml",
-    "notes.md": "{package}/notes.md",
-    "table-1.csv": "{package}/printed/table-1.csv",
+    "__init__.py": "__init__.py",
+    "table_1.py": "table_1.py",
+    "fig_1.py": "fig_1.py",
+    "claims.py": "claims.py",
+    "ledger.toml": "ledger.toml",
+    "notes.md": "notes.md",
+    "handout.md": "handout.md",
+    "table-1.csv": "printed/table-1.csv",
+    "test_paper.py": "test_{id}.py",
 }
 
 
@@ -31,33 +34,56 @@ def new_paper(id: str, parent: Path) -> Path:
     id
         The paper's id: lower-case letters, digits and ``_``, starting with a letter.
     parent
-        Where the folder ``replicate-<id>`` is made.
+        The folder of papers in which the paper's folder is made.
 
     Raises
     ------
     PaperDefinitionError
-        If the id is not of that form.
+        If the id is not of that form, or is the name of a module of Python.
     OutputError
         If the folder exists or cannot be written.
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", id) or keyword.iskeyword(id):
         msg = f"'{id}' is not an id of a paper; allowed: lower-case letters, digits and _, starting with a letter"
         raise PaperDefinitionError(msg)
-    folder = parent / f"replicate-{id}"
+    if id in sys.stdlib_module_names or id == "replicate":
+        msg = f"'{id}' is the name of a Python module; choose another id"
+        raise PaperDefinitionError(msg)
+    folder = parent / id
     if folder.exists():
         msg = f"{folder}: exists already; nothing was written"
         raise OutputError(msg)
-    package = f"replicate_{id}"
-    loader = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir() / "new_paper"),
+    places = {name: f"{id}/{place.format(id=id)}" for name, place in _PLACES.items()}
+    write_templates("new_paper", places, parent, id=id)
+    return folder
+
+
+def write_templates(source: str, places: dict[str, str], folder: Path, **variables: str) -> None:
+    """Fill the templates of a folder and write all of them, or none.
+
+    Parameters
+    ----------
+    source
+        Name of the folder among the templates.
+    places
+        By name of a template, without ``.jinja``: where its text goes in `folder`.
+    variables
+        What the templates may use.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
+    """
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(templates_dir() / source),
         undefined=jinja2.StrictUndefined,
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701 -- the templates make Python, TOML and Markdown, not HTML
     )
-    with staged(parent) as aside:
-        for name, place in _PLACES.items():
-            path = aside / folder.name / place.format(package=package)
+    with staged(folder) as aside:
+        for name, place in places.items():
+            path = aside / place
             path.parent.mkdir(parents=True, exist_ok=True)
-            text = loader.get_template(f"{name}.jinja").render(id=id, package=package)
+            text = environment.get_template(f"{name}.jinja").render(variables)
             path.write_text(text, encoding="utf-8", newline="\n")
-    return folder

@@ -51,11 +51,11 @@ def test_list_says_what_is_done_and_what_cannot_be_and_why(
     """On the thesis, against the printed CSV and the definitions themselves."""
     from replicate.exhibits import NotComputable
     from replicate.resources import accepted_dir
-    from replicate.run.discovery import find_paper
+    from replicate.run.library import Library
     from replicate.terminal.console import console
     from replicate.terminal.inventory import print_exhibits
 
-    paper = find_paper("panagopoulos")
+    paper = Library().paper("panagopoulos")
     monkeypatch.setenv("COLUMNS", "100")
     print_exhibits(paper, console(), accepted_dir())
     inventory, _, missing = capsys.readouterr().out.partition("What cannot be computed, and why")
@@ -141,7 +141,7 @@ def test_without_a_command_the_commands_are_listed(replicate: Run) -> None:
     status, out, err = replicate()
     assert (status, err) == (2, "")
     lines = out[out.index("Commands:") :].splitlines()[1:]
-    assert len(lines) == 9
+    assert len(lines) == 10
     assert not any(line.endswith("...") for line in lines)
 
 
@@ -179,7 +179,7 @@ def test_a_terminal_without_unicode(folder: Path, tmp_path: Path) -> None:
 def test_a_run_that_is_told_to_end_tidies_up(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     replicate("report", "lab", "-j1")
     before = contents(Path("build"))
-    monkeypatch.setattr("replicate.report.pages.build_report", lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+    monkeypatch.setattr("replicate.report.pages.build_report", lambda *_, **__: os.kill(os.getpid(), signal.SIGTERM))
     assert replicate("report", "lab", "-j1")[0] == 143
     assert contents(Path("build")) == before
     assert not list(Path("build").glob(".partial*"))
@@ -202,7 +202,7 @@ def test_a_new_paper_needs_an_id_of_its_own(replicate: Run) -> None:
 
 def test_a_malformed_file_is_named(replicate: Run, folder: Path) -> None:
     (folder / "printed/table-1.csv").write_text("number,root,log\n2,1.414,0.3o1\n3,1.732,0.478\n")
-    status, _, err = replicate("check", "lab", "-j1")
+    status, _, err = replicate("check", "lab", "-j1", "--accepted", "accepted")
     assert status == 2
     assert "printed/table-1.csv:2" in err
     assert "0.3o1" in err.splitlines()[-1]
@@ -212,7 +212,7 @@ def test_debug_shows_where(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(sys, "argv", ["replicate", "show", "lap", "table-1", "--debug"])
     with pytest.raises(Exception, match="no paper 'lap'"):
         cli.main()
-    monkeypatch.setattr("replicate.run.discovery.find_paper", lambda _: 1 / 0)
+    monkeypatch.setattr("replicate.run.library.Library.paper", lambda *_: 1 / 0)
     status, _, err = replicate("show", "lab", "table-1")
     assert status == 2
     assert err == "replicate: unexpected ZeroDivisionError: division by zero (--debug shows where)\n"
@@ -238,15 +238,20 @@ def test_check_fails_without_accepted_state(replicate: Run, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("command", [("diff", "lab"), ("check", "lab"), ("accept", "lab", "--reason", "x")])
-def test_a_missing_folder_of_the_accepted_state(
-    replicate: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, command: tuple[str, ...]
-) -> None:
-    monkeypatch.setattr("replicate.resources._PACKAGE", tmp_path / "nowhere")
+def test_outside_a_project_the_accepted_folder_must_be_named(replicate: Run, command: tuple[str, ...]) -> None:
     status, out, err = replicate(*command, "-j1")
     assert (status, out) == (2, "")
     assert err == (
-        "replicate: the folder of the accepted state, figures, is missing: restore it, or name another: --accepted\n"
+        "replicate: there is no project here: name the folder of the accepted state with --accepted, "
+        "or see 'replicate init'\n"
     )
+
+
+def test_a_damaged_installation(replicate: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr("replicate.resources._PACKAGE", tmp_path / "nowhere")
+    status, _, err = replicate("check", "khan", "-j1")
+    assert status == 2
+    assert err == ("replicate: the accepted state of the bundled papers is missing: name another folder: --accepted\n")
 
 
 def test_an_exhibit_that_raises_breaks_check(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:

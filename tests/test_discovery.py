@@ -4,7 +4,7 @@ import pytest
 
 import replicate.papers
 from replicate.errors import PaperDefinitionError
-from replicate.run.discovery import known_papers
+from replicate.run.library import Library
 
 
 @pytest.mark.parametrize(
@@ -20,4 +20,4 @@ def test_a_package_that_cannot_be_imported_is_named_with_file_and_line(tmp_path,
     (tmp_path / "broken" / "__init__.py").write_text(code)
     monkeypatch.setattr(replicate.papers, "__path__", [str(tmp_path)])
     with pytest.raises(PaperDefinitionError, match=re.escape(f"replicate.papers.broken cannot be loaded: {message}")):
-        known_papers()
+        Library().paper("broken")

@@ -22,7 +22,7 @@ from replicate.handout.printout import markup, pdf
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
-from replicate.run.discovery import find_paper, known_papers
+from replicate.run.library import Library
 from replicate.run.outcome import recompute
 from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
@@ -69,6 +69,8 @@ print(7 * number)
 """
 
 Make = Callable[..., Document]
+
+BUNDLED = Library(bundled=True).papers()
 
 
 def run(**cells: float) -> Results:
@@ -118,7 +120,9 @@ class Made:
     """A real paper with the results that its handout needs, and both editions of it."""
 
     def __init__(self, id: str) -> None:
-        self.outcome = recompute([find_paper(id)], [(id, exhibit) for exhibit in ASKED[id]], jobs=1, cache_dir=None)
+        self.outcome = recompute(
+            [Library().paper(id)], [(id, exhibit) for exhibit in ASKED[id]], jobs=1, cache_dir=None
+        )
         self.documents = {solutions: self.edition(solutions=solutions) for solutions in (False, True)}
         self.pdfs = {solutions: pdf(document) for solutions, document in self.documents.items()}
 
@@ -140,7 +144,7 @@ def pages(content: bytes) -> int:
 
 
 def test_every_paper_is_tested() -> None:
-    assert set(ASKED) == set(QUOTED) == set(known_papers())
+    assert set(ASKED) == set(QUOTED) == {paper.id for paper in BUNDLED}
 
 
 def test_pages(made: Made) -> None:
@@ -224,9 +228,9 @@ def test_a_changed_result_changes_the_handout(made: Made, monkeypatch: pytest.Mo
     assert re.search(r"\b98\.(?:8|77|765)\b", after)  # in the prose, with the digits of the sentence
 
 
-@pytest.mark.parametrize("id", sorted(known_papers()))
+@pytest.mark.parametrize("id", [paper.id for paper in BUNDLED])
 def test_every_handout_has_exercises_with_solutions(id: str) -> None:
-    text = (known_papers()[id].folder() / "handout.md").read_text(encoding="utf-8")
+    text = (Library().paper(id).folder() / "handout.md").read_text(encoding="utf-8")
     exercises = text.split("::: exercise\n")[1:]
     assert len(exercises) >= 5
     for exercise in exercises:

@@ -12,7 +12,7 @@ import pytest
 
 from replicate.diff.check import check
 from replicate.exhibits.printed import PrintedValue
-from replicate.run.discovery import find_papers
+from replicate.run.library import Library
 from replicate.run.outcome import Outcome, recompute
 from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
@@ -21,7 +21,7 @@ ROOT = Path(__file__).parent.parent
 HOLDS = {"reproduced", "reconstructed", "near"}
 EXPLAINED = {"misprint", "discrepant", "unexplained", "not-computable"}
 
-PAPERS = {paper.id: paper for paper in find_papers()}
+PAPERS = {paper.id: paper for paper in Library(bundled=True).papers()}
 
 
 @pytest.fixture(scope="module", params=sorted(PAPERS))

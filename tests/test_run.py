@@ -12,8 +12,8 @@ import pytest
 from replicate.errors import PaperDefinitionError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import ClaimsResult, FigureResult, Results, TableResult
-from replicate.run import discovery
 from replicate.run import parallel as run
+from replicate.run.library import Library
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> Iterator[Path]:
 @pytest.fixture
 def paper(folder: Path) -> Paper:
     assert folder.is_dir()
-    return discovery.find_paper("lab")
+    return Library().paper("lab")
 
 
 def computed(paper: Paper, cache: Path | None = None, jobs: int = 1) -> tuple[Results, list[run.Progress]]:
@@ -47,18 +47,18 @@ def test_an_installed_paper_is_found(paper: Paper) -> None:
 @pytest.mark.usefixtures("folder")
 def test_unknown_names_list_the_known_ones() -> None:
     with pytest.raises(UnknownPaperError, match=r"no paper 'lap'; known: .*lab"):
-        discovery.find_paper("lap")
+        Library().paper("lap")
     with pytest.raises(UnknownPaperError, match=r"lab has no exhibit 'table-9'; known: table-1, fig-1"):
-        discovery.select(["lab/table-9"])
+        Library().select(["lab/table-9"])
 
 
 @pytest.mark.usefixtures("folder")
 def test_selection_of_exhibits() -> None:
-    papers, exhibits = discovery.select(["lab/fig-1", "lab/table-1"])
+    papers, exhibits = Library().select(["lab/fig-1", "lab/table-1"])
     assert [paper.id for paper in papers] == ["lab"]
     assert exhibits == [("lab", "fig-1"), ("lab", "table-1")]
-    assert discovery.select(["lab"])[1] is None
-    assert discovery.select(["lab", "lab/fig-1"])[1] == [("lab", id) for id in papers[0].exhibits]
+    assert Library().select(["lab"])[1] is None
+    assert Library().select(["lab", "lab/fig-1"])[1] == [("lab", id) for id in papers[0].exhibits]
 
 
 @pytest.mark.parametrize("value", ["lab_paper:nothing", "no_such_module:paper", "lab_paper:__name__"])
@@ -66,14 +66,14 @@ def test_an_entry_point_that_names_no_paper_is_refused(folder: Path, value: str)
     points = folder.parent / "lab_paper-1.0.dist-info" / "entry_points.txt"
     points.write_text(f"[replicate.papers]\nlab = {value}\n")
     with pytest.raises(PaperDefinitionError, match="entry point 'lab'"):
-        discovery.known_papers()
+        Library().paper("lab")
 
 
 def test_two_papers_of_one_name_are_refused(folder: Path) -> None:
     points = folder.parent / "lab_paper-1.0.dist-info" / "entry_points.txt"
     points.write_text("[replicate.papers]\nlab = lab_paper:paper\nlab2 = lab_paper:paper\n")
     with pytest.raises(PaperDefinitionError, match="there is a paper 'lab' already"):
-        discovery.known_papers()
+        Library().paper("lab")
 
 
 def test_everything_computable_is_computed(paper: Paper) -> None:

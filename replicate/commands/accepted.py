@@ -8,69 +8,78 @@ import typer
 
 from replicate.commands.options import (
     BROKEN,
-    BUILD,
     DIFFERS,
     Accepted,
+    Bundled,
     Jobs,
     Names,
     NoCache,
     Out,
+    PapersDir,
     accepted_folder,
+    exit_with,
+    library,
+    output_folder,
     recompute,
 )
 
 
 def diff(
     names: Names = None,
+    papers_dir: PapersDir = None,
+    bundled: Bundled = False,
     jobs: Jobs = None,
-    out: Out = BUILD,
+    out: Out = None,
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
-    """Say what differs from the accepted state.
+    """Show what differs from the accepted state, in words here and in pictures on a page.
 
-    In words, and in pictures in build/diff/index.html. Exit status 1 if something does.
+    The page is diff/index.html in the output folder. Exit status 1 if something differs.
     """
     from replicate.diff.comparison import compare
     from replicate.diff.outputs import write_diff
-    from replicate.run.discovery import select
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.differences import print_comparison
 
-    baseline = accepted_folder(accepted)
-    with staged(out) as fresh:
-        papers, selection = select(names or ())
-        outcome = recompute(papers, selection, jobs, out, no_cache)
-        comparison = compare(outcome, baseline)
+    within = library(papers_dir, bundled)
+    folder = output_folder(within, out)
+    with staged(folder) as fresh:
+        papers, selection = within.select(names or ())
+        baseline = accepted_folder(within, papers, accepted)
+        outcome = recompute(papers, selection, jobs, folder, no_cache)
+        comparison = compare(outcome, baseline, within.ids())
         print_comparison(comparison, console())  # before anything else can go wrong
         write_diff(comparison, outcome, fresh, jobs)
-    typer.echo(f"pictures: {out / 'diff' / 'index.html'}")
-    if comparison.broken or not comparison.compared:
-        raise typer.Exit(BROKEN)
-    raise typer.Exit(DIFFERS if comparison.changes else 0)
+    typer.echo(f"pictures: {folder / 'diff' / 'index.html'}")
+    broken = comparison.broken or not comparison.compared
+    exit_with(within, outcome, BROKEN if broken else DIFFERS if comparison.changes else 0)
 
 
 def accept(
     names: Names = None,
     reason: Annotated[str, typer.Option("--reason", help="Why the present state is right.")] = "",
+    papers_dir: PapersDir = None,
+    bundled: Bundled = False,
     jobs: Jobs = None,
-    out: Out = BUILD,
+    out: Out = None,
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
     """Make the present state the accepted one."""
     from replicate.diff.accept import accept as accept_state
     from replicate.diff.accept import require_reason
-    from replicate.run.discovery import select
     from replicate.terminal.console import console
     from replicate.terminal.differences import print_changes
 
     require_reason(reason)
-    baseline = accepted_folder(accepted)
-    papers, selection = select(names or ())
-    outcome = recompute(papers, selection, jobs, out, no_cache)
-    comparison = accept_state(outcome, baseline, reason)
+    within = library(papers_dir, bundled)
+    papers, selection = within.select(names or ())
+    folder = accepted_folder(within, papers, accepted, writing=True)
+    outcome = recompute(papers, selection, jobs, output_folder(within, out), no_cache)
+    comparison = accept_state(outcome, folder, reason, within.ids())
     print_changes(comparison, console())
     changes = len(comparison.changes)
-    typer.echo(f"changes accepted: {changes}" if changes else "nothing differs from the accepted state")
+    typer.echo(f"changes accepted: {changes}; in {folder}" if changes else f"nothing differs from {folder}")
+    exit_with(within, outcome)

@@ -2,28 +2,39 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from replicate.errors import AcceptedStateError
+from replicate.errors import AcceptedStateError, ProjectError
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
+    from replicate.run.library import Library
     from replicate.run.outcome import Outcome, Selection
 
 DIFFERS, BROKEN = 1, 2
 
 Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes; default: one per core.")]
-Out = Annotated[Path, typer.Option("--out", help="Folder for what a run leaves behind.", file_okay=False)]
+Out = Annotated[
+    Path | None,
+    typer.Option("--out", help="Folder for what a run leaves behind; default: the project's.", file_okay=False),
+]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Compute everything anew, keep nothing.")]
 Accepted = Annotated[
     Path | None,
     typer.Option("--accepted", help="Folder of the accepted state; default: the project's own."),
 ]
-Papers = Annotated[list[str] | None, typer.Argument(metavar="PAPER", help="Default: all papers.")]
-Names = Annotated[list[str] | None, typer.Argument(metavar="PAPER[/EXHIBIT]", help="Default: all papers.")]
+Papers = Annotated[list[str] | None, typer.Argument(metavar="PAPER", help="Default: the project's papers.")]
+Names = Annotated[list[str] | None, typer.Argument(metavar="PAPER[/EXHIBIT]", help="Default: the project's papers.")]
+
+PapersDir = Annotated[
+    list[Path] | None,
+    typer.Option("--papers", metavar="DIR", help="Folder that holds papers; may be given several times."),
+]
+Bundled = Annotated[bool, typer.Option("--bundled", help="The papers that come with replicate.")]
 
 BUILD = Path("build")
 MOST_FAILURES = 12
@@ -49,21 +60,61 @@ def tell_failures(outcome: Outcome) -> None:
         typer.echo(f"failed: {len(outcome.failures) - MOST_FAILURES} more", err=True)
 
 
-def exit_if_broken(outcome: Outcome) -> None:
-    """Report what raised, and end with the status of a broken run if anything did."""
-    tell_failures(outcome)
-    if outcome.failures:
-        raise typer.Exit(BROKEN)
+def library(folders: list[Path] | None = None, bundled: bool = False) -> Library:
+    """Return the papers within reach of a command: those of the project, of the folders given, and the bundled ones."""
+    from replicate.run.library import Library
+    from replicate.run.project import find_project
+
+    return Library(find_project(), tuple(folders or ()), bundled)
 
 
-def accepted_folder(folder: Path | None) -> Path:
-    """Return the folder of the accepted state: the one named, or the project's own."""
+def output_folder(papers: Library, out: Path | None) -> Path:
+    """Return where a run leaves what it makes: the folder named, the project's, or ``build`` here."""
+    if out is not None:
+        return out
+    return shortest(papers.project.out) if papers.project is not None else BUILD
+
+
+def accepted_folder(papers: Library, chosen: Sequence[Paper], folder: Path | None, *, writing: bool = False) -> Path:
+    """Return the folder of the accepted state: the one named, the project's, or that of the bundled papers.
+
+    Raises
+    ------
+    ProjectError
+        If there is neither a project nor a folder named; the state of the bundled papers is read, never written.
+    """
     from replicate.resources import accepted_dir
 
     if folder is not None:
         return folder
-    try:
-        return accepted_dir()
-    except FileNotFoundError as error:
-        msg = "the folder of the accepted state, figures, is missing: restore it, or name another: --accepted"
-        raise AcceptedStateError(msg) from error
+    project = papers.project
+    foreign = not (project is not None and project.bundled) and all(papers.is_bundled(paper.id) for paper in chosen)
+    own = project is not None and all((project.accepted / paper.id).is_dir() for paper in chosen)
+    if foreign and not writing and not own:
+        try:
+            return accepted_dir()
+        except FileNotFoundError as error:
+            msg = "the accepted state of the bundled papers is missing: name another folder: --accepted"
+            raise AcceptedStateError(msg) from error
+    if project is None:
+        msg = "there is no project here: name the folder of the accepted state with --accepted, or see 'replicate init'"
+        raise ProjectError(msg)
+    return shortest(project.accepted)
+
+
+def exit_with(papers: Library, outcome: Outcome | None = None, status: int = 0) -> NoReturn:
+    """Report what raised and which papers could not be used, and end; either makes the run a broken one."""
+    broken, failed = list(papers.broken), False
+    if outcome is not None:
+        tell_failures(outcome)
+        broken += outcome.broken.values()
+        failed = bool(outcome.failures)
+    for line in broken:
+        typer.echo(f"broken: {line}", err=True)
+    raise typer.Exit(BROKEN if broken or failed else status)
+
+
+def shortest(path: Path) -> Path:
+    """Return a path as a person here would write it."""
+    here = Path.cwd()
+    return path.relative_to(here) if path.is_relative_to(here) else path

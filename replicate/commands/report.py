@@ -6,64 +6,73 @@ import typer
 
 from replicate.commands.options import (
     BROKEN,
-    BUILD,
     DIFFERS,
     Accepted,
+    Bundled,
     Jobs,
     NoCache,
     Out,
     Papers,
+    PapersDir,
     accepted_folder,
-    exit_if_broken,
+    exit_with,
+    library,
+    output_folder,
     recompute,
-    tell_failures,
 )
 
 
-def report(papers: Papers = None, jobs: Jobs = None, out: Out = BUILD, no_cache: NoCache = False) -> None:
+def report(
+    papers: Papers = None,
+    papers_dir: PapersDir = None,
+    bundled: Bundled = False,
+    jobs: Jobs = None,
+    out: Out = None,
+    no_cache: NoCache = False,
+) -> None:
     """Recompute every exhibit and write the report."""
     from replicate.report.data import write_outputs
     from replicate.report.pages import build_report
-    from replicate.run.discovery import find_papers
+    from replicate.report.site import site_of
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
 
-    with staged(out) as fresh:  # first of all, so that a folder that cannot be written is noticed at once
-        outcome = recompute(find_papers(papers or ()), None, jobs, out, no_cache)
+    within = library(papers_dir, bundled)
+    folder = output_folder(within, out)
+    with staged(folder) as fresh:  # first of all, so that a folder that cannot be written is noticed at once
+        chosen = within.papers(papers or ())
+        about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in chosen))
+        outcome = recompute(chosen, None, jobs, folder, no_cache)
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
-        pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report")
-        index = out / "report" / pages[0].name
+        pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
+        index = folder / "report" / pages[0].name
     print_summary(outcome, console())
     typer.echo(f"\nreport: {index}")
-    exit_if_broken(outcome)
+    exit_with(within, outcome)
 
 
 def check(
     papers: Papers = None,
+    papers_dir: PapersDir = None,
+    bundled: Bundled = False,
     jobs: Jobs = None,
-    out: Out = BUILD,
+    out: Out = None,
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
-    """Check that every value holds or is explained.
-
-    And that nothing differs from the accepted state.
-    """
+    """Check that every value holds or is explained and that nothing differs from the accepted state."""
     from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
-    from replicate.run.discovery import find_papers
 
-    baseline = accepted_folder(accepted)
-    outcome = recompute(find_papers(papers or ()), None, jobs, out, no_cache)
-    comparison = compare(outcome, baseline)
+    within = library(papers_dir, bundled)
+    chosen = within.papers(papers or ())
+    baseline = accepted_folder(within, chosen, accepted)
+    outcome = recompute(chosen, None, jobs, output_folder(within, out), no_cache)
+    comparison = compare(outcome, baseline, within.ids())
     problems = find_problems(outcome, comparison)
     for problem in problems:
         typer.echo(problem)
-    typer.echo(
-        f"problems: {len(problems)}; comparisons: {outcome.judgement.compared}; exhibits: {len(outcome.results)}"
-    )
-    tell_failures(outcome)
-    if comparison.broken:
-        raise typer.Exit(BROKEN)
-    raise typer.Exit(DIFFERS if problems else 0)
+    comparisons = outcome.judgement.compared
+    typer.echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
+    exit_with(within, outcome, BROKEN if comparison.broken else DIFFERS if problems else 0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Collection
 from pathlib import Path
 
 from replicate.diff.accepted import files_of, state_files
@@ -17,7 +18,7 @@ _TITLE = "# What was accepted, and why\n"
 _LINES = 40
 
 
-def accept(outcome: Outcome, folder: Path, reason: str) -> Comparison:
+def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] | None = None) -> Comparison:
     """Make the present state the accepted one.
 
     Exhibits that do not differ keep their files, picture included, byte for byte. The reason and what changed
@@ -27,6 +28,8 @@ def accept(outcome: Outcome, folder: Path, reason: str) -> Comparison:
     ----------
     folder
         The accepted folder; it is created if it does not exist.
+    known
+        As for `replicate.diff.comparison.compare`.
 
     Returns
     -------
@@ -44,7 +47,7 @@ def accept(outcome: Outcome, folder: Path, reason: str) -> Comparison:
     if outcome.failures:
         msg = f"nothing is accepted, because an exhibit could not be computed: {outcome.failures[0]}"
         raise ReplicateError(msg)
-    comparison = compare(outcome, folder)
+    comparison = compare(outcome, folder, known)
     changes = comparison.changes
     if not changes:
         return comparison

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from replicate.diff.comparison import Comparison, compare
 from replicate.run.outcome import Outcome
+from replicate.verdicts.open_work import open_work
 
 
 def check(outcome: Outcome, accepted: Path) -> list[str]:
@@ -28,6 +29,7 @@ def problems(outcome: Outcome, comparison: Comparison) -> list[str]:
     """Return one line for each problem of a run that has been compared with the accepted state."""
     judgement = outcome.judgement
     found = list(judgement.problems)
+    found += [line for paper in outcome.papers for line in open_work(paper)]
     if not judgement.compared:
         found.append("no printed value was compared with a computed one")
     # Judging has named the exhibits that raised already.

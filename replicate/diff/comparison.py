@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -15,7 +15,6 @@ from replicate.exhibits.results import ClaimsResult, FigureResult, Result, error
 from replicate.figures.axes import compare_axes
 from replicate.figures.curves import compare_curves
 from replicate.figures.pair import Pair
-from replicate.run.discovery import known_papers
 from replicate.run.outcome import Outcome
 
 Kind = Literal["table", "claims", "figure", ""]
@@ -125,7 +124,7 @@ class Comparison:
         return any(exhibit.failed or exhibit.damaged for exhibit in self.exhibits)
 
 
-def compare(outcome: Outcome, folder: Path) -> Comparison:
+def compare(outcome: Outcome, folder: Path, known: Collection[str] | None = None) -> Comparison:
     """Compare what a run computed with the accepted state.
 
     Parameters
@@ -134,10 +133,13 @@ def compare(outcome: Outcome, folder: Path) -> Comparison:
         The accepted folder, one folder per paper in it. If the run was complete, an accepted exhibit that no
         longer exists is a change, too. So is an accepted file that is damaged: it keeps no other exhibit from
         being compared.
+    known
+        Ids of all papers that there are: accepted exhibits of any other are reported as no longer computed. Not given:
+        nothing is said of other papers.
     """
     exhibits = [_compare(outcome, result, folder) for result in outcome.results.values()]
     if outcome.complete:
-        exhibits += _no_longer_computed(outcome, folder)
+        exhibits += _no_longer_computed(outcome, folder, known)
     return Comparison(exhibits)
 
 
@@ -177,11 +179,13 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
     return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells)
 
 
-def _no_longer_computed(outcome: Outcome, folder: Path) -> list[ExhibitDiff]:
+def _no_longer_computed(outcome: Outcome, folder: Path, known: Collection[str] | None) -> list[ExhibitDiff]:
     """Return the accepted exhibits that the papers do not have any more, and those of papers that are gone."""
     papers = [paper.id for paper in outcome.papers]
-    known = {*papers, *known_papers()}
-    gone = [path.name for path in sorted(folder.glob("*/")) if path.name not in known and path.name[0] != "."]
+    gone = []
+    if known is not None:
+        there = {*papers, *known}
+        gone = [path.name for path in sorted(folder.glob("*/")) if path.name not in there and path.name[0] != "."]
     found = {
         (paper, path.stem): None
         for paper in (*papers, *gone)

@@ -19,8 +19,8 @@ from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import Results
 from replicate.report.errata import errata
 from replicate.report.notes import Piece, pieces, place
+from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
-from replicate.resources import templates_dir
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import Judgement, VerdictRow
 
@@ -81,7 +81,9 @@ def page_name(paper: str, part: str) -> str:
     return f"{paper}-{part}.html" if part else f"{paper}.html"
 
 
-def build_report(papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path) -> list[Path]:
+def build_report(
+    papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path, about: Site | None = None
+) -> list[Path]:
     """Write the report.
 
     Parameters
@@ -92,6 +94,8 @@ def build_report(papers: Sequence[Paper], results: Results, judgement: Judgement
         What was computed, by (paper, exhibit).
     judgement
         Of all papers together.
+    about
+        Title, introduction and methods of the report as a whole.
     out_dir
         Folder of the pages; figures and tables are expected in ``../figures`` and ``../tables``.
 
@@ -108,14 +112,16 @@ def build_report(papers: Sequence[Paper], results: Results, judgement: Judgement
         If a file cannot be written.
     """
     site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
-    methods = (templates_dir() / "methods.md").read_text(encoding="utf-8")
-    texts = {
-        INDEX: render("index.html", INDEX, site=site, papers=papers),
-        METHODS: render("methods.html", METHODS, methods=methods),
-    }
+    about = about or Site()
+    shared = {"about": about, "language": about.language, "theme": about.theme}
+    texts = {INDEX: render("index.html", INDEX, site=site, papers=papers, **shared)}
+    if about.methods:
+        texts[METHODS] = render("methods.html", METHODS, **shared)
     for pages in site.values():
         for page in pages:
-            texts[page.file] = render("paper.html", page.file, page=page, pages=pages, mistakes=errata(page.exhibits))
+            texts[page.file] = render(
+                "paper.html", page.file, page=page, pages=pages, mistakes=errata(page.exhibits), **shared
+            )
     written = []
     for name, text in texts.items():
         path = out_dir / name

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from replicate.errors import ReplicateError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.run.parallel import Progress, failures, run
-from replicate.verdicts.inputs import read_inputs
+from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.rows import Judgement
 
@@ -24,12 +25,15 @@ class Outcome:
     ----------
     complete
         Whether every exhibit of the papers was computed, not just a selection.
+    broken
+        By id: why a paper was left out.
     """
 
     papers: Sequence[Paper]
     results: Results
     judgements: dict[str, Judgement]
     complete: bool = True
+    broken: dict[str, str] = field(default_factory=dict)
 
     @property
     def judgement(self) -> Judgement:
@@ -65,12 +69,22 @@ def recompute(
     Raises
     ------
     ReplicateError
-        If a data file of a paper is malformed, or a worker process died. An exhibit that raises is a result.
+        If no paper is left whose data files can be read, or a worker process died. An exhibit that raises is a result,
+        a paper with a malformed data file is left out and named.
     """
-    inputs = {paper.id: read_inputs(paper) for paper in papers}  # before computing: a typing error is reported at once
+    inputs: dict[str, Inputs] = {}
+    broken: dict[str, ReplicateError] = {}
+    for paper in papers:  # before computing: a typing error is reported at once
+        try:
+            inputs[paper.id] = read_inputs(paper)
+        except ReplicateError as error:
+            broken[paper.id] = error
+    papers = [paper for paper in papers if paper.id in inputs]
+    if not papers:
+        raise next(iter(broken.values()))
     results = run(papers, selection, jobs=jobs, cache_dir=cache_dir, progress=progress)
     judgements = {}
     for paper in papers:
         exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]
         judgements[paper.id] = judge(paper, results, inputs[paper.id], exhibits=exhibits)
-    return Outcome(papers, results, judgements, complete=selection is None)
+    return Outcome(papers, results, judgements, selection is None, {id: str(error) for id, error in broken.items()})

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from replicate.exhibits import Paper
-from replicate.run.discovery import find_papers
+from replicate.run.library import Library
 
-PAPERS = find_papers()
+PAPERS = Library(bundled=True).papers()
 by_paper = pytest.mark.parametrize("paper", PAPERS, ids=[paper.id for paper in PAPERS])
 
 
@@ -43,7 +43,7 @@ def test_tables_figures_and_examples_are_numbered_upwards(paper: Paper) -> None:
     ],
 )
 def test_what_stands_before_what_in_the_paper(id: str, earlier: str, later: str) -> None:
-    (paper,) = find_papers([id])
+    (paper,) = Library().papers([id])
     order = list(paper.exhibits)
     assert order.index(earlier) < order.index(later)
 

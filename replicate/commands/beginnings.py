@@ -1,0 +1,48 @@
+"""Begin a project, or a paper in one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from replicate.commands.options import library, shortest
+from replicate.errors import PaperDefinitionError
+
+
+def init(
+    folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Created if it does not exist.")],
+    title: Annotated[str, typer.Option("--title", help="Title of the report.")] = "",
+) -> None:
+    """Begin a project: a folder with a project file, a place for papers, a Makefile and a workflow for CI."""
+    from replicate.new_project import new_project
+
+    new_project(folder, title)
+    typer.echo(
+        f"Created {folder}. Next steps:\n"
+        f"  cd {folder}\n"
+        "  replicate new PAPER     # begins a paper in papers/PAPER\n"
+        "  replicate report"
+    )
+
+
+def new(
+    paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
+) -> None:
+    """Begin a paper: in the project's folder of papers, or here if there is no project."""
+    from replicate.new_paper import new_paper
+
+    within = library()
+    if paper in within.ids():
+        msg = f"there is a paper '{paper}' already; choose another id"
+        raise PaperDefinitionError(msg)
+    homes = within.project.papers if within.project is not None else ()
+    folder = new_paper(paper, homes[0] if homes else Path())
+    option, state = ("", "") if homes else (" --papers .", " --accepted accepted")
+    typer.echo(
+        f"Created {shortest(folder.resolve())}. Next steps:\n"
+        f"  replicate report {paper}{option}\n"
+        f"  replicate check {paper}{option}{state}     # lists what is still to do\n"
+        f"  replicate accept {paper}{option}{state} --reason 'first'"
+    )

@@ -1,0 +1,40 @@
+"""The starting point of a project: a folder that holds papers, their accepted state and what CI needs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from replicate.errors import OutputError
+from replicate.new_paper import write_templates
+
+_PLACES = {
+    "replicate.toml": "replicate.toml",
+    "README.md": "README.md",
+    "Makefile": "Makefile",
+    "gitignore": ".gitignore",
+    "workflow.yml": ".github/workflows/replicate.yml",
+    "papers.md": "papers/README.md",
+}
+
+
+def new_project(folder: Path, title: str = "") -> None:
+    """Write a project into a folder.
+
+    Parameters
+    ----------
+    folder
+        Created if it does not exist; files of other names in it stay as they are.
+    title
+        Of the report; default: made of the folder's name.
+
+    Raises
+    ------
+    OutputError
+        If one of the files exists already, or the folder cannot be written.
+    """
+    for place in dict.fromkeys(Path(place).parts[0] for place in _PLACES.values()):
+        if (folder / place).exists():
+            msg = f"{folder / place}: exists already; nothing was written"
+            raise OutputError(msg)
+    words = folder.resolve().name.replace("-", " ").replace("_", " ")
+    write_templates("new_project", _PLACES, folder, title=title or words[:1].upper() + words[1:])

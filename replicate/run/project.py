@@ -1,0 +1,180 @@
+"""A project: a folder with a project file that says which papers it holds, what its report is called, what is where.
+
+The file is ``replicate.toml``, or the table ``[tool.replicate]`` of a ``pyproject.toml``. It is found from the current
+folder upwards. All paths in it are relative to its folder::
+
+    title = "My replications"
+    intro = "What a reader should know first."     # Markdown
+    methods = "methods.md"                         # a page on how the numbers are computed
+    papers = ["papers"]                            # folders of papers, or names of installed ones
+    accepted = "accepted"                          # the state that diff and check compare with
+    out = "build"
+    language = "en"
+
+    [theme]                                        # colours of the report
+    accent = "#0b5cad"
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from replicate.errors import ProjectError
+
+FILE = "replicate.toml"
+PYPROJECT = "pyproject.toml"
+
+_TEXTS = ("title", "intro", "language")
+_PATHS = ("accepted", "out")
+_KEYS = ("title", "intro", "methods", "papers", "bundled", "accepted", "out", "language", "theme")
+_THEME = ("accent", "paper", "ink")
+_COLOUR = re.compile(r"#[0-9a-fA-F]{3}([0-9a-fA-F]{3})?")
+_LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]{2,8})*")
+
+
+@dataclass(frozen=True)
+class Project:
+    """A project file, read and checked.
+
+    Attributes
+    ----------
+    root, file
+        Its folder, and the file itself.
+    methods
+        A Markdown file; ``None`` if the report has no page on methods.
+    papers
+        Folders that hold papers.
+    installed
+        Ids of installed papers that belong to the project.
+    bundled
+        Whether the papers that come with this package belong to it.
+    accepted, out
+        Folder of the accepted state, and of what a run leaves behind.
+    theme
+        Colours by name: ``accent``, ``paper``, ``ink``.
+    """
+
+    root: Path
+    file: Path
+    title: str = ""
+    intro: str = ""
+    methods: Path | None = None
+    papers: tuple[Path, ...] = ()
+    installed: tuple[str, ...] = ()
+    bundled: bool = False
+    accepted: Path = Path("accepted")
+    out: Path = Path("build")
+    language: str = "en"
+    theme: dict[str, str] = field(default_factory=dict)
+
+
+def find_project(start: Path | None = None) -> Project | None:
+    """Return the project of a folder: the nearest project file in it or above; ``None`` if there is none.
+
+    Parameters
+    ----------
+    start
+        Default: the current folder.
+
+    Raises
+    ------
+    ProjectError
+        If the file is malformed; the message names file, line and what is allowed.
+    """
+    here = (start or Path()).resolve()
+    for folder in (here, *here.parents):
+        if (folder / FILE).is_file():
+            return read_project(folder / FILE)
+        pyproject = folder / PYPROJECT
+        if pyproject.is_file() and "replicate" in _tables(pyproject).get("tool", {}):
+            return read_project(pyproject)
+    return None
+
+
+def read_project(path: Path) -> Project:
+    """Read a project file.
+
+    Raises
+    ------
+    ProjectError
+        If it is malformed, or names a file or folder that does not exist.
+    """
+    data: Any = _tables(path)
+    if path.name == PYPROJECT:
+        data = data["tool"]["replicate"]
+        if not isinstance(data, dict):
+            raise _wrong(path, "replicate", "[tool.replicate] is not a table")
+    for key in data:
+        if key not in _KEYS:
+            raise _wrong(path, key, f"'{key}' is unknown; allowed: {', '.join(_KEYS)}")
+    for key in (*_TEXTS, *_PATHS, "methods"):
+        if not isinstance(data.get(key, ""), str):
+            raise _wrong(path, key, f"{key} is {data[key]!r}; needed: a text in quotes")
+    if not isinstance(data.get("bundled", False), bool):
+        raise _wrong(path, "bundled", f"bundled is {data['bundled']!r}; needed: true or false")
+    language = data.get("language", "en")
+    if not _LANGUAGE.fullmatch(language):
+        raise _wrong(path, "language", f"language is {language!r}; needed: a tag such as 'en' or 'pt-BR'")
+    root = path.parent
+    methods = root / data["methods"] if data.get("methods") else None
+    if methods is not None and not methods.is_file():
+        raise _wrong(path, "methods", f"methods: there is no file {data['methods']}")
+    folders, installed = _papers(path, data)
+    return Project(
+        root,
+        path,
+        title=data.get("title", ""),
+        intro=data.get("intro", ""),
+        methods=methods,
+        papers=folders,
+        installed=installed,
+        bundled=data.get("bundled", False),
+        accepted=root / (data.get("accepted") or "accepted"),
+        out=root / (data.get("out") or "build"),
+        language=language,
+        theme=_theme(path, data.get("theme", {})),
+    )
+
+
+def _papers(path: Path, data: dict[str, Any]) -> tuple[tuple[Path, ...], tuple[str, ...]]:
+    """Tell folders from names of installed papers: a name is one if there is no such folder."""
+    names = data.get("papers", [] if data.get("bundled") else ["papers"])
+    if not isinstance(names, list) or not all(isinstance(name, str) and name for name in names):
+        raise _wrong(path, "papers", f"papers is {names!r}; needed: a list of folders or names of installed papers")
+    folders, installed = [], []
+    for name in names:
+        if (path.parent / name).is_dir():
+            folders.append(path.parent / name)
+        elif re.fullmatch(r"[A-Za-z][\w.-]*", name) and name != "papers":
+            installed.append(name)
+        elif "papers" in data:
+            raise _wrong(path, "papers", f"papers: there is no folder {name}")
+    return tuple(folders), tuple(installed)
+
+
+def _theme(path: Path, theme: object) -> dict[str, str]:
+    if not isinstance(theme, dict):
+        raise _wrong(path, "theme", f"theme is {theme!r}; needed: a table of colours")
+    for name, colour in theme.items():
+        if name not in _THEME or not isinstance(colour, str) or not _COLOUR.fullmatch(colour):
+            allowed = f"{', '.join(_THEME)}, each a colour such as '#0b5cad'"
+            raise _wrong(path, name, f"theme: {name} = {colour!r}; allowed: {allowed}")
+    return theme
+
+
+def _tables(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        msg = f"{path.name}: is not readable TOML: {getattr(error, 'strerror', None) or error}"
+        raise ProjectError(msg) from error
+
+
+def _wrong(path: Path, key: str, why: str) -> ProjectError:
+    lines = path.read_text(encoding="utf-8").splitlines()
+    found = (number for number, line in enumerate(lines, 1) if re.match(rf"\s*\[?(tool\.)?{re.escape(key)}\b", line))
+    return ProjectError(f"{path.name}:{next(found, 1)}: {why}")

@@ -1,0 +1,174 @@
+"""Which papers a command means, inside a project and outside."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from replicate.errors import ProjectError, UnknownPaperError
+from replicate.new_paper import new_paper
+from replicate.new_project import new_project
+from replicate.run.library import Library
+from replicate.run.project import find_project
+
+Run = Callable[..., tuple[int, str, str]]
+
+BUNDLED = ["ali", "bayhan", "khan", "krajewski", "panagopoulos"]
+
+
+def made(folder: Path, *papers: str) -> Path:
+    new_project(folder)
+    for paper in papers:
+        new_paper(paper, folder / "papers")
+    return folder
+
+
+def ids(library: Library) -> list[str]:
+    return [paper.id for paper in library.papers()]
+
+
+def test_a_project_is_found_from_below(tmp_path: Path) -> None:
+    root = made(tmp_path / "mine", "gauss")
+    project = find_project(root / "papers" / "gauss")
+    assert project is not None
+    assert project.root == root.resolve()
+    assert project.title == "Mine"
+    assert ids(Library(project)) == ["gauss"]
+    assert find_project(tmp_path) is None
+
+
+def test_a_project_in_pyproject(tmp_path: Path) -> None:
+    new_paper("gauss", tmp_path / "replications")
+    (tmp_path / "pyproject.toml").write_text('[tool.replicate]\npapers = ["replications"]\naccepted = "state"\n')
+    project = find_project(tmp_path)
+    assert project is not None
+    assert project.accepted == tmp_path.resolve() / "state"
+    assert ids(Library(project)) == ["gauss"]
+
+
+def test_bundled_papers_are_meant_on_request_only(tmp_path: Path) -> None:
+    project = find_project(made(tmp_path, "gauss"))
+    assert ids(Library(project, bundled=True)) == BUNDLED
+    assert Library(project).paper("khan").id == "khan"  # a paper that is named is found everywhere
+    assert not Library(project).is_bundled("gauss")
+    assert Library(project).is_bundled("khan")
+
+
+def test_outside_a_project_a_bare_command_says_what_to_do() -> None:
+    with pytest.raises(ProjectError, match=r"no project here; 'replicate init FOLDER' .* --bundled"):
+        Library().papers()
+
+
+def test_the_checkout_is_a_project_with_the_bundled_papers() -> None:
+    project = find_project(Path(__file__).parent)
+    assert project is not None
+    assert ids(Library(project)) == BUNDLED
+
+
+def test_folders_of_papers(tmp_path: Path) -> None:
+    new_paper("gauss", tmp_path)
+    new_paper("euler", tmp_path / "replicate-euler" / "src")
+    (tmp_path / "replicate-euler" / "pyproject.toml").write_text('[project]\nname = "replicate-euler"\n')
+    (tmp_path / "helpers").mkdir()
+    (tmp_path / "helpers" / "__init__.py").write_text("")
+    assert ids(Library(folders=[tmp_path])) == ["gauss", "euler"]
+    assert ids(Library(folders=[tmp_path / "gauss"])) == ["gauss"]
+    with pytest.raises(UnknownPaperError, match="there is no folder nowhere"):
+        Library(folders=[Path("nowhere")]).papers()
+
+
+def test_two_projects_with_a_paper_of_one_name(tmp_path: Path) -> None:
+    for name in ("one", "other"):
+        made(tmp_path / name, "gauss")
+        file = tmp_path / name / "papers" / "gauss" / "__init__.py"
+        file.write_text(file.read_text().replace("TODO: title of the paper", name))
+        assert Library(find_project(tmp_path / name)).paper("gauss").title == name
+
+
+def test_a_paper_with_the_name_of_a_library_is_refused(tmp_path: Path) -> None:
+    new_paper("gauss", tmp_path).rename(tmp_path / "scipy")
+    library = Library(folders=[tmp_path])
+    new_paper("euler", tmp_path)
+    assert ids(library) == ["euler"]
+    assert library.broken == [
+        f"{tmp_path.name}/scipy: another module on this machine is called 'scipy'; rename the folder"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('titel = "x"', "replicate.toml:1: 'titel' is unknown; allowed: title, intro, methods, papers,"),
+        ("title = 3", "replicate.toml:1: title is 3; needed: a text in quotes"),
+        ('# why\npapers = "papers"', "replicate.toml:2: papers is 'papers'; needed: a list of folders"),
+        ('papers = ["../nowhere"]', "replicate.toml:1: papers: there is no folder ../nowhere"),
+        ('methods = "m.md"', "replicate.toml:1: methods: there is no file m.md"),
+        ('[theme]\naccent = "red"', "replicate.toml:2: theme: accent = 'red'; allowed: accent, paper, ink, each a"),
+        ('language = "English"', "replicate.toml:1: language is 'English'; needed: a tag such as 'en'"),
+        ("title = ", "replicate.toml: is not readable TOML: "),
+    ],
+)
+def test_a_malformed_project_file(text: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "replicate.toml").write_text(text)
+    with pytest.raises(ProjectError, match=re.escape(message)):
+        find_project(tmp_path)
+
+
+def test_an_installed_paper_that_is_not_installed(tmp_path: Path) -> None:
+    (tmp_path / "replicate.toml").write_text('papers = ["gauss"]')
+    with pytest.raises(ProjectError, match=r"papers: there is neither a folder nor an installed paper 'gauss'"):
+        Library(find_project(tmp_path)).papers()
+
+
+def test_one_broken_paper_breaks_nothing_else(replicate: Run) -> None:
+    assert replicate("init", "mine")[0] == 0
+    (Path("mine") / "here").mkdir()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir("mine")
+        replicate("new", "gauss")
+        replicate("new", "euler")
+        replicate("new", "riemann")
+        with Path("papers/gauss/claims.py").open("a") as file:
+            file.write("ratio = 1 / 0\n")
+        Path("papers/riemann/printed/table-1.csv").write_text("row,mean,sd\nA,1.0,x\nB,1,1\nC,1,1\n")
+        status, out, err = replicate("report", "-j1")
+        assert status == 2
+        assert "report: build/report/index.html" in out
+        assert "broken: papers/gauss cannot be loaded: gauss/claims.py:20: ZeroDivisionError" in err
+        assert "broken: riemann/printed/table-1.csv:2: column 'sd': 'x' is not a number" in err
+        assert Path("build/report/euler.html").is_file()
+        assert not Path("build/report/gauss.html").exists()
+        page = Path("build/report/index.html").read_text()
+        assert "<h1>Mine</h1>" in page
+        assert "PID" not in page
+        assert "dead time" not in page
+        assert not Path("build/report/methods.html").exists()
+
+
+def test_accepting_says_where(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    replicate("init", "mine")
+    monkeypatch.chdir("mine")
+    replicate("new", "gauss")
+    Path("below").mkdir()
+    monkeypatch.chdir("below")
+    status, out, _ = replicate("accept", "gauss", "--reason", "first", "-j1")
+    assert status == 0
+    assert "changes accepted: 3; in " in out
+    assert Path("../accepted/gauss/table-1.csv").is_file()
+    assert replicate("diff", "-j1")[0] == 0
+    monkeypatch.chdir("../..")
+    status, _, err = replicate("accept", "gauss", "--papers", "mine/papers", "--reason", "x", "-j1")
+    assert status == 2
+    assert "there is no project here: name the folder of the accepted state with --accepted" in err
+
+
+def test_a_paper_that_lies_here_is_pointed_at(replicate: Run) -> None:
+    replicate("new", "simc")
+    status, _, err = replicate("report", "simc")
+    assert status == 2
+    assert "there is no paper 'simc'" in err
+    assert "There is a folder simc here: --papers . includes it" in err
+    assert replicate("report", "simc", "--papers", ".", "-j1")[0] == 0
