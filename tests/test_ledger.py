@@ -38,6 +38,9 @@ Tried two definitions,
 neither fits.\"\"\"
 reading = "authors"
 evidence = "None."
+consequence = "comparison"
+informed = "Letter of 2 May 2001"
+answer = "They agree."
 """
     ledger = load(tmp_path, text)
     assert ledger.entries == (
@@ -50,6 +53,9 @@ evidence = "None."
             "Tried two definitions, neither fits.",
             reading="authors",
             evidence="None.",
+            consequence="comparison",
+            informed="Letter of 2 May 2001",
+            answer="They agree.",
             line=10,
         ),
     )
@@ -91,7 +97,7 @@ def test_every_cause_is_accepted(tmp_path: Path, cause: str) -> None:
         ),
         ('"table-1"', '"fig-1"', r":2: exhibit 'fig-1' has no printed values to explain; allowed: 'table-1'"),
         ('"table-1"', '"claims"', r":2: exhibit 'claims' has no printed values to explain; .*"),
-        ('"misprint"', '"typo"', r":2: cause 'typo' is unknown; allowed: misprint, scan, .*, unknown"),
+        ('"misprint"', '"typo"', r":2: cause 'typo' is unknown; allowed: misprint, print-or-copy, scan, .*, unknown"),
         ('"misprint"', '["misprint"]', r":2: cause \['misprint'\] is unknown; allowed: .*"),
         ('"A digit is wrong."', '" "', r":2: explanation = ' '; needed: a text in quotes that is not empty"),
         (
@@ -112,6 +118,13 @@ def test_every_cause_is_accepted(tmp_path: Path, cause: str) -> None:
         ),
         ('["A"]', '["A", "B"]\ncorrected = "1"', r":2: 'corrected' is one value, so .* exactly one row .*"),
         ('["A"]', '"*"\ncorrected = "1"', r":2: 'corrected' is one value, so .*"),
+        (
+            '"misprint"',
+            '"misprint"\nconsequence = "bad"',
+            r":2: consequence 'bad' is unknown; allowed: none, .*, formula",
+        ),
+        ('"misprint"', '"misprint"\nconsequence = "safety"', r":2: consequence = 'safety' needs evidence, .*"),
+        ('"misprint"', '"misprint"\nanswer = "Yes."', r":2: 'answer' is given, but not when .*; needed: 'informed'"),
         ("[[entry]]", "[[entries]]", r": allowed is a list of \[\[entry\]\] .*; found 'entries'"),
         ("[[entry]]", "[entry]", r": allowed is a list of \[\[entry\]\] tables and nothing else"),
         ('["A"]', '["A"', r": is not readable TOML: .*line.*"),

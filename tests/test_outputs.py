@@ -44,7 +44,7 @@ def test_the_three_lists(tmp_path: Path) -> None:
     out = written(tmp_path)
     results, verdicts, exhibits = (rows(out / f"{name}.csv") for name in ("results", "verdicts", "exhibits"))
     assert tuple(results[0]) == RESULT_COLUMNS
-    assert tuple(verdicts[0]) == VERDICT_COLUMNS
+    assert tuple(verdicts[0]) == (*VERDICT_COLUMNS, "address")
     assert tuple(exhibits[0]) == EXHIBIT_COLUMNS
     assert results[0] == {
         "paper": "toy",
@@ -61,6 +61,14 @@ def test_the_three_lists(tmp_path: Path) -> None:
         "big": "holds",
         "smooth": "fails",
     }
+
+
+def test_verdicts_and_errata_end_with_the_place_in_the_report(tmp_path: Path) -> None:
+    out = written(tmp_path)
+    assert {"toy.html#table-1.A.x", "toy.html#claims.big.claim"} <= {
+        row["address"] for row in rows(out / "verdicts.csv")
+    }
+    assert [row["address"] for row in rows(out / "errata.csv")] == ["toy.html#claims.smooth.claim"]
 
 
 def test_tables_and_figures(tmp_path: Path) -> None:
@@ -99,7 +107,7 @@ def test_same_results_same_bytes(tmp_path: Path) -> None:
     one, other = written(tmp_path / "1"), written(tmp_path / "2")
     files = {path.relative_to(one): path.read_bytes() for path in one.rglob("*") if path.is_file()}
     assert files == {path.relative_to(other): path.read_bytes() for path in other.rglob("*") if path.is_file()}
-    assert len(files) == 9
+    assert len(files) == 10
     assert not any(str(tmp_path).encode() in content for content in files.values())
 
 

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -8,9 +9,10 @@ import synthetic
 
 from replicate.errors import PrintedFileError
 from replicate.exhibits import Table
+from replicate.exhibits.matching import match
 from replicate.exhibits.printed import PrintedValue, parse_number, read_printed
 
-ALLOWED = "digits with an optional sign, decimal point and exponent"
+ALLOWED = "digits with an optional sign, decimal point, repeating decimals in brackets and exponent"
 
 
 def table(significant_digits: int | None = None) -> Table:
@@ -84,7 +86,28 @@ def test_a_missing_file_is_named_without_the_machine(tmp_path: Path) -> None:
         read_printed(tmp_path / "toy" / "printed" / "none.csv", table())
 
 
-@pytest.mark.parametrize("text", ["1,2", "", " ", "--1", "1e", "1.2.3", "inf", "NaN", "0x1", "1_000", "٣", "1 2", "."])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1,2",
+        "",
+        " ",
+        "--1",
+        "1e",
+        "1.2.3",
+        "inf",
+        "NaN",
+        "0x1",
+        "1_000",
+        "٣",
+        "1 2",
+        ".",
+        "0.[]",
+        "[6]",
+        "1[6]",
+        "0.9[6]1",
+    ],
+)
 def test_not_numbers(text: str) -> None:
     assert parse_number(text) is None
     with pytest.raises(PrintedFileError, match="is not a number; allowed: digits"):
@@ -108,6 +131,8 @@ def test_not_numbers(text: str) -> None:
         ("100", 6, "0.001"),
         ("1234567", 6, "10"),
         ("0", 6, "0.000001"),
+        ("0.91[6]", None, "1e-12"),
+        ("2.[2]", 3, "1e-11"),
     ],
 )
 def test_weight_of_the_last_digit(text: str, digits: int | None, unit: str) -> None:
@@ -120,3 +145,19 @@ def test_more_digits_than_the_table_prints_are_refused(tmp_path: Path) -> None:
         PrintedFileError, match=r"^toy/printed/table-1\.csv:3: column 'y': '0\.1234' has more than the 3"
     ):
         read_printed(path, table(3))
+
+
+@pytest.mark.parametrize(
+    ("text", "fraction"),
+    [
+        ("0.91[6]", Fraction(11, 12)),
+        ("2.[2]", Fraction(20, 9)),
+        ("-.[142857]", Fraction(-1, 7)),
+        ("1.[3]e2", Fraction(400, 3)),
+    ],
+)
+def test_repeating_decimals_are_fractions(text: str, fraction: Fraction) -> None:
+    printed = PrintedValue(text)
+    assert abs(Fraction(printed.value) - fraction) < Fraction(1, 10**25)
+    assert match(printed, float(fraction)).kind == "equal"
+    assert match(printed, float(fraction) * (1 + 1e-10)).kind == "near"

@@ -13,7 +13,8 @@ from replicate.verdicts.prose import Prose
 
 COMPUTED = "computed: 'table-1', 'fig-1', 'claims'"
 VERDICTS = (
-    "reproduced, reconstructed, near, misprint, discrepant, unexplained, not-computable, holds, holds-partly, fails"
+    "reproduced, consistent, reconstructed, near, misprint, damaged, discrepant, unexplained, not-computable, "
+    "holds, holds-partly, undecided, fails"
 )
 
 

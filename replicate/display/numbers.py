@@ -10,6 +10,7 @@ from replicate.exhibits.matching import computed_text
 from replicate.exhibits.printed import MINUS, PrintedValue
 
 FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
+OVERLINE = "\N{COMBINING OVERLINE}"
 PUNCTUATION_SPACE = "\N{PUNCTUATION SPACE}"  # as wide as a decimal point
 
 _PLAIN_DIGITS = 6  # significant digits where nothing printed tells how many are of interest
@@ -44,6 +45,8 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     number = Decimal(text)
     if not number:
         return "0"
+    if printed is not None and printed.repeating:
+        printed = None
     if printed is None or not printed.value:
         place = number.adjusted() - _PLAIN_DIGITS + 1
         if printed is not None:  # a printed zero: its decimals say what is of interest
@@ -69,6 +72,19 @@ def _minus(text: str) -> str:
     return text.replace("-", MINUS)
 
 
+def overlined(printed: str) -> str:
+    r"""Return a print as the paper shows it: digits in brackets under an overbar.
+
+    Examples
+    --------
+    >>> overlined("0.916"), overlined("0.91[6]") == "0.916\N{COMBINING OVERLINE}"
+    ('0.916', True)
+    """
+    plain, _, repeated = printed.partition("[")
+    digits, _, rest = repeated.partition("]")
+    return plain + "".join(f"{digit}{OVERLINE}" for digit in digits) + rest
+
+
 def full(computed: float | None) -> str:
     """Return a number with all twelve digits that comparisons use.
 
@@ -89,7 +105,7 @@ def aligned(texts: Iterable[str]) -> dict[str, str]:
     ['1.25', '10__,']
     """
     texts = list(texts)
-    decimals = {text: len(text.partition(".")[2]) for text in texts if "e" not in text and text}
+    decimals = {text: len(text.replace(OVERLINE, "").partition(".")[2]) for text in texts if "e" not in text and text}
     most = max(decimals.values(), default=0)
     result = dict.fromkeys(texts, "")
     for text in result:

@@ -10,6 +10,7 @@ import jinja2
 from markupsafe import Markup
 
 from replicate.display import environment, numbers, scores, words
+from replicate.display.addresses import anchor
 from replicate.display.markdown import MarkdownBatch
 from replicate.resources import templates_dir
 
@@ -53,6 +54,7 @@ def render(template: str, name: str, **context: Any) -> str:
         context,
         style=Markup(style),  # noqa: S704 -- the project's own style sheet
         words=words,
+        anchor=anchor,
         scores=scores,
         numbers=numbers,
         versions=environment.versions(),

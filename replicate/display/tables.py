@@ -135,7 +135,7 @@ def _cell(table: Table, frames: Mapping[str, FrameCells], key: Key, verdict: Ver
         number = cells.numbers.get(key)
         found = judged[id].match if id in judged else Match("none")
         values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found))
-    return Cell(*key, verdict.printed if verdict else "", verdict, values)
+    return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
 
 
 def _texts(cell: Cell) -> list[str]:

@@ -27,9 +27,11 @@ VERDICTS = {
     word.id: word
     for word in (
         Word("reproduced", "✓", "as the paper says, the value rounds or truncates to the printed digits"),
+        Word("consistent", "∈", "inputs that round to the printed ones give a value that rounds to the printed digits"),
         Word("reconstructed", "↻", "the printed digits come out under another, documented reading"),
         Word("near", "≈", "within two units of the last printed digit, or within one per cent"),
-        Word("misprint", "✎", "the print is wrong, and the evidence shows what it should be"),
+        Word("misprint", "✎", "the print is wrong, whatever copy one reads; the evidence shows what it should be"),
+        Word("damaged", "⊘", "wrong in the print or in our copy of it; the evidence shows what it should be"),
         Word("discrepant", "≠", "differs for a known, documented cause; there is no single right value"),
         Word("unexplained", "?", "differs, and no cause was found; what was tried is listed"),
         Word("not-computable", "–", "measured data, or inputs that the paper does not give"),
@@ -42,6 +44,7 @@ CLAIM_VERDICTS = {
     for word in (
         Word("holds", "✓", "true, shown by the number beside it"),
         Word("holds-partly", "◐", "true in part, or only under conditions the paper does not name"),
+        Word("undecided", "○", "what the paper gives does not suffice to call it true or false"),
         Word("fails", "✗", "false, shown by the number beside it"),
     )
 }
@@ -51,6 +54,7 @@ WORDS = VERDICTS | CLAIM_VERDICTS
 
 MATCHES = {
     "equal": ("=", "equal at the printed precision"),
+    "consistent": ("∈", "equal within the rounding of the printed inputs"),
     "near": ("≈", "near"),
     "differs": ("≠", "differs"),
     "none": ("", "nothing to compare"),
@@ -59,6 +63,7 @@ MATCHES = {
 
 CAUSES = {
     "misprint": "misprint",
+    "print-or-copy": "in the paper or in the copy at hand",
     "scan": "damaged in the copy at hand",
     "definition": "another definition",
     "method": "numerical method of the time",
@@ -69,3 +74,14 @@ CAUSES = {
     "unknown": "unknown",
 }
 """By cause of a ledger entry: how the report names it."""
+
+CONSEQUENCES = {
+    word.id: word
+    for word in (
+        Word("safety", "!!", "a statement on stability or robustness flips"),
+        Word("formula", "!", "who types the printed formula gets a wrong controller"),
+        Word("comparison", "⇅", "a ranking or an inequality of the paper flips"),
+        Word("none", "", "nothing that the paper uses the number for changes"),
+    )
+}
+"""Of an error: what follows from it, worst first."""

@@ -13,7 +13,7 @@ from typing import Literal
 
 from replicate.exhibits.printed import PrintedValue
 
-MatchKind = Literal["equal", "near", "differs", "none"]
+MatchKind = Literal["equal", "consistent", "near", "differs", "none"]
 MatchHow = Literal["rounded", "truncated", ""]
 
 COMPUTED_DIGITS = 12
@@ -32,8 +32,9 @@ class Match:
     Attributes
     ----------
     kind
-        ``equal``: the computed value rounds, or truncates, to the print. ``near``: within 2 units of the
-        last printed digit or 1 % of the print. ``differs``: neither. ``none``: nothing was computed.
+        ``equal``: the computed value rounds, or truncates, to the print. ``consistent``: it does not, but inputs
+        that round to what the paper prints give a value that does. ``near``: within 2 units of the last printed
+        digit or 1 % of the print. ``differs``: none of these. ``none``: nothing was computed.
     how
         For ``equal``: ``rounded`` or, where only that fits, ``truncated``.
     """
@@ -123,7 +124,7 @@ def _compare(printed: Decimal, unit: Decimal, computed: Decimal) -> Match:
     return Match("differs")
 
 
-def format_like(printed: PrintedValue, computed: float) -> str:
+def format_like(printed: PrintedValue, computed: float, unit: Decimal | None = None) -> str:
     """Write a finite computed value with the precision of a printed one.
 
     Parameters
@@ -133,18 +134,21 @@ def format_like(printed: PrintedValue, computed: float) -> str:
         the result ends at the same decimal place.
     computed
         A finite number.
+    unit
+        The weight of the last digit, where it is to be larger than that of the print.
 
     Examples
     --------
-    >>> format_like(PrintedValue("1.20"), 3.0)
-    '3.00'
+    >>> format_like(PrintedValue("1.20"), 3.0), format_like(PrintedValue("1.20"), 3.14, Decimal("0.1"))
+    ('3.00', '3.1')
     >>> format_like(PrintedValue("1.9715", significant_digits=6), 1.671586)
     '1.67159'
     """
     number = Decimal(computed_text(computed))
     with localcontext(prec=_PRECISION):
         if printed.significant_digits is None or not number:
-            return f"{number.quantize(printed.unit, rounding=ROUND_HALF_UP):f}"
+            return f"{number.quantize(max(unit or printed.unit, printed.unit), rounding=ROUND_HALF_UP):f}"
         place = Decimal(1).scaleb(number.adjusted() - printed.significant_digits + 1)
+        place = max(unit, place) if unit and unit > printed.unit else place
         text = f"{number.quantize(place, rounding=ROUND_HALF_UP):f}"
     return text.rstrip("0").rstrip(".") if "." in text else text

@@ -3,7 +3,8 @@
 A printed CSV looks like the paper's own table, so that a person can proofread it against the page: the first
 column holds the row keys, the header the column keys, and a cell the paper leaves blank is blank. Trailing
 zeros are information: ``6.968`` and ``6.9680`` have different units in the last place and so accept
-different computed values.
+different computed values. Digits under an overbar stand in brackets: ``0.91[6]`` is 0.91666..., which says all
+of its digits.
 """
 
 from __future__ import annotations
@@ -22,9 +23,11 @@ from replicate.exhibits.file_names import display_name
 from replicate.exhibits.vocabulary import Table
 
 MINUS = "\N{MINUS SIGN}"
-ALLOWED = "digits with an optional sign, decimal point and exponent"
+ALLOWED = "digits with an optional sign, decimal point, repeating decimals in brackets and exponent"
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,3})?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|\d*\.\d*\[(?P<repeated>\d+)\])([eE][+-]?\d{1,3})?", re.ASCII)
+_REPEATED_DIGITS = 30  # many more than comparisons use
+_SAID_DIGITS = 12  # of a repeating decimal, which says them all; numbers are compared with so many
 
 Key = tuple[str, str]
 
@@ -36,11 +39,19 @@ def parse_number(text: str) -> Decimal | None:
     --------
     >>> parse_number("6.9680")
     Decimal('6.9680')
+    >>> parse_number("0.91[6]").quantize(Decimal("1e-9"))
+    Decimal('0.916666667')
     >>> parse_number("1,2") is None
     True
     """
     plain = text.replace(MINUS, "-")
-    return Decimal(plain) if _NUMBER.fullmatch(plain) else None
+    found = _NUMBER.fullmatch(plain)
+    if found is None:
+        return None
+    digits = found["repeated"]
+    if digits:
+        plain = plain.replace(f"[{digits}]", (digits * _REPEATED_DIGITS)[:_REPEATED_DIGITS])
+    return Decimal(plain)
 
 
 @dataclass(frozen=True)
@@ -50,7 +61,8 @@ class PrintedValue:
     Attributes
     ----------
     text
-        The print: digits with an optional sign (``-`` or U+2212), decimal point and exponent.
+        The print: digits with an optional sign (``-`` or U+2212), decimal point and exponent; digits under an
+        overbar in brackets.
     row, column
         The keys of its cell.
     line
@@ -86,16 +98,25 @@ class PrintedValue:
     @property
     def value(self) -> Decimal:
         """The number itself, exactly as printed."""
-        return Decimal(self.text.replace(MINUS, "-"))
+        number = parse_number(self.text)
+        assert number is not None  # noqa: S101  -- checked above
+        return number
+
+    @property
+    def repeating(self) -> bool:
+        """Whether it ends with repeating decimals."""
+        return "[" in self.text
 
     @property
     def unit(self) -> Decimal:
         """The weight of the last printed digit.
 
         With n significant digits it is that of the n-th digit, the first being the leading one: 10^-n for a
-        zero, which has no leading digit.
+        zero, which has no leading digit. A repeating decimal says all digits that comparisons use.
         """
         value = self.value
+        if self.repeating:
+            return Decimal(1).scaleb(value.adjusted() - _SAID_DIGITS + 1)
         if self.significant_digits is None:
             return Decimal(1).scaleb(_last_place(value))
         leading = value.adjusted() if value else -1
@@ -230,7 +251,9 @@ def _value(place: str, value: tuple[str, str, str, int], digits: int | None) -> 
         raise PrintedFileError(msg)
     printed = PrintedValue(*value, significant_digits=digits)
     # Trailing zeros may be place holders: only digits that say something can be too many.
-    if digits is not None and number and _last_place(number.normalize()) < printed.unit.adjusted():
+    if digits is None or not number or printed.repeating:
+        return printed
+    if _last_place(number.normalize()) < printed.unit.adjusted():
         msg = f"{where} has more than the {digits} significant digits that this table prints"
         raise PrintedFileError(msg)
     return printed

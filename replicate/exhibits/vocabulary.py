@@ -23,7 +23,8 @@ if TYPE_CHECKING:
 
 TableKind = Literal["table", "example", "formula"]
 FigureKind = Literal["figure", "diagram"]
-ClaimVerdict = Literal["holds", "fails", "holds-partly"]
+ClaimVerdict = Literal["holds", "fails", "holds-partly", "undecided"]
+Consequence = Literal["none", "comparison", "safety", "formula"]
 
 AS_WRITTEN = "as-written"
 
@@ -137,7 +138,14 @@ class Chart:
 
 @dataclass(frozen=True)
 class Finding:
-    """What a claim's check found: the verdict, the number that decides it, and the evidence in one or two sentences."""
+    """What a claim's check found: the verdict, the number that decides it, and the evidence in one or two sentences.
+
+    Attributes
+    ----------
+    verdict
+        ``undecided`` where what the paper gives does not suffice to call the sentence true or false; the evidence
+        says what is missing.
+    """
 
     verdict: ClaimVerdict
     value: float
@@ -146,13 +154,22 @@ class Finding:
 
 @dataclass(frozen=True)
 class Claim:
-    """A sentence of the paper that can be true or false."""
+    """A sentence of the paper that can be true or false.
+
+    Attributes
+    ----------
+    consequence
+        What follows if it is not true: ``comparison`` (a ranking or an inequality of the paper flips), ``safety`` (a
+        statement on stability or robustness does), ``formula`` (who types the printed formula gets a wrong
+        controller), or ``none``.
+    """
 
     id: str
     text: str
     check: Callable[[], Finding]
     where: str = ""
     printed: str = ""
+    consequence: Consequence = "none"
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
@@ -167,7 +184,7 @@ class Claims:
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def claim(
-        self, id: str, text: str, *, where: str = "", printed: str = ""
+        self, id: str, text: str, *, where: str = "", printed: str = "", consequence: Consequence = "none"
     ) -> Callable[[Callable[[], Finding]], Callable[[], Finding]]:
         """Register the decorated function as the check of a claim.
 
@@ -175,13 +192,14 @@ class Claims:
         ----------
         text
             The claim in our own words. where: section or page. printed: the number the sentence names, if it names one.
+        consequence: what follows if it is not true, as for `Claim`.
         """
 
         def register(check: Callable[[], Finding]) -> Callable[[], Finding]:
             if id in self.claims:
                 msg = f"{self.id}: claim '{id}' is defined twice"
                 raise PaperDefinitionError(msg)
-            self.claims[id] = Claim(id, text, check, where, printed)
+            self.claims[id] = Claim(id, text, check, where, printed, consequence)
             return check
 
         return register

@@ -19,11 +19,14 @@ from replicate.verdicts.rows import VerdictRow
 # What the signs say to a reader who has not seen the report; a verdict of no more words is its own name.
 _MATCHES = {
     "equal": "equal to the printed digits",
+    "consistent": "equal within the rounding of the printed inputs",
     "near": "within 1 % or two units of the last digit",
     "differs": "neither",
 }
 _VERDICTS = {
     "reproduced": "reproduced as the paper says",
+    "consistent": "consistent with the rounding of the printed inputs",
+    "damaged": "wrong in the paper or in the copy at hand",
     "reconstructed": "reconstructed under another reading",
     "discrepant": "differs for a known cause",
 }

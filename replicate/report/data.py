@@ -1,22 +1,21 @@
-"""Write what a run leaves behind: results, verdicts, inventory, tables, figures and a JUnit file.
+"""Write what a run leaves behind: results, verdicts, errata, inventory, tables, figures and a JUnit file.
 
 Same results, same bytes: no clock, no absolute paths, rows in the order of the papers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from replicate.display.addresses import address, pages_of
+from replicate.display.consequences import errors
 from replicate.display.csv_text import csv_text, curves_text, table_text
 from replicate.display.junit import junit
 from replicate.exhibits import Paper
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
-
-if TYPE_CHECKING:
-    pass
 
 RESULT_COLUMNS = ("paper", "exhibit", "row", "column", "printed", "reading", "computed", "match")
 VERDICT_COLUMNS = (
@@ -31,6 +30,25 @@ VERDICT_COLUMNS = (
     "corrected",
     "cause",
     "explanation",
+    "lower",
+    "upper",
+    "convention",
+    "consequence",
+)
+ERRATA_COLUMNS = (
+    "paper",
+    "exhibit",
+    "row",
+    "column",
+    "printed",
+    "verdict",
+    "computed",
+    "corrected",
+    "consequence",
+    "cause",
+    "explanation",
+    "informed",
+    "answer",
 )
 EXHIBIT_COLUMNS = ("paper", "exhibit", "kind", "title", "status", "reason")
 
@@ -53,7 +71,9 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
         If a file cannot be written.
     """
     _write(folder / "results.csv", _records(judgement.results, RESULT_COLUMNS))
-    _write(folder / "verdicts.csv", _records(judgement.verdicts, VERDICT_COLUMNS))
+    pages = {paper.id: pages_of(paper) for paper in papers}
+    _write(folder / "verdicts.csv", _addressed(judgement.verdicts, VERDICT_COLUMNS, pages))
+    _write(folder / "errata.csv", _addressed(errors(judgement.verdicts), ERRATA_COLUMNS, pages))
     _write(folder / "exhibits.csv", _records(judgement.exhibits, EXHIBIT_COLUMNS))
     _write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement))
     (folder / "tables").mkdir()
@@ -71,6 +91,20 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
 
 def _records(records: Iterable[ResultRow | VerdictRow | ExhibitRow], columns: Sequence[str]) -> str:
     return csv_text(columns, ([_one_line(getattr(record, name)) for name in columns] for record in records))
+
+
+def _addressed(rows: Iterable[VerdictRow], columns: Sequence[str], pages: Mapping[str, Mapping[str, str]]) -> str:
+    """Return verdicts as CSV, each with its place in the report in the last column."""
+    return csv_text(
+        (*columns, "address"),
+        (
+            [
+                *(_one_line(getattr(row, name)) for name in columns),
+                address(pages[row.paper][row.exhibit], row.exhibit, row.row, row.column),
+            ]
+            for row in rows
+        ),
+    )
 
 
 def _one_line(text: Any) -> str:

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 
 from replicate.display.tables import Note
 from replicate.report.views import ClaimView, ExhibitView
+from replicate.verdicts.rows import ERRORS
 
 _TITLES = {
     "misprint": ("Misprints", "The print is wrong; the corrected value follows from the evidence given."),
-    "scan": (
-        "Damaged in the copy at hand",
-        "The copy this was made from is damaged here; the paper may be right.",
+    "damaged": (
+        "Wrong in the print or in the copy at hand",
+        "The corrected value follows from the evidence given; our copy cannot tell whether the paper itself is wrong.",
     ),
     "discrepant": ("Discrepancies", "The values differ from what the paper defines, for a documented cause."),
     "claims": ("Sentences that do not hold", "What the computation contradicts, wholly or in part."),
@@ -36,10 +37,9 @@ def errata(exhibits: Iterable[ExhibitView]) -> list[Group]:
     groups = {id: Group(id, *texts) for id, texts in _TITLES.items()}
     for exhibit in exhibits:
         for note in exhibit.table.notes if exhibit.table else []:
-            kind = "scan" if note.verdict.cause == "scan" else note.verdict.verdict
-            if kind in groups:
-                groups[kind].notes.append((exhibit, note))
+            if note.verdict.verdict in groups:
+                groups[note.verdict.verdict].notes.append((exhibit, note))
         for claim in exhibit.claims:
-            if claim.finding and claim.finding.verdict != "holds":
+            if claim.finding and claim.finding.verdict in ERRORS:
                 groups["claims"].claims.append((exhibit, claim))
     return [group for group in groups.values() if group.notes or group.claims]

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import dropwhile, takewhile
 from pathlib import Path
 
-from replicate.display.labels import part_of
+from replicate.display.addresses import page_name, pages_of, parts
 from replicate.display.rendering import render
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Paper
@@ -76,11 +76,6 @@ class Page:
         return [exhibit for exhibit in self.exhibits if exhibit.id not in placed]
 
 
-def page_name(paper: str, part: str) -> str:
-    """Return the file name of a page."""
-    return f"{paper}-{part}.html" if part else f"{paper}.html"
-
-
 def build_report(
     papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path, about: Site | None = None
 ) -> list[Path]:
@@ -136,26 +131,11 @@ def build_report(
 
 
 def paper_pages(paper: Paper, results: Results, judgement: Judgement) -> list[Page]:
-    """Return the pages of a paper, the main page first.
-
-    A file ``notes-<part>.md`` makes a page for that part, on which all exhibits with the part's prefix stand.
-    """
+    """Return the pages of a paper, the main page first."""
     folder = paper.folder()
-    parts = {
-        match[1]: entry.name
-        for entry in sorted(folder.iterdir(), key=lambda entry: entry.name)
-        if (match := re.fullmatch(r"notes-(\w+)\.md", entry.name))
-    }
-    order = list(dict.fromkeys(part for id in paper.exhibits if (part := part_of(id)) in parts))
-    order += [part for part in parts if part not in order]
-
-    def page_of(exhibit: str) -> str:
-        part = part_of(exhibit)
-        return page_name(paper.id, part if part in parts else "")
-
-    views = exhibit_views(paper, results, judgement, page_of)
+    views = exhibit_views(paper, results, judgement, pages_of(paper))
     pages = []
-    for part, file in [("", "notes.md"), *((part, parts[part]) for part in order)]:
+    for part, file in [("", "notes.md"), *parts(paper).items()]:
         here = [view for view in views if view.page == page_name(paper.id, part)]
         placing = _Placing(page_name(paper.id, part), views)
         prose = Prose(paper, results, judgement.verdicts, {"exhibit": placing})

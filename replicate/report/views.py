@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -62,7 +62,7 @@ class ExhibitView:
 
 
 def exhibit_views(
-    paper: Paper, results: Results, judgement: Judgement, page_of: Callable[[str], str]
+    paper: Paper, results: Results, judgement: Judgement, page_of: Mapping[str, str]
 ) -> list[ExhibitView]:
     """Return the views of a paper's exhibits in the order of its inventory.
 
@@ -71,7 +71,7 @@ def exhibit_views(
     judgement
         Of this paper, or of several.
     page_of
-        Gives the file name of the page on which an exhibit stands.
+        By exhibit: the file name of the page on which it stands.
     """
     rows = {row.exhibit: row for row in judgement.exhibits if row.paper == paper.id}
     verdicts: dict[str, list[VerdictRow]] = {}
@@ -81,7 +81,7 @@ def exhibit_views(
         _view(
             exhibit,
             results.get((paper.id, exhibit.id)),
-            _common(exhibit, rows[exhibit.id], verdicts.get(exhibit.id, []), page_of(exhibit.id)),
+            _common(exhibit, rows[exhibit.id], verdicts.get(exhibit.id, []), page_of[exhibit.id]),
         )
         for exhibit in paper.exhibits.values()
     ]

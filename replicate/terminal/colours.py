@@ -2,14 +2,17 @@
 
 _COLOURS = {
     "reproduced": "green",
+    "consistent": "green",
     "reconstructed": "cyan",
     "near": "yellow",
     "misprint": "magenta",
+    "damaged": "magenta",
     "discrepant": "magenta",
     "unexplained": "red",
     "not-computable": "dim",
     "holds": "green",
     "holds-partly": "yellow",
+    "undecided": "dim",
     "fails": "red",
     "done": "green",
     "partly": "yellow",

@@ -11,6 +11,7 @@ from replicate.exhibits.results import ClaimsResult
 from replicate.verdicts.rows import (
     CLAIM_COLUMN,
     CLAIM_VERDICTS,
+    ERRORS,
     Computed,
     Judgement,
     VerdictRow,
@@ -43,7 +44,10 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
             if not evidence and finding.verdict != "holds":
                 judgement.problems.append(f"{place}: {finding.verdict}, but its evidence is empty")
             computed = computed_text(finding.value)
-            row = replace(row, verdict=finding.verdict, computed=computed, explanation=evidence)
+            consequence = claim.consequence if finding.verdict in ERRORS else ""
+            row = replace(
+                row, verdict=finding.verdict, computed=computed, explanation=evidence, consequence=consequence
+            )
         if claim.printed and parse_number(claim.printed) is None:
             judgement.problems.append(f"{place}: printed = '{claim.printed}' is not a number; allowed: {ALLOWED}")
         elif claim.printed:

@@ -9,8 +9,11 @@
     cause = "misprint"
     explanation = "..."          # Markdown; results are pulled in with {{ value(...) }}, never typed
     reading = "authors"          # optional: the reading that shows the right value; default "as-written"
-    corrected = "1.67"           # optional, for misprint and scan; default: the reading's value
-    evidence = "..."             # optional
+    corrected = "1.67"           # optional, for misprint, print-or-copy and scan; default: the reading's value
+    evidence = "..."             # optional; needed with a consequence
+    consequence = "comparison"   # optional: none (default), comparison, safety or formula
+    informed = "..."             # optional: when and how the authors heard of it
+    answer = "..."               # optional: what they said
 
 An entry whose rows and columns are both lists names its cells *explicitly*: each must be a printed value
 that does not hold. With ``"*"`` it covers the cells that do not hold and must find at least one. What
@@ -29,20 +32,31 @@ from pathlib import Path
 from typing import Literal, get_args
 
 from replicate.errors import LedgerError
-from replicate.exhibits import AS_WRITTEN, Paper, Table
+from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.printed import ALLOWED, parse_number
 
 Cause = Literal[
-    "misprint", "scan", "definition", "method", "optimiser", "rounding", "measured", "unavailable", "unknown"
+    "misprint",
+    "print-or-copy",
+    "scan",
+    "definition",
+    "method",
+    "optimiser",
+    "rounding",
+    "measured",
+    "unavailable",
+    "unknown",
 ]
 CAUSES: tuple[Cause, ...] = get_args(Cause)
-MISPRINT_CAUSES: frozenset[Cause] = frozenset({"misprint", "scan"})
+CORRECTING_CAUSES: frozenset[Cause] = frozenset({"misprint", "print-or-copy", "scan"})
+
+_CONSEQUENCES: tuple[Consequence, ...] = get_args(Consequence)
 
 ANY = "*"
 
 _REQUIRED = ("exhibit", "rows", "columns", "cause", "explanation")
-_OPTIONAL = ("reading", "corrected", "evidence")
+_OPTIONAL = ("reading", "corrected", "evidence", "consequence", "informed", "answer")
 _ENTRY_HEADER = re.compile(r"^\s*\[\[\s*entry\s*\]\]")
 
 
@@ -55,7 +69,12 @@ class LedgerEntry:
     rows, columns
         Keys, or ``("*",)``.
     corrected
-        The right value as text; empty if the reading's value is to be shown at the printed precision.
+        The right value as text; empty if the reading's value is to be shown at the printed precision, or with as
+        many of its digits as the evidence bears.
+    consequence
+        What follows from the error; more than ``none`` needs evidence.
+    informed, answer
+        When and how the authors heard of it, and what they said; empty texts if nobody wrote to them.
     line, file
         Line of the entry in its file, from 1, and what messages call that file.
     """
@@ -68,6 +87,9 @@ class LedgerEntry:
     reading: str = AS_WRITTEN
     corrected: str = ""
     evidence: str = ""
+    consequence: Consequence = "none"
+    informed: str = ""
+    answer: str = ""
     line: int = 0
     file: str = ""
 
@@ -175,6 +197,10 @@ def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> Ledge
     if cause is None:
         msg = f"{place}: cause {raw['cause']!r} is unknown; allowed: {', '.join(CAUSES)}"
         raise LedgerError(msg)
+    consequence = next((known for known in _CONSEQUENCES if known == raw.get("consequence", "none")), None)
+    if consequence is None:
+        msg = f"{place}: consequence {raw['consequence']!r} is unknown; allowed: {', '.join(_CONSEQUENCES)}"
+        raise LedgerError(msg)
     entry = LedgerEntry(
         exhibit=exhibit_id,
         rows=_keys(place, raw, "rows", exhibit.rows),
@@ -184,11 +210,20 @@ def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> Ledge
         reading=_text(place, raw, "reading", AS_WRITTEN),
         corrected=_text(place, raw, "corrected", ""),
         evidence=_text(place, raw, "evidence", ""),
+        consequence=consequence,
+        informed=_text(place, raw, "informed", ""),
+        answer=_text(place, raw, "answer", ""),
         line=line,
     )
     if entry.reading not in exhibit.readings:
         known = _listed(exhibit.readings)
         msg = f"{place}: '{entry.reading}' is not a reading of {exhibit_id}; allowed: {known}"
+        raise LedgerError(msg)
+    if consequence != "none" and not entry.evidence:
+        msg = f"{place}: consequence = '{consequence}' needs evidence, but 'evidence' is empty"
+        raise LedgerError(msg)
+    if entry.answer and not entry.informed:
+        msg = f"{place}: 'answer' is given, but not when and how the authors were informed; needed: 'informed'"
         raise LedgerError(msg)
     _check_corrected(place, entry)
     return entry
@@ -197,8 +232,9 @@ def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> Ledge
 def _check_corrected(place: str, entry: LedgerEntry) -> None:
     if not entry.corrected:
         return
-    if entry.cause not in MISPRINT_CAUSES:
-        msg = f"{place}: 'corrected' is allowed with the causes {_listed(sorted(MISPRINT_CAUSES))} only"
+    if entry.cause not in CORRECTING_CAUSES:
+        causes = _listed(cause for cause in CAUSES if cause in CORRECTING_CAUSES)
+        msg = f"{place}: 'corrected' is allowed with the causes {causes} only"
         raise LedgerError(msg)
     if not entry.explicit or len(entry.rows) * len(entry.columns) != 1:
         msg = f"{place}: 'corrected' is one value, so the entry must name exactly one row and one column"

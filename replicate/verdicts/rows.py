@@ -3,27 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
-from replicate.exhibits import ClaimVerdict
+from replicate.exhibits import ClaimVerdict, Consequence
 from replicate.exhibits.matching import Match, MatchHow, MatchKind, computed_text
 from replicate.exhibits.printed import PrintedValue
 
-ValueVerdict = Literal["reproduced", "reconstructed", "near", "misprint", "discrepant", "unexplained", "not-computable"]
-Verdict = ValueVerdict | ClaimVerdict
-Status = Literal["done", "partly", "not-computable"]
-
-VALUE_VERDICTS: tuple[ValueVerdict, ...] = (
+ValueVerdict = Literal[
     "reproduced",
+    "consistent",
     "reconstructed",
     "near",
     "misprint",
+    "damaged",
     "discrepant",
     "unexplained",
     "not-computable",
-)
-CLAIM_VERDICTS: tuple[ClaimVerdict, ...] = ("holds", "holds-partly", "fails")
-HOLDING: frozenset[Verdict] = frozenset({"reproduced", "reconstructed"})
+]
+Verdict = ValueVerdict | ClaimVerdict
+Status = Literal["done", "partly", "not-computable"]
+
+VALUE_VERDICTS: tuple[ValueVerdict, ...] = get_args(ValueVerdict)
+CLAIM_VERDICTS: tuple[ClaimVerdict, ...] = ("holds", "holds-partly", "undecided", "fails")
+CONSEQUENCES: tuple[Consequence, ...] = ("safety", "formula", "comparison", "none")  # worst first
+HOLDING: frozenset[Verdict] = frozenset({"reproduced", "consistent", "reconstructed"})
+ERRORS: tuple[Verdict, ...] = ("misprint", "damaged", "discrepant", "fails", "holds-partly")
 
 CLAIM_COLUMN = "claim"
 
@@ -66,10 +70,19 @@ class VerdictRow:
     reading, computed
         The reading that decides the verdict, and what it gives.
     corrected
-        For a misprint: what should stand there.
+        For a misprint or a damaged print: what should stand there.
     cause, explanation
         From the ledger; for a reconstructed value the reading's title, for a claim its evidence. Markdown,
         one line.
+    lower, upper
+        Ends of the exact range of the computed value while the printed inputs of the reading run through the
+        intervals of their last digits; empty where the reading declares none. Twelve significant digits.
+    convention
+        ``rounded`` or ``truncated``: how the column's own cells were shortened; empty where they do not tell.
+    consequence
+        Of an error: what follows from it; empty for everything else.
+    informed, answer
+        Of an error: whether and when the authors heard of it, and what they said.
     value
         The print as it was read; ``None`` for a claim that prints no number.
     values
@@ -87,6 +100,12 @@ class VerdictRow:
     corrected: str = ""
     cause: str = ""
     explanation: str = ""
+    lower: str = ""
+    upper: str = ""
+    convention: str = ""
+    consequence: Consequence | Literal[""] = ""
+    informed: str = ""
+    answer: str = ""
     value: PrintedValue | None = None
     values: tuple[Computed, ...] = ()
 

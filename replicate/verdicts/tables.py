@@ -6,15 +6,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.exhibits.matching import Match, computed_text, format_like, match
+from replicate.exhibits.matching import Match, computed_text, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
-from replicate.verdicts.ledger import MISPRINT_CAUSES, Cause, Ledger, LedgerEntry
-from replicate.verdicts.rows import Computed, Judgement, ValueVerdict, VerdictRow
+from replicate.verdicts.corrections import correction
+from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.verdicts.rows import ERRORS, Computed, Judgement, ValueVerdict, VerdictRow
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "misprint": "misprint",
-    "scan": "misprint",
+    "print-or-copy": "damaged",
+    "scan": "damaged",
     "definition": "discrepant",
     "method": "discrepant",
     "optimiser": "discrepant",
@@ -57,7 +59,7 @@ class TableJudge:
         entries = dict(self._assign({key for key, verdict in held.items() if verdict is None}))
         for key, value in self.printed.items():
             entry = entries.get(key)
-            verdict = held[key] or (self._explained(key, value, entry) if entry else self._unexplained(key, value))
+            verdict = held[key] or (self._explained(key, entry) if entry else self._unexplained(key, value))
             if entry:
                 explained.append((len(self.judgement.verdicts), entry))
             self.judgement.verdicts.append(verdict)
@@ -112,40 +114,28 @@ class TableJudge:
             yield from ((key, entry) for key in right)
 
     def _correction_holds(self, key: Key, entry: LedgerEntry) -> bool:
-        """Check that the reading of a misprint gives a right value, and the one that the entry states."""
-        if entry.cause not in MISPRINT_CAUSES:
+        """Check that the reading of a wrong print gives a right value, and the one that the entry states."""
+        if entry.cause not in CORRECTING_CAUSES:
             return True
-        place = f"{self.ledger.place(entry)}: {self.table.id} {_cell(key)}"
-        number = self.numbers[entry.reading].get(key)
-        text = computed_text(number)
-        if number is None or text.endswith("inf"):
-            self.judgement.problems.append(
-                f"{place}: reading '{entry.reading}' gives no value that could be the right one"
-            )
-            return False
-        if not entry.corrected:
-            return True
-        stated = replace(self.printed[key], text=entry.corrected)
-        if match(stated, number).kind != "equal":
-            self.judgement.problems.append(
-                f"{place}: corrected = '{entry.corrected}', but reading '{entry.reading}' gives {text}"
-            )
-            return False
-        if stated.unit > self.printed[key].unit and _digits(entry.corrected) < _digits(self.printed[key].text):
-            print_ = self.printed[key].text
-            self.judgement.problems.append(f"{place}: corrected = '{entry.corrected}' has fewer digits than '{print_}'")
-            return False
-        return True
+        problem = correction(key, entry, self.printed, self.numbers[entry.reading]).problem
+        if problem:
+            place = f"{self.ledger.place(entry)}: {self.table.id} {_cell(key)}"
+            self.judgement.problems.append(f"{place}: {problem}")
+        return not problem
 
-    def _explained(self, key: Key, value: PrintedValue, entry: LedgerEntry) -> VerdictRow:
+    def _explained(self, key: Key, entry: LedgerEntry) -> VerdictRow:
         corrected = ""
-        if entry.cause in MISPRINT_CAUSES:
-            corrected = entry.corrected or format_like(value, self.numbers[entry.reading][key])
+        if entry.cause in CORRECTING_CAUSES:
+            corrected = correction(key, entry, self.printed, self.numbers[entry.reading]).text
+        verdict = _CAUSE_VERDICTS[entry.cause]
         return replace(
-            self._verdict_row(key, _CAUSE_VERDICTS[entry.cause], entry.reading),
+            self._verdict_row(key, verdict, entry.reading),
             corrected=corrected,
             cause=entry.cause,
             explanation=" ".join(text for text in (entry.explanation, entry.evidence) if text),
+            consequence=entry.consequence if verdict in ERRORS else "",
+            informed=entry.informed,
+            answer=entry.answer,
         )
 
     def _unexplained(self, key: Key, value: PrintedValue) -> VerdictRow:
@@ -179,8 +169,3 @@ class TableJudge:
 
 def _cell(key: Key) -> str:
     return f"row '{key[0]}', column '{key[1]}'"
-
-
-def _digits(text: str) -> int:
-    """Count the significant digits of a printed number, trailing zeros included."""
-    return len(text.lower().partition("e")[0].strip("+-\N{MINUS SIGN}").replace(".", "").lstrip("0"))

@@ -1,0 +1,55 @@
+"""Where in the report something stands: the page of an exhibit, and the address of one cell or claim."""
+
+from __future__ import annotations
+
+import re
+
+from replicate.display.labels import part_of
+from replicate.exhibits import Paper
+
+_NOTES = re.compile(r"notes-(\w+)\.md")
+
+
+def parts(paper: Paper) -> dict[str, str]:
+    """Return the parts of a paper that have a page of their own, each with the file of its notes.
+
+    A file ``notes-<part>.md`` makes a page for that part, on which all exhibits with the part's prefix stand. They
+    come in the order of the exhibits.
+    """
+    files = sorted(entry.name for entry in paper.folder().iterdir())
+    found = {match[1]: name for name in files if (match := _NOTES.fullmatch(name))}
+    order = [part for id in paper.exhibits if (part := part_of(id)) in found]
+    return {part: found[part] for part in dict.fromkeys([*order, *found])}
+
+
+def page_name(paper: str, part: str = "") -> str:
+    """Return the file name of the page of a paper, or of one of its parts."""
+    return f"{paper}-{part}.html" if part else f"{paper}.html"
+
+
+def pages_of(paper: Paper) -> dict[str, str]:
+    """Return, by exhibit, the file name of the page on which it stands."""
+    known = parts(paper)
+    return {id: page_name(paper.id, part if (part := part_of(id)) in known else "") for id in paper.exhibits}
+
+
+def anchor(exhibit: str, row: str, column: str) -> str:
+    """Return the id of a cell or claim on its page; characters that an address cannot hold become ``_``.
+
+    Examples
+    --------
+    >>> anchor("table-2", "Ms = 1.4", "K/Ti")
+    'table-2.Ms___1_4.K_Ti'
+    """
+    return ".".join(re.sub(r"[^A-Za-z0-9_-]", "_", part) for part in (exhibit, row, column))
+
+
+def address(page: str, exhibit: str, row: str, column: str) -> str:
+    """Return the address of a cell or claim, relative to the report's folder.
+
+    Examples
+    --------
+    >>> address("bayhan.html", "table-2", "PA", "Mp")
+    'bayhan.html#table-2.PA.Mp'
+    """
+    return f"{page}#{anchor(exhibit, row, column)}"

@@ -1,0 +1,100 @@
+"""What follows from an error, how many digits a correction has, and where an error stands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+import synthetic
+from synthetic import frame, printed, results
+
+from replicate.display.addresses import anchor, pages_of
+from replicate.display.consequences import consequential, errors
+from replicate.exhibits import Finding
+from replicate.exhibits.printed import PrintedValue
+from replicate.run.discovery import find_papers
+from replicate.verdicts.corrections import Correction, correction
+from replicate.verdicts.inputs import Inputs
+from replicate.verdicts.judge import judge
+from replicate.verdicts.ledger import Ledger, LedgerEntry
+from replicate.verdicts.rows import VerdictRow
+
+PLAIN = VerdictRow("toy", "table-1", "A", "x", "1.0", "reproduced", "as-written", "1")
+
+
+def wrong(verdict: str, consequence: str) -> VerdictRow:
+    return replace(PLAIN, verdict=verdict, consequence=consequence, row=f"{verdict} {consequence}")  # type: ignore[arg-type]
+
+
+def test_errors_come_worst_first() -> None:
+    mixed = [
+        wrong("discrepant", "none"), PLAIN, wrong("fails", "comparison"), wrong("damaged", "formula"),
+        wrong("misprint", "none"), wrong("misprint", "safety"), replace(PLAIN, verdict="unexplained"),
+    ]  # fmt: skip
+    assert [row.row for row in errors(mixed)] == [
+        "misprint safety", "damaged formula", "fails comparison", "misprint none", "discrepant none",
+    ]  # fmt: skip
+    assert len(consequential(mixed)) == 3
+
+
+def test_the_ledger_declares_a_consequence_and_what_the_authors_said() -> None:
+    entry = LedgerEntry(
+        "table-1",
+        ("A",),
+        ("x",),
+        "misprint",
+        "Why.",
+        evidence="See.",
+        consequence="formula",
+        informed="2001",
+        answer="Yes.",
+    )
+    judgement = judge(synthetic.paper(), results(), Inputs(printed(ax="9.2"), Ledger("l", (entry,))))
+    (found,) = [row for row in judgement.verdicts if row.row == "A" and row.column == "x"]
+    assert (found.consequence, found.informed, found.answer) == ("formula", "2001", "Yes.")
+    assert {row.consequence for row in judgement.verdicts if row.verdict == "reproduced"} == {""}
+
+
+def test_a_claim_that_holds_has_no_consequence() -> None:
+    paper = synthetic.paper()
+    claims = paper.exhibits["claims"].claims  # type: ignore[union-attr]
+    claims["big"] = replace(claims["big"], consequence="safety")
+    for verdict, expected in (("holds", ""), ("undecided", ""), ("holds-partly", "safety"), ("fails", "safety")):
+        found = {"big": Finding(verdict, 3.1, "It is."), "smooth": Finding("holds", 1.0, "")}  # type: ignore[arg-type]
+        judgement = judge(paper, results(findings=found), Inputs(printed()))
+        assert [row.consequence for row in judgement.verdicts if row.row == "big"] == [expected]
+
+
+@pytest.mark.parametrize(
+    ("neighbour", "corrected"),
+    [(2.0, "12.56"), (2.02, "13"), (2.1, "10"), (2.5, "10")],  # half a unit covers 0, 1, 5 and 25 % of 12.56
+)
+def test_a_correction_has_no_more_digits_than_the_reading_shows_elsewhere(neighbour: float, corrected: str) -> None:
+    entry = LedgerEntry("table-1", ("A",), ("x",), "print-or-copy", "Why.")
+    texts = {"A": "5.47", "B": "2.00", "C": "4.00", "D": "1.00"}
+    values = {(row, "x"): PrintedValue(text, row, "x") for row, text in texts.items()}
+    numbers = {("A", "x"): 12.56, ("B", "x"): neighbour, ("C", "x"): 2 * neighbour, ("D", "x"): 1.0}
+    assert correction(("A", "x"), entry, values, numbers) == Correction(corrected)
+    stated = correction(("A", "x"), replace(entry, corrected="12.56"), values, numbers)
+    assert ("more digits than its evidence" in stated.problem) == (neighbour > 2)
+    assert correction(("A", "x"), replace(entry, corrected=corrected), values, numbers).text in {corrected, ""}
+
+
+def test_one_other_cell_does_not_limit_a_correction() -> None:
+    entry = LedgerEntry("table-1", ("A",), ("x",), "scan", "Why.")
+    run = results(frame(ax=1.26, bx=9.0), frame(ax=1.26, bx=9.0))
+    judgement = judge(synthetic.paper(), run, Inputs(printed(ax="9.2"), Ledger("l", (entry,))))
+    assert (judgement.verdicts[0].verdict, judgement.verdicts[0].corrected) == ("damaged", "1.3")
+
+
+def test_every_cell_of_a_paper_has_an_address_of_its_own() -> None:
+    for paper in find_papers():
+        pages = pages_of(paper.load())
+        cells = [
+            (pages[id], anchor(id, row, column))
+            for id, exhibit in paper.exhibits.items()
+            for row in getattr(exhibit, "rows", ())
+            for column in getattr(exhibit, "columns", ())
+        ]
+        assert cells
+        assert len(cells) == len(set(cells))
