@@ -12,7 +12,7 @@ from replicate.display.addresses import anchor, pages_of
 from replicate.display.consequences import consequential, errors
 from replicate.exhibits import Finding
 from replicate.exhibits.printed import PrintedValue
-from replicate.run.discovery import find_papers
+from replicate.run.library import Library
 from replicate.verdicts.corrections import Correction, correction
 from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
@@ -88,7 +88,7 @@ def test_one_other_cell_does_not_limit_a_correction() -> None:
 
 
 def test_every_cell_of_a_paper_has_an_address_of_its_own() -> None:
-    for paper in find_papers():
+    for paper in Library(bundled=True).papers():
         pages = pages_of(paper.load())
         cells = [
             (pages[id], anchor(id, row, column))
