@@ -10,7 +10,8 @@ import synthetic
 from replicate.errors import PrintedFileError
 from replicate.exhibits import Table
 from replicate.exhibits.matching import match
-from replicate.exhibits.printed import PrintedValue, parse_number, read_printed
+from replicate.exhibits.numerals import parse_number
+from replicate.exhibits.printed import PrintedValue, read_printed
 
 ALLOWED = "digits with an optional sign, decimal point, repeating decimals in brackets and exponent"
 
@@ -49,8 +50,9 @@ def test_reads_what_spreadsheets_write(tmp_path: Path, content: str) -> None:
         ("", "toy/printed/table-1.csv:1: the file is empty; needed: a header with the columns 'x', 'y'"),
         (
             'r,x,y\nA,1,2\nB,3,"1,2"\n',
-            f"toy/printed/table-1.csv:3: column 'y': '1,2' is not a number; allowed: {ALLOWED}",
+            f"toy/printed/table-1.csv:3: column 'y': '1,2' is not a number; allowed: {ALLOWED}; .*would accept it",
         ),
+        ("r;x;y\nA;1;2\nB;3;4\n", "toy/printed/table-1.csv:1: cells are separated by semicolons; allowed: commas, .*"),
         ("r,x,y\nA,nan,2\nB,3,4\n", "toy/printed/table-1.csv:2: column 'x': 'nan' is not a number; .*"),
         ("r,x,y\nA,1,2\n", "toy/printed/table-1.csv:2: row 'B' is missing"),
         ("r,x,y\n", "toy/printed/table-1.csv: row 'A', 'B' is missing"),

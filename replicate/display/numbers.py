@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from decimal import ROUND_HALF_EVEN, Decimal
 
 from replicate.exhibits.matching import computed_text
-from replicate.exhibits.printed import MINUS, PrintedValue
+from replicate.exhibits.numerals import MINUS
+from replicate.exhibits.printed import PrintedValue
 
 FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
 OVERLINE = "\N{COMBINING OVERLINE}"

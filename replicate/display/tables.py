@@ -129,11 +129,12 @@ def _cell(table: Table, frames: Mapping[str, FrameCells], key: Key, verdict: Ver
     values = []
     for id, cells in frames.items():
         reading = table.readings[id]
+        found = judged[id].match if id in judged else Match("none")
         if key in cells.words:  # a word such as "unstable" is shown as it is
-            values.append(Value(reading, cells.words[key], "", Match("none")))
+            word = cells.words[key]
+            values.append(Value(reading, word, word if found.kind != "none" else "", found))
             continue
         number = cells.numbers.get(key)
-        found = judged[id].match if id in judged else Match("none")
         values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found))
     return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
 

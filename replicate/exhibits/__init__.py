@@ -1,7 +1,9 @@
 """How a paper describes itself: the words for its exhibits, its printed values, and what computing them gives."""
 
 from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.notation import Notation
 from replicate.exhibits.paper import Paper
+from replicate.exhibits.printed import Near
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
     Chart,
@@ -31,7 +33,9 @@ __all__ = [
     "Figure",
     "FigureKind",
     "Finding",
+    "Near",
     "NotComputable",
+    "Notation",
     "Paper",
     "Reading",
     "Table",

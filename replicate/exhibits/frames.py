@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from numbers import Real
 from typing import TYPE_CHECKING
 
-from replicate.exhibits.printed import Key
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.statements import given_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,7 +28,7 @@ class FrameCells:
     numbers
         By (row, column); ``None`` where the reading computed nothing (``None``, NaN, ``pd.NA``).
     words
-        What is held by a cell that holds something else than a real number, as its text.
+        What is held by a cell that holds something else than a real number, as its text: a word, a date, a pair.
     wrong
         Why such a cell is no number, by (row, column).
     twice
@@ -60,22 +61,25 @@ class FrameCells:
             raise CellError(self.wrong[row, column])
         return self.numbers[row, column]
 
-    def pick(self, keys: Iterable[Key]) -> tuple[dict[Key, float], list[str]]:
-        """Return the numbers of the given cells, and one line for each thing that is wrong.
+    def pick(self, printed: Mapping[Key, PrintedValue]) -> tuple[dict[Key, float], dict[Key, str], list[str]]:
+        """Return numbers and words of the cells in which something is printed, and one line for each thing wrong.
 
-        A missing row or column is named once, not once per cell.
+        A missing row or column is named once, not once per cell. A word is wrong where the print cannot be one.
         """
-        found: dict[Key, float] = {}
+        numbers, words = dict[Key, float](), dict[Key, str]()
         problems: dict[str, None] = {}
-        for key in keys:
+        for key, value in printed.items():
+            if key in self.words and not value.notation.plain:
+                words[key] = self.words[key]
+                continue
             try:
                 number = self.number(*key)
             except CellError as error:
                 problems[str(error)] = None
             else:
                 if number is not None:
-                    found[key] = number
-        return found, list(problems)
+                    numbers[key] = number
+        return numbers, words, list(problems)
 
 
 def read_frame(frame: pd.DataFrame) -> FrameCells:
@@ -104,7 +108,7 @@ def _read(cells: FrameCells, key: Key, value: object) -> None:
         cells.numbers[key] = None
     elif isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         kind = "text" if isinstance(value, str) else type(value).__name__
-        cells.words[key] = str(value)
+        cells.words[key] = given_text(value) or str(value)
         cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds {kind} ({value!r}), needed: a number"
     else:
         number = float(value)

@@ -9,17 +9,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from decimal import ROUND_HALF_UP, Decimal, localcontext
+from functools import partial
 from typing import Literal
 
-from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.printed import USUAL, Near, PrintedValue
+from replicate.exhibits.statements import compare_statement
 
 MatchKind = Literal["equal", "consistent", "near", "differs", "none"]
 MatchHow = Literal["rounded", "truncated", ""]
 
 COMPUTED_DIGITS = 12
-
-NEAR_UNITS = 2
-NEAR_FRACTION = Decimal("0.01")
 
 # Wide enough that sums of a 12-digit number and a printed one, of any magnitudes that can tie, are exact.
 _PRECISION = 200
@@ -58,7 +57,9 @@ def computed_text(value: float | None) -> str:
     return f"{value + 0.0:.{COMPUTED_DIGITS}g}"  # + 0.0 turns -0 into 0
 
 
-def match(printed: PrintedValue | str, computed: float | None, significant_digits: int | None = None) -> Match:
+def match(
+    printed: PrintedValue | str, computed: float | None, significant_digits: int | None = None, word: str = ""
+) -> Match:
     """Compare a computed value with a printed one.
 
     Parameters
@@ -69,6 +70,8 @@ def match(printed: PrintedValue | str, computed: float | None, significant_digit
         The computed value; ``None`` or NaN where there is none.
     significant_digits
         If given: the paper prints so many significant digits and strips trailing zeros.
+    word
+        What is computed where it is no number: a word, a date, or the two numbers of a pair.
 
     Returns
     -------
@@ -93,11 +96,16 @@ def match(printed: PrintedValue | str, computed: float | None, significant_digit
         printed = PrintedValue(printed)
     if significant_digits is not None:
         printed = replace(printed, significant_digits=significant_digits)
-    text = computed_text(computed)
+    text = word or computed_text(computed)
     if not text:
         return Match("none")
     with localcontext(prec=_PRECISION):
-        return _compare(printed.value, printed.unit, Decimal(text))
+        if printed.reading_error is not None:
+            return _within(printed.value, printed.reading_error, Decimal(text))
+        compare = partial(_compare, near=printed.near)
+        if not printed.states_number or word:
+            return Match(compare_statement(printed.statement, text, lambda *numbers: compare(*numbers).kind))
+        return compare(printed.value, printed.unit, Decimal(text))
 
 
 def meets(printed: str, computed: float) -> bool:
@@ -111,7 +119,13 @@ def meets(printed: str, computed: float) -> bool:
     return match(printed, computed).kind == "equal"
 
 
-def _compare(printed: Decimal, unit: Decimal, computed: Decimal) -> Match:
+def _within(printed: Decimal, error: Decimal, computed: Decimal) -> Match:
+    """Compare with a point read off a figure."""
+    distance = abs(computed - printed)
+    return Match("equal" if distance <= error else "near" if distance <= 2 * error else "differs")
+
+
+def _compare(printed: Decimal, unit: Decimal, computed: Decimal, near: Near = USUAL) -> Match:
     distance = abs(computed - printed)
     if 2 * distance <= unit:
         return Match("equal", "rounded")
@@ -119,7 +133,7 @@ def _compare(printed: Decimal, unit: Decimal, computed: Decimal) -> Match:
     outward = abs(computed) - abs(printed)
     if 0 <= outward < unit and computed * printed >= 0:
         return Match("equal", "truncated")
-    if distance <= NEAR_UNITS * unit or distance <= NEAR_FRACTION * abs(printed):
+    if distance <= Decimal(str(near.units)) * unit or distance <= Decimal(str(near.fraction)) * abs(printed):
         return Match("near")
     return Match("differs")
 

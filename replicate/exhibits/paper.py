@@ -6,14 +6,16 @@ import importlib
 import importlib.resources
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from importlib.resources.abc import Traversable
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
-from replicate.exhibits.printed import read_texts
+from replicate.exhibits.printed import USUAL, Key, Near, read_texts
+from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_points
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
     Chart,
@@ -125,6 +127,9 @@ class Paper:
         units: dict[str, str] | None = None,
         significant_digits: int | None = None,
         printed: bool = True,
+        notation: Notation | Mapping[str, Notation] = PLAIN,
+        near: Near = USUAL,
+        spans: Mapping[Key, Sequence[Key]] | None = None,
     ) -> Table:
         """Add a table, worked example or formula; ``printed=False`` where the paper prints no numbers in it.
 
@@ -147,7 +152,11 @@ class Paper:
             units or {},
             significant_digits,
             printed,
+            notation=notation,
+            near=near,
+            spans=spans or {},
         )
+        exhibit.check()
         self._add(exhibit)
         return exhibit
 
@@ -161,11 +170,37 @@ class Paper:
         alt: str = "",
         size: tuple[float, float] = (6.4, 4.0),
         stands_for: str = "",
+        points: bool = False,
     ) -> Callable[[Callable[[MatplotlibFigure], None]], Callable[[MatplotlibFigure], None]]:
-        """Register the decorated function as a figure; it draws on an empty matplotlib figure."""
+        """Register the decorated function as a figure; it draws on an empty matplotlib figure.
+
+        Parameters
+        ----------
+        points
+            Whether ``printed/<id>.csv`` holds points read off the original. They are drawn over the figure and make a
+            table of their own, ``<id>-points``, judged within their reading error.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If the id is taken.
+        PrintedFileError
+            If the file of points is missing or malformed.
+        """
 
         def register(draw: Callable[[MatplotlibFigure], None]) -> Callable[[MatplotlibFigure], None]:
-            self._add(Figure(id, kind, title, draw, caption, alt, size, stands_for))
+            if not points:
+                self._add(Figure(id, kind, title, draw, caption, alt, size, stands_for))
+                return draw
+            found = read_points(self.folder() / "printed" / f"{id}.csv")
+            self._add(Figure(id, kind, title, with_points(draw, found), caption, alt, size, stands_for))
+            ids = tuple(point.id for point in found)
+            table = Table(
+                f"{id}-points", "table", f"{title}: points read off the original", rows=ids, columns=(COLUMN,)
+            )
+            table.points = found
+            table.reading(AS_WRITTEN, "our curve, within the reading error of x")(partial(values_at, draw, found, size))
+            self._add(table)
             return draw
 
         return register

@@ -11,47 +11,37 @@ from __future__ import annotations
 
 import csv
 import io
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cached_property
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from replicate.errors import PrintedFileError
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.vocabulary import Table
+from replicate.exhibits.notation import PLAIN, Notation, Statement
+from replicate.exhibits.numerals import last_place
+from replicate.exhibits.statements import scaled
 
-MINUS = "\N{MINUS SIGN}"
-ALLOWED = "digits with an optional sign, decimal point, repeating decimals in brackets and exponent"
+if TYPE_CHECKING:
+    from replicate.exhibits.vocabulary import Table
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|\d*\.\d*\[(?P<repeated>\d+)\])([eE][+-]?\d{1,3})?", re.ASCII)
-_REPEATED_DIGITS = 30  # many more than comparisons use
 _SAID_DIGITS = 12  # of a repeating decimal, which says them all; numbers are compared with so many
 
 Key = tuple[str, str]
 
 
-def parse_number(text: str) -> Decimal | None:
-    """Read a printed number exactly; ``None`` if the text is not one.
+@dataclass(frozen=True)
+class Near:
+    """What is near a print: so many units of its last digit, or such a fraction of it, whichever is more."""
 
-    Examples
-    --------
-    >>> parse_number("6.9680")
-    Decimal('6.9680')
-    >>> parse_number("0.91[6]").quantize(Decimal("1e-9"))
-    Decimal('0.916666667')
-    >>> parse_number("1,2") is None
-    True
-    """
-    plain = text.replace(MINUS, "-")
-    found = _NUMBER.fullmatch(plain)
-    if found is None:
-        return None
-    digits = found["repeated"]
-    if digits:
-        plain = plain.replace(f"[{digits}]", (digits * _REPEATED_DIGITS)[:_REPEATED_DIGITS])
-    return Decimal(plain)
+    units: float = 2.0
+    fraction: float = 0.01
+
+
+USUAL = Near()
 
 
 @dataclass(frozen=True)
@@ -62,7 +52,7 @@ class PrintedValue:
     ----------
     text
         The print: digits with an optional sign (``-`` or U+2212), decimal point and exponent; digits under an
-        overbar in brackets.
+        overbar in brackets; or what `notation` allows besides.
     row, column
         The keys of its cell.
     line
@@ -70,11 +60,17 @@ class PrintedValue:
     significant_digits
         Set where the paper prints a fixed number of significant digits and strips trailing zeros; ``None``
         where the text itself tells the precision.
+    notation
+        How its column prints values.
+    near
+        What is near it.
+    reading_error
+        Of a point read off a figure: half the width within which it lies.
 
     Raises
     ------
     PrintedFileError
-        If the text is not a number.
+        If the text is not what the notation allows.
 
     Examples
     --------
@@ -89,23 +85,34 @@ class PrintedValue:
     column: str = ""
     line: int = 0
     significant_digits: int | None = None
+    notation: Notation = PLAIN
+    near: Near = USUAL
+    reading_error: Decimal | None = None
 
     def __post_init__(self) -> None:
-        if parse_number(self.text) is None:
-            msg = f"'{self.text}' is not a number; allowed: {ALLOWED}"
-            raise PrintedFileError(msg)
+        _ = self.statement  # refuses a text that the notation does not allow
+
+    @cached_property
+    def statement(self) -> Statement:
+        """What the text states."""
+        return self.notation.read(self.text)
+
+    @property
+    def states_number(self) -> bool:
+        """Whether it is compared as a plain number is: no bound, interval, count, word or date."""
+        return self.statement.kind == "number"
 
     @property
     def value(self) -> Decimal:
-        """The number itself, exactly as printed."""
-        number = parse_number(self.text)
-        assert number is not None  # noqa: S101  -- checked above
-        return number
+        """The number itself, exactly as printed; NaN for a word or a date."""
+        if self.statement.kind in {"word", "date"}:
+            return Decimal("NaN")
+        return scaled(self.statement)[0]
 
     @property
     def repeating(self) -> bool:
         """Whether it ends with repeating decimals."""
-        return "[" in self.text
+        return "[" in self.statement.text
 
     @property
     def unit(self) -> Decimal:
@@ -118,15 +125,9 @@ class PrintedValue:
         if self.repeating:
             return Decimal(1).scaleb(value.adjusted() - _SAID_DIGITS + 1)
         if self.significant_digits is None:
-            return Decimal(1).scaleb(_last_place(value))
+            return Decimal(1).scaleb(last_place(value))
         leading = value.adjusted() if value else -1
         return Decimal(1).scaleb(leading - self.significant_digits + 1)
-
-
-def _last_place(value: Decimal) -> int:
-    exponent = value.as_tuple().exponent
-    assert isinstance(exponent, int)  # noqa: S101  -- a letter for NaN and infinity only
-    return exponent
 
 
 def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedValue]:
@@ -155,10 +156,10 @@ def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedVal
     _check_keys(f"{name}:{header_line}", "column", [(header_line, key) for key in columns], table.columns)
     _check_keys(name, "row", [(line, row) for line, row, _ in body], table.rows)
     return {
-        (row, column): _value(name, (text, row, column, line), table.significant_digits)
+        (row, column): _value(name, (text, row, column, line), table)
         for line, row, texts in body
         for column, text in zip(columns, texts, strict=True)
-        if text
+        if not table.notation_of(column).is_blank(text)
     }
 
 
@@ -185,6 +186,9 @@ def _grid(
         msg = f"{name}:1: the file is empty; needed: a header with the columns {_listed(needed)}"
         raise PrintedFileError(msg)
     (header_line, header), *body = records
+    if len(header) == 1 and ";" in header[0]:
+        msg = f"{name}:{header_line}: cells are separated by semicolons; allowed: commas, and quotes around 1,5"
+        raise PrintedFileError(msg)
     for line, cells in body:
         if len(cells) != len(header):
             msg = f"{name}:{line}: row '{cells[0]}' has {len(cells)} cells, the header has {len(header)}"
@@ -242,19 +246,20 @@ def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expecte
             raise PrintedFileError(msg)
 
 
-def _value(place: str, value: tuple[str, str, str, int], digits: int | None) -> PrintedValue:
+def _value(place: str, value: tuple[str, str, str, int], table: Table) -> PrintedValue:
     text, _, column, line = value
-    where = f"{place}:{line}: column '{column}': '{text}'"
-    number = parse_number(text)
-    if number is None:
-        msg = f"{where} is not a number; allowed: {ALLOWED}"
-        raise PrintedFileError(msg)
-    printed = PrintedValue(*value, significant_digits=digits)
+    where = f"{place}:{line}: column '{column}'"
+    digits = table.significant_digits
+    try:
+        printed = PrintedValue(*value, digits, table.notation_of(column), table.near)
+    except PrintedFileError as error:
+        msg = f"{where}: {error}"
+        raise PrintedFileError(msg) from error
     # Trailing zeros may be place holders: only digits that say something can be too many.
-    if digits is None or not number or printed.repeating:
+    if digits is None or not printed.states_number or not printed.value or printed.repeating:
         return printed
-    if _last_place(number.normalize()) < printed.unit.adjusted():
-        msg = f"{where} has more than the {digits} significant digits that this table prints"
+    if last_place(printed.value.normalize()) < printed.unit.adjusted():
+        msg = f"{where}: '{text}' has more than the {digits} significant digits that this table prints"
         raise PrintedFileError(msg)
     return printed
 

@@ -10,12 +10,15 @@ This module only describes: computing, judging and rendering happen elsewhere. E
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
+from replicate.exhibits.printed import USUAL, Key, Near
+from replicate.exhibits.read_off import Point
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -67,6 +70,14 @@ class Table:
     significant_digits
         Set where the paper prints a fixed number of significant digits and strips trailing zeros ("6.968" then
         means 6.96800). ``None``: the printed string itself tells the precision.
+    notation
+        How values are printed, for the table or by column; plain numbers where nothing is said.
+    near
+        What is near a print, for the verdict of that name.
+    spans
+        Where one printed number stands for several cells: by the cell in which it is entered, the others.
+    points
+        Of the table that belongs to a figure: what was read off the original.
     """
 
     id: str
@@ -80,7 +91,35 @@ class Table:
     significant_digits: int | None = None
     printed: bool = True
     readings: dict[str, Reading] = field(default_factory=dict)
+    notation: Notation | Mapping[str, Notation] = PLAIN
+    near: Near = USUAL
+    spans: Mapping[Key, Sequence[Key]] = field(default_factory=dict)
+    points: Sequence[Point] = ()
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+    def check(self) -> None:
+        """Check that what is declared of rows and columns speaks of rows and columns of the table.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If it does not; the message says what is allowed.
+        """
+        columns = [] if isinstance(self.notation, Notation) else list(self.notation)
+        cells = [cell for key, others in self.spans.items() for cell in (key, *others)]
+        for kind, named, known in (
+            ("column", [*columns, *(column for _, column in cells), *self.units], self.columns),
+            ("row", [row for row, _ in cells], self.rows),
+            ("row or column", self.labels, (*self.rows, *self.columns)),
+        ):
+            for key in named:
+                if known and key not in known:
+                    msg = f"{self.id}: there is no {kind} '{key}'; allowed: {', '.join(known)}"
+                    raise PaperDefinitionError(msg)
+
+    def notation_of(self, column: str) -> Notation:
+        """Return how a column prints its values."""
+        return self.notation if isinstance(self.notation, Notation) else self.notation.get(column, PLAIN)
 
     def reading(
         self, id: str, title: str, note: str = ""

@@ -11,7 +11,7 @@ from replicate.display.tables import Cell, TableView, Value, table_view
 from replicate.display.words import MATCHES, VERDICTS
 from replicate.errors import TemplateError
 from replicate.exhibits import Table
-from replicate.exhibits.printed import MINUS
+from replicate.exhibits.numerals import MINUS
 from replicate.exhibits.results import TableResult
 from replicate.handout.tree import Element, inlines, plain, span, string
 from replicate.verdicts.rows import VerdictRow

@@ -15,7 +15,8 @@ from replicate.display.scores import Score
 from replicate.display.source_code import Source, sources
 from replicate.display.tables import TableView, table_view
 from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, Paper, Table
-from replicate.exhibits.printed import PrintedValue, parse_number
+from replicate.exhibits.numerals import parse_number
+from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
 from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
 

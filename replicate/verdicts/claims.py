@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from replicate.exhibits import AS_WRITTEN, Claims, Finding
 from replicate.exhibits.matching import computed_text, match
-from replicate.exhibits.printed import ALLOWED, PrintedValue, parse_number
+from replicate.exhibits.numerals import ALLOWED, parse_number
+from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult
 from replicate.verdicts.rows import (
     CLAIM_COLUMN,

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from decimal import Decimal
 
 from replicate.exhibits import Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.printed import Key, PrintedValue, read_printed
+from replicate.exhibits.read_off import COLUMN
 from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.prose import check_syntax
 
@@ -33,6 +35,15 @@ class Inputs:
     ledger: Ledger = field(default_factory=Ledger)
 
 
+def _points(table: Table) -> dict[Key, PrintedValue]:
+    return {
+        (point.id, COLUMN): PrintedValue(
+            point.y, point.id, COLUMN, point.line, reading_error=Decimal(str(point.y_error))
+        )
+        for point in table.points
+    }
+
+
 def read_inputs(paper: Paper) -> Inputs:
     """Read printed numbers and ledger of a paper, and check the syntax of its texts.
 
@@ -43,7 +54,7 @@ def read_inputs(paper: Paper) -> Inputs:
     """
     folder = paper.load().folder()
     printed = {
-        id: read_printed(folder / "printed" / f"{id}.csv", exhibit)
+        id: _points(exhibit) if exhibit.points else read_printed(folder / "printed" / f"{id}.csv", exhibit)
         for id, exhibit in paper.exhibits.items()
         if isinstance(exhibit, Table) and exhibit.printed
     }

@@ -34,7 +34,7 @@ from typing import Literal, get_args
 from replicate.errors import LedgerError
 from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.printed import ALLOWED, parse_number
+from replicate.exhibits.numerals import ALLOWED, parse_number
 
 Cause = Literal[
     "misprint",

@@ -54,11 +54,12 @@ class Computed:
     reading: str
     number: float | None
     match: Match
+    word: str = ""  # what is given where it is no number: a word, a date, a pair of numbers
 
     @property
     def text(self) -> str:
-        """The number with 12 significant digits."""
-        return computed_text(self.number)
+        """The number with 12 significant digits, or the word."""
+        return self.word or computed_text(self.number)
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.exhibits.matching import Match, computed_text, match
+from replicate.exhibits.matching import Match, MatchKind, computed_text, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.corrections import correction
@@ -25,6 +26,9 @@ _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "unavailable": "not-computable",
     "unknown": "unexplained",
 }
+
+
+_AGREEMENT: tuple[MatchKind, ...] = ("equal", "consistent", "near", "differs", "none")
 
 
 @dataclass
@@ -49,6 +53,7 @@ class TableJudge:
     judgement: Judgement = field(default_factory=Judgement)
     numbers: dict[str, dict[Key, float]] = field(default_factory=dict)  # by reading
     matches: dict[str, dict[Key, Match]] = field(default_factory=dict)  # by reading
+    words: dict[str, dict[Key, str]] = field(default_factory=dict)  # by reading
 
     def judge(self) -> list[tuple[int, LedgerEntry]]:
         """Fill the judgement, and return which of its verdicts come from which ledger entry."""
@@ -67,18 +72,29 @@ class TableJudge:
 
     def _read(self, reading: str) -> None:
         """Take the numbers of one reading and compare them."""
-        numbers: dict[Key, float] = {}
+        numbers, words = dict[Key, float](), dict[Key, str]()
         found = self.result.cells.get(reading)
         if reading in self.result.errors:
             self._problem(f"reading '{reading}' failed: {self.result.errors[reading]}")
         elif found is None:
             self._problem(f"reading '{reading}' was not computed")
         else:
-            numbers, wrong = found.pick(self.printed)
+            spread = {cell: value for key, value in self.printed.items() for cell in self._cells(key)}
+            numbers, words, wrong = found.pick(spread)
             for line in wrong:
                 self._problem(f"reading '{reading}': {line}")
-        self.numbers[reading] = numbers
-        self.matches[reading] = {key: match(value, numbers.get(key)) for key, value in self.printed.items()}
+        self.numbers[reading], self.words[reading], self.matches[reading] = numbers, words, {}
+        for key, value in self.printed.items():
+            # Of the cells that one printed number stands for, the one that agrees least speaks for all.
+            matches = {cell: match(value, numbers.get(cell), word=words.get(cell, "")) for cell in self._cells(key)}
+            least = max(matches, key=lambda cell: _AGREEMENT.index(matches[cell].kind))
+            self.matches[reading][key] = matches[least]
+            if least != key:
+                _speak_for(key, least, numbers)
+                _speak_for(key, least, words)
+
+    def _cells(self, key: Key) -> list[Key]:
+        return [key, *self.table.spans.get(key, ())]
 
     def _held(self, key: Key) -> VerdictRow | None:
         """Return the verdict on a value that some reading gives, as written first; ``None`` if none does."""
@@ -158,13 +174,23 @@ class TableJudge:
             self.printed[key].text,
             verdict,
             reading,
-            computed_text(self.numbers[reading].get(key)),
+            self.words[reading].get(key) or computed_text(self.numbers[reading].get(key)),
             value=self.printed[key],
-            values=tuple(Computed(id, self.numbers[id].get(key), self.matches[id][key]) for id in self.table.readings),
+            values=tuple(self._computed(key, id) for id in self.table.readings),
         )
+
+    def _computed(self, key: Key, reading: str) -> Computed:
+        number, word = self.numbers[reading].get(key), self.words[reading].get(key, "")
+        return Computed(reading, number, self.matches[reading][key], word)
 
     def _problem(self, text: str) -> None:
         self.judgement.problems.append(f"{self.paper} {self.table.id}: {text}")
+
+
+def _speak_for(key: Key, other: Key, given: dict[Key, Any]) -> None:
+    given.pop(key, None)
+    if other in given:
+        given[key] = given[other]
 
 
 def _cell(key: Key) -> str:

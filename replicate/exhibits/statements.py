@@ -1,0 +1,85 @@
+"""Whether what a reading gives agrees with a printed text that states more, or something else, than a number."""
+
+from __future__ import annotations
+
+import datetime as dt
+from collections.abc import Callable
+from decimal import Decimal
+from typing import Literal
+
+from replicate.exhibits.notation import Statement
+from replicate.exhibits.numerals import last_place, parse_number
+
+Agreement = Literal["equal", "consistent", "near", "differs", "none"]
+
+#: Compares a number with a printed one: ``equal``, ``near`` or ``differs``.
+Compare = Callable[[Decimal, Decimal, Decimal], Agreement]
+
+_KINDS: tuple[Agreement, ...] = ("equal", "near", "differs")
+
+
+def given_text(given: object) -> str | None:
+    """Return a word, a date or a pair as text; ``None`` if it is none of these.
+
+    Examples
+    --------
+    >>> given_text(dt.date(2003, 5, 17)), given_text((1.25, 3.5)), given_text("n.s.")
+    ('2003-05-17', '1.25 3.5', 'n.s.')
+    """
+    if isinstance(given, dt.date):  # a pandas Timestamp is one, too
+        return given.isoformat()[:10]
+    if isinstance(given, tuple | list) and len(given) == 2:
+        return " ".join(f"{float(end):.12g}" for end in given)
+    return given if isinstance(given, str) else None
+
+
+def compare_statement(statement: Statement, given: str, compare: Compare) -> Agreement:
+    """Return how what a reading gives compares with a print: ``equal``, ``near`` or ``differs``.
+
+    Parameters
+    ----------
+    given
+        The computed number with twelve significant digits, the two numbers of a pair, a word, or a date.
+    compare
+        The rule for plain numbers: print, weight of its last digit, computed value.
+    """
+    if statement.kind in {"word", "date"}:
+        return "equal" if given == statement.text else "differs"
+    values = [parse_number(part) for part in given.split()]
+    pair = bool(statement.upper or statement.uncertainty) and statement.kind != "inside"
+    numbers = [value for value in values if value is not None]
+    if len(numbers) != len(values) or len(numbers) != (2 if pair else 1):
+        return "differs"
+    if pair:
+        ends = (statement.text, statement.upper or statement.uncertainty)
+        kinds = [compare(*scaled(Statement("number", end)), number) for end, number in zip(ends, numbers, strict=True)]
+        return max(kinds, key=_KINDS.index)
+    if statement.kind == "inside":
+        return _inside(Decimal(statement.text), Decimal(statement.upper), numbers[0])
+    return _bound_or_count(statement, numbers[0])
+
+
+def _bound_or_count(statement: Statement, value: Decimal) -> Agreement:
+    printed, unit = scaled(statement)
+    if statement.kind == "count":
+        return "equal" if value == printed else "differs"
+    beyond = value < printed if statement.kind == "below" else value > printed
+    # A value that rounds to the bound itself is on the border.
+    return "equal" if beyond else "near" if 2 * abs(value - printed) <= unit else "differs"
+
+
+def scaled(statement: Statement) -> tuple[Decimal, Decimal]:
+    """Return the number that is stated and the weight of its last digit."""
+    number = parse_number(statement.text)
+    if number is None:
+        msg = f"'{statement.text}' states no number"
+        raise ValueError(msg)
+    number = number.scaleb(statement.scale)
+    return number, Decimal(1).scaleb(last_place(number))
+
+
+def _inside(lower: Decimal, upper: Decimal, value: Decimal) -> Agreement:
+    unit = Decimal(1).scaleb(max(map(last_place, (lower, upper))))
+    if lower <= value <= upper:
+        return "equal"
+    return "near" if lower - unit / 2 <= value <= upper + unit / 2 else "differs"

@@ -1,0 +1,169 @@
+"""What papers of other fields print, and how each print is compared."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from replicate.errors import PaperDefinitionError, PrintedFileError
+from replicate.exhibits import Near, Notation, Paper
+from replicate.exhibits.matching import match
+from replicate.exhibits.notation import PLAIN
+from replicate.exhibits.printed import PrintedValue, read_printed
+from replicate.exhibits.results import TableResult
+from replicate.exhibits.statements import given_text
+from replicate.verdicts.inputs import Inputs
+from replicate.verdicts.judge import judge
+
+BOUND = Notation(bounds=True)
+STARS = Notation(stars=True)
+COMMA = Notation(decimal=",", thousands=".")
+PAIR = Notation(uncertainty=True)
+ENDS = Notation(interval="ends")
+WORDS = Notation(words=("unstable", "n.s."))
+
+
+def kind(text: str, given: object, notation: Notation = PLAIN) -> str:
+    value = PrintedValue(text, notation=notation)
+    if isinstance(given, int | float):
+        return match(value, float(given)).kind
+    return match(value, None, word=given_text(given) or "").kind
+
+
+@pytest.mark.parametrize(
+    ("text", "notation", "equal", "differs"),
+    [
+        ("<0.001", BOUND, 0.0004, 0.0016),
+        ("< .05", BOUND, 0.0, 0.06),
+        ("≤ 0.05", BOUND, 0.049, 0.06),
+        (">10", BOUND, 10.5, 9.0),
+        ("0.12***", STARS, 0.1249, 0.20),
+        ("0.12 †", STARS, 0.1249, 0.20),
+        ("(0.045)", Notation(parentheses="negative"), -0.0451, 0.045),
+        ("(0.045)", Notation(parentheses="standard-error"), 0.0451, -0.045),
+        ("3.4 ± 0.2", PAIR, 3.41, 3.9),
+        ("3.4(2)", PAIR, 3.36, 3.9),
+        ("3.4 ± 0.2", PAIR, (3.41, 0.21), (3.41, 0.9)),
+        ("1.234(12)", PAIR, (1.2341, 0.0121), (1.2341, 0.12)),
+        ("12 %", Notation(percent="percent"), 12.3, 0.12),
+        ("12 %", Notation(percent="fraction"), 0.123, 12.0),
+        ("1.2e-3", PLAIN, 0.00123, 0.0123),
+        ("1.2 × 10^-3", PLAIN, 0.00123, 0.0123),
+        ("1.2 · 10⁻³", PLAIN, 0.00123, 0.0123),
+        ("−1.2x10^{4}", PLAIN, -12049.0, 12049.0),
+        ("1.234,5", COMMA, 1234.52, 1.2345),
+        ("0,50", COMMA, 0.5049, 0.56),
+        ("12'345", Notation(thousands="'"), 12345.3, 12.345),
+        ("12 345.6", Notation(thousands=" "), 12345.63, 12.0),
+        ("\N{MINUS SIGN}0.50", PLAIN, -0.5, 0.5),
+        ("0.91[6]", PLAIN, 11 / 12, 0.93),
+        ("[1.2, 3.4]", ENDS, (1.24, 3.35), (1.24, 4.0)),
+        ("(1.2; 3.4)", ENDS, (1.24, 3.35), (2.0, 3.4)),
+        ("[1.2, 3.4]", Notation(interval="inside"), 2.0, 3.6),
+        ("17", Notation(count=True), 17.0, 17.4),
+        ("2003-05-17", Notation(date=True), pd.Timestamp("2003-05-17"), pd.Timestamp("2003-05-18")),
+        ("n.s.", WORDS, "n.s.", "unstable"),
+        ("0.5", WORDS, 0.5, "unstable"),
+        ("unstable", WORDS, "unstable", 0.5),
+    ],
+)
+def test_each_print_has_its_rule(text: str, notation: Notation, equal: object, differs: object) -> None:
+    assert kind(text, equal, notation) == "equal"
+    assert kind(text, differs, notation) == "differs"
+
+
+def test_the_border_of_a_bound_is_near() -> None:
+    assert kind("<0.001", 0.00102, BOUND) == "near"
+    assert kind(">10", 9.8, BOUND) == "near"
+
+
+@pytest.mark.parametrize(
+    ("text", "notation", "message"),
+    [
+        ("<0.05", PLAIN, r"notation=Notation\(bounds=True\) would accept it"),
+        ("0.1**", PLAIN, r"notation=Notation\(stars=True\) would accept it"),
+        ("1,5", PLAIN, r'notation=Notation\(decimal=","\) would accept it'),
+        ("1,234.5", PLAIN, r'notation=Notation\(thousands=","\) would accept it'),
+        ("3.4(2)", PLAIN, r"notation=Notation\(uncertainty=True\) would accept it"),
+        ("[1, 2]", PLAIN, r'notation=Notation\(interval="ends"\) would accept it'),
+        ("12 %", PLAIN, r'notation=Notation\(percent="percent"\) would accept it'),
+        ("12,34.5", Notation(thousands=","), r"is not a number \(allowed: separators of thousands\)"),
+        ("stable", WORDS, "is not a number or 'unstable' or 'n.s.'"),
+        ("2003-02-30", Notation(date=True), "is not a date such as 2003-05-17"),
+        ("17.5", Notation(count=True), "is not a whole number"),
+        ("1" * 200, PLAIN, "is not a number"),
+        ("1e999", PLAIN, "is not a number"),
+    ],
+)
+def test_what_the_notation_does_not_allow_is_refused(text: str, notation: Notation, message: str) -> None:
+    with pytest.raises(PrintedFileError, match=message):
+        PrintedValue(text, notation=notation)
+
+
+def paper(**options: object) -> Paper:
+    made = Paper("toy", "toy", "Toy", (), "", 2000, (), ())
+    table = made.table("table-1", "T", rows=("A", "B"), columns=("x", "y"), **options)  # type: ignore[arg-type]
+    table.reading("as-written", "as written")(pd.DataFrame)
+    return made
+
+
+def test_a_table_of_two_notations(tmp_path: Path) -> None:
+    table = paper(notation={"x": BOUND, "y": Notation(words=("unstable",), none=("-",))}).exhibits["table-1"]
+    path = tmp_path / "table-1.csv"
+    path.write_text("row,x,y\nA,<0.1,unstable\nB,0.5,-\n", encoding="utf-8")
+    values = read_printed(path, table)  # type: ignore[arg-type]
+    assert {key: value.statement.kind for key, value in values.items()} == {
+        ("A", "x"): "below",
+        ("A", "y"): "word",
+        ("B", "x"): "number",
+    }
+
+
+def test_words_are_judged() -> None:
+    made = paper(notation={"y": WORDS})
+    table = made.exhibits["table-1"]
+    frame = pd.DataFrame({"x": [1.0, 2.0], "y": ["unstable", 0.5]}, index=["A", "B"])
+    printed = {
+        ("A", "x"): PrintedValue("1.0", "A", "x"),
+        ("A", "y"): PrintedValue("unstable", "A", "y", notation=WORDS),
+        ("B", "y"): PrintedValue("n.s.", "B", "y", notation=WORDS),
+    }
+    results = {("toy", table.id): TableResult("toy", table.id, {"as-written": frame})}
+    judgement = judge(made, results, Inputs({"table-1": printed}))
+    assert [row.verdict for row in judgement.verdicts] == ["reproduced", "reproduced", "unexplained"]
+    assert [row.computed for row in judgement.verdicts] == ["1", "unstable", "0.5"]
+    (problem,) = judgement.problems
+    assert "row 'B', column 'y': printed n.s., computed as-written 0.5: has no ledger entry" in problem
+
+
+def test_a_number_that_stands_for_several_cells_holds_if_all_do() -> None:
+    made = paper(spans={("A", "x"): [("B", "x")]})
+    printed = {"table-1": {("A", "x"): PrintedValue("1.0", "A", "x")}}
+    for other, verdict in ((1.04, "reproduced"), (1.4, "unexplained")):
+        frame = pd.DataFrame({"x": [1.0, other], "y": [None, None]}, index=["A", "B"])
+        results = {("toy", "table-1"): TableResult("toy", "table-1", {"as-written": frame})}
+        (row,) = judge(made, results, Inputs(printed)).verdicts
+        assert row.verdict == verdict
+        assert row.computed == f"{other if verdict == 'unexplained' else 1.0:g}"
+
+
+def test_what_is_near_is_declared_for_a_table() -> None:
+    assert match(PrintedValue("1.00", near=Near(units=0.6, fraction=0.0)), 0.991).kind == "differs"
+    assert match(PrintedValue("1.00", near=Near(units=5, fraction=0.0)), 1.049).kind == "near"
+    assert match(PrintedValue("1.00"), 0.991).kind == "near"
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"notation": {"z": BOUND}}, "table-1: there is no column 'z'; allowed: x, y"),
+        ({"spans": {("A", "x"): [("C", "x")]}}, "table-1: there is no row 'C'; allowed: A, B"),
+        ({"labels": {"Q": "q"}}, "table-1: there is no row or column 'Q'; allowed: A, B, x, y"),
+        ({"units": {"A": "s"}}, "table-1: there is no column 'A'; allowed: x, y"),
+    ],
+)
+def test_declarations_speak_of_the_table(options: dict[str, object], message: str) -> None:
+    with pytest.raises(PaperDefinitionError, match=message):
+        paper(**options)
