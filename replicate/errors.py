@@ -7,6 +7,8 @@ ReplicateError                 shown to the user as one line, exit status 2
 ├── PrintedFileError           a printed CSV is malformed (file, line, cell)
 ├── LedgerError                a ledger entry names nothing, or no longer applies
 ├── AcceptedStateError         a file of the accepted state is damaged (file, line)
+├── FigureError                what should be compared is no figure, or has no name that can be a file's
+├── FigureRecordError          a record of a figure is damaged, or newer than this version
 ├── TemplateError              prose asks for a result that does not exist
 └── OutputError                a result cannot be written
 
@@ -42,6 +44,26 @@ class LedgerError(ReplicateError):
 
 class AcceptedStateError(ReplicateError):
     """A file of the accepted state is damaged."""
+
+
+class FigureError(ReplicateError):
+    """What should be compared is no figure, or cannot be named."""
+
+
+class FigureRecordError(ReplicateError):
+    """A record of a figure is damaged, or a newer version wrote it.
+
+    Attributes
+    ----------
+    why
+        What is wrong, to be put after the name of the file.
+    line
+        Where, if that is known.
+    """
+
+    def __init__(self, why: str, line: int | None = None) -> None:
+        super().__init__(f"the record of a figure {f'(line {line}) ' if line else ''}{why}")
+        self.why, self.line = why, line
 
 
 class TemplateError(ReplicateError):

@@ -170,8 +170,12 @@ def test_the_axes_are_described() -> None:
         axes.legend()
         canvas.suptitle("Both examples")
 
-    assert captured(draw).axes == [
+    (described,) = captured(draw).axes
+    parts = described.pop("parts")
+    assert {"output", "legend entry 'output'", "arrow of text 'peak'"} <= {part["name"] for part in parts}
+    assert [described] == [
         {
+            "position": [0.125, 0.11, 0.775, 0.77],
             "panel": "Step",
             "title": "Step",
             "xlabel": "time $t$",

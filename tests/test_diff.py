@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from replicate.diff.accepted import FigureState, figure_state
+from replicate.diff.changes import Change
 from replicate.diff.comparison import ExhibitDiff
 from replicate.exhibits import Figure
+from replicate.figures import capture as record_of
+from replicate.figures import compare
 from replicate.figures import style as plotstyle
-from replicate.figures.axes import compare_axes
-from replicate.figures.curves import compare_curves
 from replicate.figures.distance import distances, exact_distances
-from replicate.figures.off_screen import read_figure
+from replicate.figures.off_screen import curves_frame
 from replicate.figures.values import WINDOW, compare_values
 from replicate.run.drawing import capture
 
@@ -41,7 +42,8 @@ def state(draw: Draw) -> FigureState:
     with plotstyle.style("toy"):
         canvas = Canvas()
         draw(canvas)
-        return figure_state(*read_figure(canvas))
+        record = record_of(canvas)
+        return figure_state(curves_frame(record), record.panels, record.figure)
 
 
 def plot(*curves: tuple[str, Any, Any], xlim: Any = (0.0, 10.0), ylim: Any = (0.0, 2.0), **settings: Any) -> Draw:
@@ -57,10 +59,11 @@ def plot(*curves: tuple[str, Any, Any], xlim: Any = (0.0, 10.0), ylim: Any = (0.
 
 def changes(before: Draw, after: Draw) -> list[str]:
     old, new = state(before), state(after)
-    found = compare_curves((old.curves, old.axes), (new.curves, new.axes))
-    axes = compare_axes(old.axes, new.axes)
-    unchanged = found.unchanged if found.changes else 0  # of other curves, when it is about curves
-    return ExhibitDiff("toy", "fig-1", "figure", [*axes, *found.changes], unchanged).texts
+    found = compare(old.record, new.record)
+    about_curves = any(change.kind in {"curve", "new", "removed"} for change in found.differences)
+    unchanged = found.unchanged if about_curves else 0  # of other curves, when it is about curves
+    changed = [Change.of_figure("toy", "fig-1", difference) for difference in found.differences]
+    return ExhibitDiff("toy", "fig-1", "figure", changed, unchanged).texts
 
 
 OUTPUT, INPUT = ("output", T, response(T)), ("input", *STEP)
@@ -227,27 +230,27 @@ def test_panels_are_named_and_matched() -> None:
 # --------------------------------------------------------------------------------------- and only then
 
 
-def test_other_fonts_sizes_and_resolutions() -> None:
-    def with_fonts(family: str, size: float, dpi: float) -> Draw:
+def test_other_fonts_and_resolutions() -> None:
+    def with_fonts(family: str, dpi: float) -> Draw:
         def draw(canvas: Canvas) -> None:
             BOTH(canvas)
             canvas.set_dpi(dpi)
             axes = canvas.axes[0]
             for text in (axes.xaxis.label, axes.yaxis.label, *axes.get_xticklabels(), *axes.get_yticklabels()):
-                text.set(family=family, size=size)
-            axes.lines[0].set(linewidth=size / 3.0, antialiased=size < 10.0)
+                text.set(family=family)
+            axes.lines[0].set(antialiased=dpi < 100.0)
 
         return draw
 
     figures = [Figure("fig-1", "figure", "A title", draw) for draw in (
-        with_fonts("DejaVu Sans", 9.0, 72.0), with_fonts("DejaVu Serif", 15.0, 300.0),
+        with_fonts("DejaVu Sans", 72.0), with_fonts("DejaVu Serif", 300.0),
     )]  # fmt: skip
     one, other = (capture("toy", figure) for figure in figures)
     assert one.png != other.png
     assert one.svg != other.svg
-    assert one.axes == other.axes
-    before, after = ((figure_state(drawn.curves, drawn.axes).curves, drawn.axes) for drawn in (one, other))
-    found = compare_curves(before, after)
+    assert (one.axes, one.figure) == (other.axes, other.figure)
+    before, after = (figure_state(drawn.curves, drawn.axes, drawn.figure).record for drawn in (one, other))
+    found = compare(before, after)
     assert (found.changes, found.unchanged) == ([], 2)
 
 

@@ -256,7 +256,7 @@ def test_files_for_machines(diff: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     )
     (change,) = found["changes"]
     assert (change["paper"], change["exhibit"], change["kind"]) == ("lab", "fig-1", "curve")
-    limits = json.loads(Path("accepted/lab/fig-1.json").read_text())[0]["ylim"]
+    limits = json.loads(Path("accepted/lab/fig-1.json").read_text())["panels"][0]["ylim"]
     assert change["size"] == pytest.approx(0.05 / (limits[1] - limits[0]), rel=5e-3)
     (failure,) = junit().iter("failure")
     assert failure.get("message") == change["text"]

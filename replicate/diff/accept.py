@@ -34,7 +34,8 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
     Returns
     -------
     Comparison
-        With what was accepted until now; if it has no changes, nothing was written.
+        With what was accepted until now; if it has no changes, nothing was written, but for what was in an older
+        format.
 
     Raises
     ------
@@ -48,16 +49,16 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
         msg = f"nothing is accepted, because an exhibit could not be computed: {outcome.failures[0]}"
         raise ReplicateError(msg)
     comparison = compare(outcome, folder, known)
-    changes = comparison.changes
-    if not changes:
+    fresh_states = dict.fromkeys((diff.paper, diff.exhibit) for diff in (*comparison.changed, *comparison.outdated))
+    if not fresh_states:
         return comparison
     with staged(folder) as fresh:
-        for paper in dict.fromkeys(change.paper for change in changes):
+        for paper in dict.fromkeys(paper for paper, _ in fresh_states):
             if (folder / paper).is_dir():
                 shutil.copytree(folder / paper, fresh / paper)
             else:
                 (fresh / paper).mkdir()
-        for paper, exhibit in dict.fromkeys((change.paper, change.exhibit) for change in changes):
+        for paper, exhibit in fresh_states:
             for old in files_of(fresh / paper, exhibit):
                 old.unlink()
             if (paper, exhibit) in outcome.results:
@@ -92,6 +93,9 @@ def _entry(reason: str, comparison: Comparison) -> str:
             first.setdefault(diff.paper, []).append(diff.exhibit)
         else:
             lines += [f"{diff.name}: {text}" for text in diff.texts]
+    old = [diff.name for diff in comparison.outdated if not diff.changes]
+    if old:
+        lines.append(f"written in the present format, which says more: {', '.join(old)}")
     if len(lines) > _LINES:
         lines = [*lines[:_LINES], f"and {len(lines) - _LINES} more"]
     lines = [f"{paper}: first accepted: {', '.join(exhibits)}" for paper, exhibits in first.items()] + lines

@@ -9,17 +9,17 @@ in ``<exhibit>.png``, small and never compared. Numbers have nine significant di
 from __future__ import annotations
 
 import io
-import json
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from replicate.diff.accepted_files import keyed, read_axes, read_cells, read_curves
+from replicate.diff.accepted_files import keyed, read_cells, read_curves, read_record
 from replicate.display.csv_text import csv_text, curves_text, number_text
 from replicate.errors import AcceptedStateError
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.figures.polylines import Points
+from replicate.figures.record import VERSION, Record, record_text
 from replicate.run.outcome import Outcome
 
 if TYPE_CHECKING:
@@ -41,10 +41,20 @@ class TableState:
 
 @dataclass(frozen=True)
 class FigureState:
-    """A figure: points by (panel, curve), and the description of every panel."""
+    """A figure: points by (panel, curve), the description of every panel and of the whole.
+
+    `version` is that of the accepted file, as in `replicate.figures.record`.
+    """
 
     curves: Mapping[tuple[str, str], Points]
     axes: Sequence[Mapping[str, Any]]
+    figure: Mapping[str, Any] = field(default_factory=dict)
+    version: int = VERSION
+
+    @property
+    def record(self) -> Record:
+        """The record of the figure."""
+        return Record(self.figure, self.axes, self.curves, self.version)
 
 
 State = TableState | FigureState
@@ -53,18 +63,20 @@ State = TableState | FigureState
 def present_state(outcome: Outcome, result: Result) -> State:
     """Return what a run computed, as it would be read back after accepting it."""
     if isinstance(result, FigureResult):
-        return figure_state(result.curves, result.axes)
+        return figure_state(result.curves, result.axes, result.figure)
     columns, rows = _rows(outcome, result)
     return TableState(dict(keyed(columns, row) for row in rows))
 
 
-def figure_state(curves: pd.DataFrame, axes: Sequence[Mapping[str, Any]]) -> FigureState:
+def figure_state(
+    curves: pd.DataFrame, axes: Sequence[Mapping[str, Any]], figure: Mapping[str, Any] | None = None
+) -> FigureState:
     """Return the state of a figure whose curves are in a frame with the columns ``panel, curve, x, y``."""
     places: dict[tuple[str, str], list[int]] = {}
     for place, (panel, curve) in enumerate(zip(curves["panel"], curves["curve"], strict=True)):
         places.setdefault((str(panel), str(curve)), []).append(place)
     points = curves[["x", "y"]].to_numpy(dtype=float)
-    return FigureState({key: points[rows] for key, rows in places.items()}, axes)
+    return FigureState({key: points[rows] for key, rows in places.items()}, axes, figure or {})
 
 
 def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> State | str:
@@ -85,10 +97,11 @@ def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> St
 
 
 def _read_figure(data: Path, axes: Path) -> FigureState:
-    state = FigureState(read_curves(data), read_axes(axes))
-    described = {str(panel["panel"]) for panel in state.axes}
+    described = read_record(axes)
+    state = FigureState(read_curves(data), described.panels, described.figure, described.version)
+    known = {str(panel["panel"]) for panel in state.axes}
     for panel, curve in state.curves:
-        if panel not in described:
+        if panel not in known:
             msg = f"{data.parent.name}/{axes.name}: does not describe panel '{panel}', where curve '{curve}' is"
             raise AcceptedStateError(msg)
     return state
@@ -105,7 +118,7 @@ def state_files(outcome: Outcome, result: Result) -> dict[str, bytes]:
         return {f"{result.exhibit}.csv": csv_text(*_rows(outcome, result)).encode()}
     return {
         f"{result.exhibit}.csv": curves_text(result.curves).encode(),
-        f"{result.exhibit}.json": (json.dumps(result.axes, indent=1, ensure_ascii=False) + "\n").encode(),
+        f"{result.exhibit}.json": record_text(result.figure, result.axes).encode(),
         f"{result.exhibit}.png": _small(result.png),
     }
 

@@ -8,21 +8,20 @@ from __future__ import annotations
 
 import csv
 import io
-import json
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
-from replicate.errors import AcceptedStateError
+from replicate.errors import AcceptedStateError, FigureRecordError
 from replicate.figures.polylines import Points
+from replicate.figures.record import Record
 
 CURVE_COLUMNS = ("panel", "curve", "x", "y")
 
 _KEYS = {"row", "column", "reading"}
-_NEEDED = {"panel", "xlim", "ylim"}
 
 
 def read_cells(path: Path, columns: Sequence[str]) -> dict[tuple[str, ...], dict[str, str]]:
@@ -68,35 +67,18 @@ def read_curves(path: Path) -> dict[tuple[str, str], Points]:
     return {key: np.array(value) for key, value in points.items()}
 
 
-def read_axes(path: Path) -> list[Mapping[str, Any]]:
-    """Return the descriptions of the panels of a figure, as in `replicate.figures.readback.read_panel`.
+def read_record(path: Path) -> Record:
+    """Return the record of a figure, without its curves: they lie beside it.
 
     Raises
     ------
     AcceptedStateError
-        If the file is no list of descriptions, or one of them holds what none can.
+        If the file is no record, or a newer version wrote it.
     """
     try:
-        axes = json.loads(_text(path), parse_constant=_no_number)
-    except json.JSONDecodeError as error:
-        _damaged(path, error.lineno, f"is no JSON: {error.msg}")
-    except (ValueError, RecursionError) as error:
-        _damaged(path, None, f"is no JSON: {error}")
-    if not isinstance(axes, list) or not all(isinstance(entry, dict) and entry.keys() >= _NEEDED for entry in axes):
-        _damaged(path, None, f"needed: a list of objects, each with {', '.join(sorted(_NEEDED))}")
-    seen: set[str] = set()
-    for entry in axes:
-        for name, value in entry.items():
-            holds, needed = _FIELDS.get(name, (_anything, ""))
-            if not holds(value):
-                _damaged(path, None, f"{name} of panel '{entry['panel']}' is {json.dumps(value)}, needed: {needed}")
-        for axis in "xy":
-            if entry.get(f"{axis}scale") == "log" and min(entry[f"{axis}lim"]) <= 0.0:
-                _damaged(path, None, f"{axis}lim of panel '{entry['panel']}' is not positive on a logarithmic axis")
-        if entry["panel"] in seen:
-            _damaged(path, None, f"describes panel '{entry['panel']}' twice, needed: every panel once")
-        seen.add(entry["panel"])
-    return axes
+        return Record.from_json(_text(path))
+    except FigureRecordError as error:
+        _damaged(path, error.line, error.why)
 
 
 def _rows(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, list[str]]]:
@@ -137,64 +119,3 @@ def _number(text: str) -> float:
         return float(text)
     except ValueError:
         return math.nan
-
-
-def _no_number(name: str) -> NoReturn:
-    msg = f"{name} is no number"
-    raise ValueError(msg)
-
-
-# ------------------------------------------------------------------ what the description of a panel may hold
-
-
-def _anything(_: object) -> bool:
-    return True
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
-
-
-def _is_flag(value: object) -> bool:
-    return isinstance(value, bool)
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _are_texts(value: object) -> bool:
-    return isinstance(value, list) and all(map(_is_text, value))
-
-
-def _are_limits(value: object) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(map(_is_number, value)) and value[0] != value[1]
-
-
-def _are_placed(value: object) -> bool:
-    return isinstance(value, list) and all(
-        isinstance(text, dict)
-        and _is_text(text.get("text"))
-        and all(_is_number(text.get(axis)) or _is_text(text.get(axis)) for axis in "xy")
-        for text in value
-    )
-
-
-def _are_numbers_by_name(value: object) -> bool:
-    return isinstance(value, dict) and all(map(_is_number, value.values()))
-
-
-_Field = tuple[Callable[[object], bool], str]
-
-_TEXT: _Field = (_is_text, "a text")
-_TEXTS: _Field = (_are_texts, "a list of texts")
-_LIMITS: _Field = (_are_limits, "two different numbers")
-
-_FIELDS: dict[str, _Field] = {
-    **dict.fromkeys(("panel", "title", "xlabel", "ylabel", "xscale", "yscale", "aspect", "figure_title"), _TEXT),
-    **dict.fromkeys(("legend", "figure_legend", "figure_texts", "points", "areas"), _TEXTS),
-    **dict.fromkeys(("xlim", "ylim"), _LIMITS),
-    "hidden": (_is_flag, "true or false"),
-    "texts": (_are_placed, "a list of objects, each with text, x and y"),
-    "thinned": (_are_numbers_by_name, "numbers by name"),
-}

@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
-from replicate.figures.differences import Difference
+from replicate.figures.differences import Difference, Layer
 
 _DIGITS = (6, 7, 8, 9)
 
-Kind = Literal["value", "verdict", "printed", "curve", "axes", "new", "removed", "failed", "damaged"]
+Kind = Literal["value", "verdict", "printed", "curve", "axes", "look", "new", "removed", "failed", "damaged"]
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,8 @@ class Change:
         The two values, as text.
     size
         How much a curve moved, as a fraction of its axes; how much a number moved, as a fraction of itself.
+    layer
+        Of a figure: whether a reader noticed that knows what it sees, or the safety net.
     """
 
     paper: str
@@ -38,11 +40,13 @@ class Change:
     before: str = ""
     after: str = ""
     size: float | None = None
+    layer: Layer = "named"
 
     @classmethod
     def of_figure(cls, paper: str, exhibit: str, found: Difference) -> Change:
         """Return what differs in a figure as a change of the exhibit."""
-        return cls(paper, exhibit, found.kind, found.text, found.where, found.before, found.after, found.size)
+        text, where, size = found.text, found.where, found.size
+        return cls(paper, exhibit, found.kind, text, where, found.before, found.after, size, found.layer)
 
     def __str__(self) -> str:
         """Return the whole sentence, for the terminal and the log."""

@@ -12,8 +12,7 @@ from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
 from replicate.errors import AcceptedStateError
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, errors_of
-from replicate.figures.axes import compare_axes
-from replicate.figures.curves import compare_curves
+from replicate.figures.comparing import compare_records
 from replicate.figures.pair import Pair
 from replicate.run.outcome import Outcome
 
@@ -40,6 +39,8 @@ class ExhibitDiff:
         Of a figure: every curve that both states have.
     cells
         Of a table or of claims: what is not as accepted.
+    outdated
+        Whether its accepted state is that of an older version, which knew less of a figure.
     """
 
     paper: str
@@ -51,6 +52,7 @@ class ExhibitDiff:
     after: State | None = None
     pairs: Sequence[Pair] = ()
     cells: Sequence[CellChange] = ()
+    outdated: bool = False
 
     @property
     def name(self) -> str:
@@ -102,6 +104,11 @@ class Comparison:
     def changed(self) -> list[ExhibitDiff]:
         """The exhibits in which something changed, or which failed."""
         return [exhibit for exhibit in self.exhibits if exhibit.changes]
+
+    @property
+    def outdated(self) -> list[ExhibitDiff]:
+        """The exhibits whose accepted state says less than a new one would; accepting writes them anew."""
+        return [exhibit for exhibit in self.exhibits if exhibit.outdated]
 
     @property
     def unchanged(self) -> list[ExhibitDiff]:
@@ -165,13 +172,13 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         missing = Change(paper, exhibit, "new", f"has no accepted state: {paper}/{before} is missing")
         return ExhibitDiff(paper, exhibit, kind, [missing], after=after)
     if isinstance(before, FigureState) and isinstance(after, FigureState):
-        found = compare_curves((before.curves, before.axes), (after.curves, after.axes))
-        differences = [*compare_axes(before.axes, after.axes), *found.changes]
-        changes = [Change.of_figure(paper, exhibit, difference) for difference in differences]
+        found = compare_records(before.record, after.record)
+        changes = [Change.of_figure(paper, exhibit, difference) for difference in found.differences]
         picture = f"{paper}/{exhibit}.png"
         if not (folder / picture).is_file():
             changes.append(Change(paper, exhibit, "new", f"its picture for people, {picture}, is missing", "picture"))
-        return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs)
+        old = before.version < after.version
+        return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs, outdated=old)
     assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
     assert isinstance(after, TableState)  # noqa: S101
     cells, unchanged = compare_cells(before.cells, after.cells)

@@ -16,7 +16,7 @@ from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
 from replicate.display.labels import heading
 from replicate.display.rendering import render
 from replicate.exhibits import Paper
-from replicate.figures.wording import percent
+from replicate.figures.differences import percent
 from replicate.run.outcome import Outcome
 
 # A change of a rule may move every value of a table.

@@ -85,8 +85,9 @@ def overlay(before: FigureState, after: FigureState, same: Collection[tuple[str,
                     _draw_curve(axes, description, name, points, **_UNCHANGED)
         for line in axes.lines:
             line.set_label("_")
-        axes.set_xlim(*_both(panel["xlim"], new["xlim"]))
-        axes.set_ylim(*_both(panel["ylim"], new["ylim"]))
+        if "polar" not in panel and panel.get("units") != "box":
+            axes.set_xlim(*_both(panel["xlim"], new["xlim"]))
+            axes.set_ylim(*_both(panel["ylim"], new["ylim"]))
         axes.plot([], [], label="accepted", **_ACCEPTED)
         axes.plot([], [], label="new", **_NEW)
         axes.legend(loc="best")
@@ -155,7 +156,7 @@ def _drawn(panels: Sequence[Description], draw: Callable[[Axes, Description], No
     with plotstyle.style(hashsalt=salt):
         canvas: Canvas = Canvas(figsize=(_WIDTH, 0.2 + height * rows))
         for place, panel in enumerate(panels, start=1):
-            axes = canvas.add_subplot(rows, columns, place)
+            axes = canvas.add_subplot(rows, columns, place, projection="polar" if "polar" in panel else None)
             _set_axes(axes, panel)
             draw(axes, panel)
         if panels and panels[0].get("figure_title"):
@@ -172,8 +173,15 @@ def _panel_height(panel: Description, columns: int) -> float:
 
 
 def _set_axes(axes: Axes, panel: Description) -> None:
+    if panel.get("units") == "box":  # of a solid, or a globe: only the picture of the curves is known
+        axes.set(xlim=(0.0, 1.0), ylim=(0.0, 1.0), title=panel.get("title", ""))
+        axes.set_axis_off()
+        return
+    if "polar" in panel:
+        _set_polar(axes, panel)
+        return
     for axis in "xy":
-        getattr(axes, f"set_{axis}scale")(panel.get(f"{axis}scale", "linear"))
+        _set_scale(axes, axis, panel)
         getattr(axes, f"set_{axis}lim")(*panel[f"{axis}lim"])
         getattr(axes, f"set_{axis}label")(panel.get(f"{axis}label", ""))
     axes.set_title(panel.get("title", ""))
@@ -187,6 +195,38 @@ def _set_axes(axes: Axes, panel: Description) -> None:
             axes.text(
                 text["x"], text["y"], text["text"], transform=where, fontsize=8, clip_on=True, ha="center", va="center"
             )
+
+
+def _set_scale(axes: Axes, axis: str, panel: Description) -> None:
+    """Give an axis its scale, one that cannot be made again by its name by the table of its values."""
+    from matplotlib.scale import get_scale_names
+
+    scale = panel.get(f"{axis}scale", "linear")
+    if f"{axis}table" not in panel:
+        getattr(axes, f"set_{axis}scale")(scale if scale in get_scale_names() else "linear")
+        return
+    table = panel[f"{axis}table"]
+    order = np.argsort(table["data"])
+    data, places = (np.asarray(table[name], dtype=float)[order] for name in ("data", "at"))
+    falling = places[0] > places[-1]
+    at = -places if falling else places
+
+    def there(values: Any) -> Any:
+        return np.interp(values, data, at)
+
+    def back(values: Any) -> Any:
+        return np.interp(values, at, data)
+
+    getattr(axes, f"set_{axis}scale")("function", functions=(there, back))
+
+
+def _set_polar(axes: Any, panel: Description) -> None:
+    polar = panel["polar"]
+    axes.set_theta_offset(polar["offset"])
+    axes.set_theta_direction(polar["direction"])
+    axes.set_rorigin(polar["rlim"][0])
+    axes.set_rlim(*panel["ylim"])
+    axes.set_title(panel.get("title", ""))
 
 
 def _draw_curve(axes: Axes, panel: Description, name: str, points: Points, **look: Any) -> None:

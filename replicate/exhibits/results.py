@@ -51,7 +51,9 @@ class FigureResult:
         Columns ``panel, curve, x, y`` (text, text, float, float), points in drawing order; a row without x
         and y is a break in the curve.
     axes
-        One description per panel: title, limits, scales, labels, legend, annotation texts.
+        One description per panel: title, limits, scales, labels, legend, annotation texts, and all that is drawn.
+    figure
+        The same of the figure as a whole: its size, and what is drawn outside the axes.
     error
         A one-line reason if drawing raised; the other fields are then empty.
     """
@@ -63,6 +65,7 @@ class FigureResult:
     curves: pd.DataFrame
     axes: list[dict[str, Any]]
     error: str = ""
+    figure: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,23 @@ from replicate.figures.scaling import TOLERANCE, in_units
 Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
 
+#: Said elsewhere, by what is compared curve by curve or part by part, or by the tick labels.
+_SILENT = {"panel", "parts", "dense", "clouds", "loose", "thinned", "units", "curves"}
+_FIRST = {
+    *("title", "xlabel", "ylabel", "xscale", "yscale", "xlim", "ylim", "legend", "texts", "aspect", "hidden"),
+    *("points", "areas", "figure_title", "figure_texts", "figure_legend"),
+}
+# Panels are where they were up to this fraction of the figure, or this if their layout follows the size of texts.
+_MOVED, _FITTED = 3e-3, 0.09
+_CALLED = {
+    "view": "view (elevation, azimuth, roll)",
+    "xcategories": "categories of the x axis",
+    "ycategories": "categories of the y axis",
+    "xkind": "kind of the x axis",
+    "ykind": "kind of the y axis",
+    "titles": "titles (left, centre, right)",
+}
+
 
 def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Difference]:
     """Compare the panels of a figure, matched by name.
@@ -25,16 +42,21 @@ def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Differen
     """
     several = len(before) > 1 or len(after) > 1
     changes = []
-    for old, new in matched_panels(before, after):
+    # What the first version of the records did not know cannot have changed.
+    known = None if any("parts" in panel for panel in before) else _FIRST
+    matched = matched_panels(before, after)
+    # Where a panel comes or goes the others make room for it.
+    silent = _SILENT if all(old and new for old, new in matched) else _SILENT | {"position"}
+    for old, new in matched:
         panel = str((old or new or {})["panel"])
         if old is None or new is None:
             what, kind = ("gone", "removed") if new is None else ("new", "new")
             changes.append(Difference("axes", f"panel '{panel}' is {what}", panel, kind))
             continue
-        prefix = f"'{panel}': " if several else ""
-        for name in dict.fromkeys((*old, *new)):
+        for name in (name for name in dict.fromkeys((*old, *new)) if known is None or name in known):
             one, other = old.get(name), new.get(name)
-            if name != "panel" and not _same(one, other) and not _as_drawn(name, old, new):
+            prefix = f"'{panel}': " if several and not name.startswith("figure_") else ""
+            if name not in silent and not _same(one, other) and not _as_drawn(name, old, new):
                 changes += [
                     Difference("axes", prefix + text, f"{panel} / {name}", _shown(one), _shown(other))
                     for text in _words(name, old, new)
@@ -58,10 +80,22 @@ def matched_panels(
     return matched
 
 
+def same(one: Axes, other: Axes, name: str) -> bool:
+    """Whether a property of two axes is the same, but for what nobody could see."""
+    return _same(one.get(name), other.get(name)) or _as_drawn(name, one, other)
+
+
 def _as_drawn(name: str, one: Axes, other: Axes) -> bool:
     """Whether limits that follow the data differ by less than one could see."""
+    if name == "position":
+        apart = max(abs(a - b) for a, b in zip(one[name], other[name], strict=True))
+        return bool(apart <= (_FITTED if one.get("fitted") or other.get("fitted") else _MOVED))
+    if name in {"xtable", "ytable"}:
+        return _same_scale(name[0], one, other)
     if name not in {"xlim", "ylim"}:
         return False
+    if one.get("units") == "box" or "polar" in one:
+        return _close(one[name], other[name])
     ends = [np.column_stack([axes["xlim"], axes["ylim"]]) for axes in (one, other)]
     return bool(np.all(np.abs(in_units(ends[1], one) - in_units(ends[0], one))[:, "xy".index(name[0])] <= TOLERANCE))
 
@@ -103,10 +137,45 @@ def _words(name: str, before: Axes, after: Axes) -> Iterator[str]:
     elif name in {"points", "areas"}:
         yield from (f"'{curve}' is drawn as {name} now" for curve in other or [] if curve not in (one or []))
         yield from (f"'{curve}' was drawn as {name}" for curve in one or [] if curve not in (other or []))
+    elif name == "position":
+        yield f"the panel is now at {_shown(other)} (was at {_shown(one)}): left, bottom, width, height of the figure"
+    elif name in {"xtable", "ytable"}:
+        yield f"the {name[0]} axis is scaled differently now"
+    elif name == "polar":
+        yield from _polar(one or {}, other or {})
     elif name == "hidden":
         yield f"axes are now {'hidden' if other else 'visible'}"
-    elif name != "thinned":  # says how exact the stored curves are, nothing about the figure
-        yield f"{name.replace('_', ' ')} is now {_shown(other)} (was {_shown(one)})"
+    else:
+        yield f"{_CALLED.get(name, name.replace('_', ' '))} is now {_shown(other)} (was {_shown(one)})"
+
+
+def _polar(one: Mapping[str, Any], other: Mapping[str, Any]) -> Iterator[str]:
+    words = {"offset": "zero of the angle", "direction": "direction of the angle", "rscale": "scale of the radius"}
+    for name, called in words.items():
+        if not _same(one.get(name), other.get(name)):
+            yield f"{called} is now {_shown(other.get(name))} (was {_shown(one.get(name))})"
+    if not _close(one.get("rlim", [0.0, 1.0]), other.get("rlim", [0.0, 1.0])):
+        yield f"radius now runs over {_shown(other.get('rlim'))} (ran over {_shown(one.get('rlim'))})"
+    if not _close(one.get("matrix", []), other.get("matrix", [])):
+        yield "the axes show another part of the circle"
+
+
+def _close(one: Sequence[float], other: Sequence[float]) -> bool:
+    size = max((abs(value) for value in one), default=1.0) or 1.0
+    return len(one) == len(other) and all(abs(a - b) <= TOLERANCE * size for a, b in zip(one, other, strict=True))
+
+
+def _same_scale(axis: str, one: Axes, other: Axes) -> bool:
+    """Whether values lie where they lay; other limits are said on their own."""
+    if not _same(one[f"{axis}lim"], other[f"{axis}lim"]) or one.get(f"{axis}scale") != other.get(f"{axis}scale"):
+        return True
+    if f"{axis}table" not in one or f"{axis}table" not in other:
+        return False
+    tables = [axes[f"{axis}table"] for axes in (one, other)]
+    low, high = sorted(one[f"{axis}lim"])
+    values = [value for value in tables[0]["data"] if low <= value <= high]
+    places = [np.interp(values, table["data"], table["at"]) for table in tables]
+    return bool(np.abs(places[1] - places[0]).max(initial=0.0) <= 5.0 * TOLERANCE)
 
 
 def _limits(axis: str, before: Axes, after: Axes) -> Iterator[str]:

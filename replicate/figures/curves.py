@@ -14,15 +14,18 @@ import numpy as np
 from replicate.figures.axes import Axes, matched_panels
 from replicate.figures.differences import Difference, FigureChange
 from replicate.figures.distance import Distances, distances, point_distances
+from replicate.figures.envelope import compare_envelopes
 from replicate.figures.pair import Pair
-from replicate.figures.polylines import Points
-from replicate.figures.readback import TOLERANCE as THINNING
+from replicate.figures.places import points_apart
+from replicate.figures.polylines import THINNING, Points
 from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
 from replicate.figures.values import WINDOW, Array, compare_values, is_function
 from replicate.figures.wording import moved_words
 
 # A function of x that moved by less than this needs no second measure that says whether it moved sideways.
 _LITTLE = 10.0 * TOLERANCE
+# Labels interrupt a contour by their width, which the font decides.
+_LOOSE = 0.02
 
 #: By panel and name, in data coordinates.
 Curves = Mapping[tuple[str, str], Points]
@@ -30,10 +33,11 @@ Curves = Mapping[tuple[str, str], Points]
 
 @dataclass
 class CurveComparison:
-    """All curves of a figure."""
+    """All curves of a figure; `renamed` has the accepted name by panel and new name of those that changed it."""
 
     changes: list[Difference] = field(default_factory=list)
     pairs: list[Pair] = field(default_factory=list)
+    renamed: dict[tuple[str, str], str] = field(default_factory=dict)
 
     @property
     def unchanged(self) -> int:
@@ -87,9 +91,12 @@ class _Panel:
             if was.get(origin) == name:
                 self.say(found, "curve", f"the labels of curves '{name}' and '{origin}' are swapped", name, origin)
                 done |= {name, origin}
+                self.rename(found, name, origin)
+                self.rename(found, origin, name)
             elif origin in gone:
                 self.say(found, "curve", f"curve '{origin}' is now called '{name}'", name, origin)
                 done |= {name, origin}
+                self.rename(found, name, origin)
             else:
                 self.say(found, "curve", f"curve '{name}' now lies where '{origin}' lay", name, origin)
                 done.add(name)
@@ -103,6 +110,9 @@ class _Panel:
             if name not in done:
                 words, size = moved_words(pairs[name], self.view)
                 self.say(found, "curve", f"curve '{name}'{self.suffix} {words}", name, size=size, suffix="")
+
+    def rename(self, found: CurveComparison, name: str, origin: str) -> None:
+        found.renamed[str(self.old["panel"]), name] = origin
 
     def say(
         self,
@@ -131,6 +141,12 @@ class _Panel:
             for name, axes in ((old_name, self.old), (new_name, self.new))
         )
         tolerance = TOLERANCE + coarse + rounding(self.old, "y")
+        if any(name in axes.get("loose", ()) for name, axes in ((old_name, self.old), (new_name, self.new))):
+            tolerance = _LOOSE
+        told = self.dense(old_name, new_name)
+        if told is not None:
+            words, size = told
+            return Pair(self.old, new_name, one, other, bool(words), tolerance, words=words, size=size)
         before, after = in_units(one, self.old), in_units(other, self.old)
         same = before.shape == after.shape and bool(
             np.allclose(before, after, rtol=0.0, atol=TOLERANCE / 100.0, equal_nan=True)
@@ -150,6 +166,20 @@ class _Panel:
             apart = self.apart(before, after, tolerance)
             far = max(part.largest for part in apart) > tolerance
         return Pair(self.old, new_name, one, other, far, tolerance, None, apart)
+
+    def dense(self, old_name: str, new_name: str) -> tuple[str, float] | None:
+        """Compare two curves, or clouds of points, of which only a digest is kept; ``None`` if all points are."""
+        one, other = (axes.get("dense", {}).get(name) for axes, name in ((self.old, old_name), (self.new, new_name)))
+        if one is not None and other is not None:
+            return compare_envelopes(one, other) or ("", 0.0)
+        one, other = (axes.get("clouds", {}).get(name) for axes, name in ((self.old, old_name), (self.new, new_name)))
+        if one is None or other is None:
+            return None
+        counts = [cloud["pieces"] for cloud in (one, other)]
+        if counts[0] != counts[1]:
+            return f"now has {counts[1]} points (was {counts[0]})", 1.0
+        size = points_apart(one, other, TOLERANCE)
+        return (f"moved: its {counts[0]} points lie elsewhere", size) if size else ("", 0.0)
 
     def apart(self, before: Points, after: Points, tolerance: float) -> tuple[Distances, Distances]:
         return distances(after, before, tolerance, self.view), distances(before, after, tolerance, self.view)

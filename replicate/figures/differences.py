@@ -11,7 +11,9 @@ RELATIVE = 1e-7
 #: ... and up to this, absolute, where a value is zero but for rounding.
 ABSOLUTE = 1e-10
 
-FigureChange = Literal["curve", "axes", "new", "removed"]
+FigureChange = Literal["curve", "axes", "look", "new", "removed"]
+#: Who noticed: a reader that knows what it sees, or the safety net, which compares whatever is drawn.
+Layer = Literal["named", "net"]
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class Difference:
     Attributes
     ----------
     kind
-        Whether a curve or a property of the axes differs, or something is new or gone.
+        Whether a curve, a property of the axes or the look of a part differs, or something is new or gone.
     text
         What changed, in words.
     where
@@ -30,6 +32,8 @@ class Difference:
         The two values, as text.
     size
         How much a curve moved, as a fraction of its axes.
+    layer
+        Who noticed.
     """
 
     kind: FigureChange
@@ -38,6 +42,7 @@ class Difference:
     before: str = ""
     after: str = ""
     size: float | None = None
+    layer: Layer = "named"
 
 
 def same_number(before: str, after: str) -> bool:
@@ -54,3 +59,14 @@ def same_number(before: str, after: str) -> bool:
         return math.isclose(float(before), float(after), rel_tol=RELATIVE, abs_tol=ABSOLUTE)
     except ValueError:
         return False
+
+
+def percent(size: float) -> str:
+    """Return a fraction in per cent, to two digits.
+
+    Examples
+    --------
+    >>> percent(0.0012), percent(0.5), percent(3.21)
+    ('0.12 %', '50 %', '321 %')
+    """
+    return f"{100.0 * size:.0f} %" if size >= 0.995 else f"{100.0 * size:.2g} %"

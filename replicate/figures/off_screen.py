@@ -1,64 +1,26 @@
-"""What becomes of a drawn matplotlib figure: an SVG, a PNG, its curves as data and a description of its axes."""
+"""What becomes of a drawn matplotlib figure: an SVG, a PNG, and its curves as a frame."""
 
 from __future__ import annotations
 
 import hashlib
 import io
 import re
-from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
 from replicate.figures import style
-from replicate.figures.readback import read_panel
+from replicate.figures.record import Record
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure as Canvas
 
-_LONGEST_NAME = 24
 
-
-def read_figure(canvas: Canvas) -> tuple[pd.DataFrame, list[dict[str, Any]]]:
-    """Return the curves of a drawn figure, and the description of its axes."""
-    panels = [read_panel(name, axes) for name, axes in _panels(canvas)]
-    rows = [row for rows, _ in panels for row in rows]
+def curves_frame(record: Record) -> pd.DataFrame:
+    """Return the curves of a figure as a frame with the columns ``panel, curve, x, y``."""
+    rows = [(panel, curve, float(x), float(y)) for (panel, curve), points in record.curves.items() for x, y in points]
     frame = pd.DataFrame(rows, columns=["panel", "curve", "x", "y"])
-    described = [description for _, description in panels]
-    if described:
-        described[0] |= _outside_the_axes(canvas)
-    return frame.astype({"panel": object, "curve": object, "x": float, "y": float}), described
-
-
-def _panels(canvas: Canvas) -> Iterator[tuple[str, Axes]]:
-    """Name every axes by its title, or by its place where it has none that is short and plain.
-
-    The name stands in every line of the data; one used again gets a number.
-    """
-    used: dict[str, int] = {}
-    for place, axes in enumerate((axes for axes in canvas.axes if axes.get_visible()), start=1):
-        title = axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right")
-        name = " ".join(title.split())
-        if not name or len(name) > _LONGEST_NAME or "$" in name:
-            name = f"panel {place}"
-        used[name] = used.get(name, 0) + 1
-        yield (name if used[name] == 1 else f"{name} ({used[name]})"), axes
-
-
-def _outside_the_axes(canvas: Canvas) -> dict[str, Any]:
-    """Describe texts and legends that belong to the figure as a whole; they are kept with the first panel."""
-    title = canvas.get_suptitle()
-    texts = [text.get_text() for text in canvas.texts if text.get_text() not in {"", title}]
-    legends = [entry.get_text() for legend in canvas.legends for entry in legend.get_texts()]
-    found: dict[str, Any] = {}
-    if title:
-        found["figure_title"] = title
-    if texts:
-        found["figure_texts"] = texts
-    if legends:
-        found["figure_legend"] = legends
-    return found
+    return frame.astype({"panel": object, "curve": object, "x": float, "y": float})
 
 
 def svg_text(canvas: Canvas, title: str) -> str:

@@ -23,6 +23,8 @@ class Pair:
     distance
         Of the new curve from the accepted one, then the other way round; empty for functions of x whose values
         tell enough.
+    words, size
+        How it differs where its points were too many to keep.
     """
 
     axes: Axes  # the accepted description of the panel: all fractions are of these axes
@@ -33,3 +35,5 @@ class Pair:
     tolerance: float
     values: ValueDifference | None = None
     distance: tuple[Distances, ...] = ()
+    words: str = ""
+    size: float = 0.0

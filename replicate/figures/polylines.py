@@ -19,6 +19,9 @@ from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
 
+#: Of the curves that are stored, a dropped point lies within this fraction of the axes from the thinned curve.
+THINNING = 5e-5
+
 
 def simplify(points: Points, tolerance: float, most: int) -> tuple[NDArray[np.intp], float]:
     """Return the indices of the points to keep, and how far the others lie from what is left.

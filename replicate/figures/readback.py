@@ -1,40 +1,47 @@
-"""Read curves, limits, labels and texts back out of matplotlib axes.
+"""Read curves back out of matplotlib axes.
 
-Everything is returned in data coordinates, rounded to nine significant digits, with long curves thinned so
-that they can be redrawn faithfully from at most `MOST_POINTS` points.
+Everything is returned in data coordinates, rounded to nine significant digits, with long curves thinned so that they
+can be redrawn faithfully from at most `MOST_POINTS` points. What is too dense for that has an envelope beside it, and
+very many scattered points have a digest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.collections import Collection, LineCollection, PathCollection
 from matplotlib.contour import ContourSet
 from matplotlib.lines import Line2D
 from matplotlib.path import Path
+from matplotlib.projections.polar import PolarAxes
 
-from replicate.figures.polylines import Points, simplify
+from replicate.figures.describe import describe
+from replicate.figures.envelope import envelope
+from replicate.figures.outlines import joined, scattered
+from replicate.figures.polylines import THINNING, Points, simplify
+from replicate.figures.values import is_function
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.collections import Collection
     from matplotlib.patches import Patch
     from matplotlib.transforms import Transform
 
-#: A dropped point lies within this fraction of the axes' width or height from the thinned curve ...
-TOLERANCE = 5e-5
-#: ... unless the curve would need more points than this.
+#: A thinned curve has no more points than this, even if dropped ones then lie further away than `THINNING`.
 MOST_POINTS = 400
+
+#: More scattered points than this are kept as a sample of them and a digest of all.
+MOST_SCATTERED = 1200
 
 #: Chords that stand for one Bezier curve; matplotlib's own subdivision works in pixels, not in data units.
 CHORDS = 64
 
 _DIGITS = 9
-_BREAK = np.array([[np.nan, np.nan]])
+_FINE = 1e-8
 _ALONG = np.linspace(0.0, 1.0, CHORDS + 1)[1:]
 _END = np.array([1.0])
 
@@ -46,91 +53,85 @@ Kind = Literal["line", "points", "area"]
 class _Curve:
     """One artist; `error` is how far a point that thinning dropped may lie from the curve."""
 
+    artist: Artist
     name: str
     kind: Kind
     points: Points
     error: float = 0.0
+    special: Mapping[str, Any] = field(default_factory=dict)
 
 
-def read_panel(panel: str, axes: Axes) -> tuple[list[CurvePoint], dict[str, Any]]:
-    """Return what one axes shows: its curves as ``(panel, curve, x, y)``, and the description of everything else.
+@dataclass
+class Panel:
+    """What one axes shows.
+
+    Attributes
+    ----------
+    points
+        Rows ``(panel, curve, x, y)`` in drawing order.
+    description
+        Everything else that has a name, ready for JSON, as in `replicate.figures.describe`; ``points`` and
+        ``areas`` (names of the curves that are no lines), ``thinned`` (by name, how far a curve of very many points
+        may lie from what was drawn, as a fraction of the axes), ``dense`` (their envelopes), ``clouds`` (digests of
+        very many scattered points) and ``loose`` (curves that labels interrupt), where there are any.
+    names
+        The curve that each artist is, by the artist's identity.
+    """
+
+    points: list[CurvePoint] = field(default_factory=list)
+    description: dict[str, Any] = field(default_factory=dict)
+    names: dict[int, str] = field(default_factory=dict)
+
+
+def read_panel(panel: str, axes: Axes) -> Panel:
+    """Read what one axes shows.
 
     Every line, scatter, filled area, contour and shape is a curve. It is named by its label, otherwise by its
     place ("line 2"). A row with ``nan`` for x and y is a break: the curve continues elsewhere. Artists placed
     in axes or figure coordinates only (not in data coordinates) are left out, as is what lies far outside the
     limits of the axes.
-
-    Returns
-    -------
-    curves
-        Rows in drawing order.
-    description
-        ``panel, title, xlabel, ylabel, xscale, yscale, xlim, ylim, legend, texts``; ready for JSON. A text is
-        ``{"text", "x", "y"}`` with its anchor in data coordinates, or with ``"in": "axes"`` in fractions of the
-        axes. Only where it applies: ``aspect`` ("equal"), ``hidden`` (axes that are switched off), ``points``
-        and ``areas`` (names of the curves that are no lines), and ``thinned`` (by name, how far a curve of
-        very many points may lie from what was drawn, as a fraction of the axes).
     """
     axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
-    rows: list[CurvePoint] = []
-    special: dict[str, Any] = {"points": [], "areas": [], "thinned": {}}
+    read = Panel(description=describe(panel, axes))
+    special: dict[str, Any] = {name: [] for name in ("points", "areas", "loose")}
+    special |= {name: {} for name in ("thinned", "dense", "clouds")}
     used: dict[str, int] = {}
     for curve in _curves(axes):
         if len(curve.points) == 0:
             continue
         used[curve.name] = used.get(curve.name, 0) + 1
         unique = curve.name if used[curve.name] == 1 else f"{curve.name} ({used[curve.name]})"
-        rows += [(panel, unique, float(x), float(y)) for x, y in _rounded(curve.points, axes)]
+        read.names.setdefault(id(curve.artist), unique)
+        if isinstance(curve.artist, ContourSet):
+            read.names[id(curve.artist)] = _name(curve.artist, "contours")
+        read.points += [(panel, unique, float(x), float(y)) for x, y in _rounded(curve.points, axes)]
         if curve.kind != "line":
             special["points" if curve.kind == "points" else "areas"].append(unique)
-        if curve.error > TOLERANCE:
+        if curve.error > THINNING:
             special["thinned"][unique] = float(f"{curve.error:.2g}")
-    return rows, _describe(panel, axes) | {name: value for name, value in special.items() if value}
-
-
-def _describe(panel: str, axes: Axes) -> dict[str, Any]:
-    legend = axes.get_legend()
-    description: dict[str, Any] = {
-        "panel": panel,
-        "title": axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right"),
-        "xlabel": axes.get_xlabel(),
-        "ylabel": axes.get_ylabel(),
-        "xscale": axes.get_xscale(),
-        "yscale": axes.get_yscale(),
-        "xlim": [_digits(limit) for limit in axes.get_xlim()],
-        "ylim": [_digits(limit) for limit in axes.get_ylim()],
-        "legend": [text.get_text() for text in legend.get_texts()] if legend else [],
-        "texts": [_text(text, axes) for text in axes.texts if text.get_text() and text.get_visible()],
-    }
-    if axes.get_aspect() != "auto":
-        description["aspect"] = "equal"
-    if not axes.axison:
-        description["hidden"] = True
-    return description
-
-
-def _text(text: Any, axes: Axes) -> dict[str, Any]:
-    x, y = getattr(text, "xy", text.get_position())
-    coordinates = getattr(text, "xycoords", text.get_transform())
-    fraction = coordinates in ("axes fraction", axes.transAxes)
-    return {"text": text.get_text(), "x": _digits(x), "y": _digits(y)} | ({"in": "axes"} if fraction else {})
-
-
-def _digits(value: Any) -> float | str:
-    """Round a number to nine significant digits; a category or a date stays the text it is."""
-    try:
-        return float(f"{float(value):.{_DIGITS}g}")
-    except (TypeError, ValueError):
-        return str(value)
+        for name, value in curve.special.items():
+            if name == "loose":
+                special[name].append(unique)
+            else:
+                special[name][unique] = value
+    read.description |= {name: value for name, value in special.items() if value}
+    return read
 
 
 def _curves(axes: Axes) -> Iterator[_Curve]:
+    if not in_the_plane(axes):
+        return
     for place, line in enumerate(_visible(axes.lines), start=1):
         yield _line(line, axes, f"line {place}")
     for place, collection in enumerate(_visible(axes.collections), start=1):
         yield from _collection(collection, axes, place)
     for place, patch in enumerate(_visible(axes.patches), start=1):
-        yield _Curve(_name(patch, f"shape {place}"), "line", *_shape(patch, axes))
+        yield _Curve(patch, _name(patch, f"shape {place}"), "line", *_shape(patch, axes))
+
+
+def in_the_plane(axes: Axes) -> bool:
+    """Whether the coordinates of axes are x and y, or angle and radius; not those of a solid or of a globe."""
+    return axes.name == "rectilinear" or isinstance(axes, PolarAxes)
 
 
 def _visible(artists: Any) -> Iterator[Any]:
@@ -144,28 +145,59 @@ def _name(artist: Artist, otherwise: str) -> str:
 
 def _line(line: Line2D, axes: Axes, otherwise: str) -> _Curve:
     name = _name(line, otherwise)
-    points = _to_data(np.asarray(line.get_xydata(), dtype=float), line.get_transform(), axes)
+    line.recache()  # steps are part of the path
+    path = line.get_path()
     if line.get_linestyle() in {"None", "none", "", " "}:
-        return _Curve(name, "points", points)
-    return _Curve(name, "line", *_thinned(points, axes))
+        data: Points = np.ma.filled(np.ma.asarray(line.get_xydata(), dtype=float), np.nan)
+        return _scattered(line, name, _to_data(data, line.get_transform(), axes), axes)
+    points = _to_data(np.ma.filled(np.ma.asarray(path.vertices, dtype=float), np.nan), line.get_transform(), axes)
+    return _thinned_curve(line, name, "line", points, axes)
+
+
+def _scattered(artist: Artist, name: str, points: Points, axes: Axes) -> _Curve:
+    if len(points) <= MOST_SCATTERED:
+        return _Curve(artist, name, "points", points)
+    digest = scattered(_in_axes_units(points, axes))
+    sample = points[:: -(-len(points) // MOST_POINTS)]
+    return _Curve(artist, name, "points", sample, special={"clouds": digest})
+
+
+def _thinned_curve(artist: Artist, name: str, kind: Kind, points: Points, axes: Axes) -> _Curve:
+    thin, error = _thinned(points, axes)
+    if error <= THINNING:
+        return _Curve(artist, name, kind, thin, error)
+    units = _in_axes_units(points, axes)
+    function = kind == "line" and not isinstance(axes, PolarAxes) and is_function(units)
+    return _Curve(artist, name, kind, thin, error, {"dense": envelope(units, function=function)})
 
 
 def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Curve]:
     if isinstance(collection, ContourSet):
         base = _name(collection, "level")
         kind: Kind = "area" if collection.filled else "line"
+        loose = {"loose": True} if getattr(collection, "labelTexts", ()) else {}
         for level, path in zip(collection.levels, collection.get_paths(), strict=False):
-            yield _Curve(f"{base} {level:.{_DIGITS}g}", kind, *_thinned(_of_path(path), axes))
+            points = _to_data(_of_path(path), collection.get_transform(), axes)
+            curve = _thinned_curve(collection, f"{base} {level:.{_DIGITS}g}", kind, points, axes)
+            yield replace(curve, special={**curve.special, **loose})
     elif isinstance(collection, PathCollection):  # a scatter plot: the offsets are the data
         offsets: Points = np.ma.filled(np.ma.asarray(collection.get_offsets(), dtype=float), np.nan)
         points = _to_data(offsets, collection.get_offset_transform(), axes)
-        yield _Curve(_name(collection, f"points {place}"), "points", points)
-    else:
+        yield _scattered(collection, _name(collection, f"points {place}"), points, axes)
+    elif type(collection).__name__ in _OUTLINED or isinstance(collection, LineCollection):
+        # Only what lies in data coordinates; polygons that are stamped at many places do not.
+        if np.size(collection.get_offsets()) > 2:
+            return
         lines = isinstance(collection, LineCollection)
         pieces = [_of_path(path) for path in collection.get_paths()]
-        points = _to_data(_joined(pieces), collection.get_transform(), axes)
+        points = _to_data(joined(pieces), collection.get_transform(), axes)
         name = _name(collection, f"{'lines' if lines else 'area'} {place}")
-        yield _Curve(name, "line" if lines else "area", *_thinned(points, axes))
+        yield _thinned_curve(collection, name, "line" if lines else "area", points, axes)
+
+
+# Filled areas; matplotlib derives arrows, barbs and much more from polygons, which are no areas.
+# `fill_between` has a class of its own since matplotlib 3.10.
+_OUTLINED = {"PolyCollection", "FillBetweenPolyCollection"}
 
 
 def _shape(patch: Patch, axes: Axes) -> tuple[Points, float]:
@@ -185,12 +217,7 @@ def _of_path(path: Path) -> Points:
             pieces.append([segment.control_points[:1]])
         else:  # a closing line ends where its piece began
             pieces[-1].append(segment(_ALONG if code in {Path.CURVE3, Path.CURVE4} else _END))
-    return _joined([np.vstack(piece) for piece in pieces])
-
-
-def _joined(pieces: list[Points]) -> Points:
-    separated = [part for piece in pieces if len(piece) for part in (_BREAK, piece)]
-    return np.vstack(separated[1:]) if separated else np.empty((0, 2))
+    return joined([np.vstack(piece) for piece in pieces])
 
 
 def _to_data(points: Points, transform: Transform, axes: Axes) -> Points:
@@ -227,18 +254,23 @@ def _thinned(points: Points, axes: Axes) -> tuple[Points, float]:
     edges = np.flatnonzero(np.diff(np.r_[False, wanted, False].astype(int)))
     runs = [np.arange(start, end) for start, end in zip(edges[::2], edges[1::2], strict=True)]
     total = sum(len(run) for run in runs)
+    if len(runs) > MOST_POINTS:  # more pieces than points: a picture of some of them has to do
+        runs = runs[:: -(-len(runs) // MOST_POINTS)]
+        return joined([points[run] for run in runs]), 1.0
     pieces, error = [], 0.0
     for run in runs:
         share = max(2, round(MOST_POINTS * len(run) / total))
-        kept, distance = simplify(unit[run], TOLERANCE, share)
+        kept, distance = simplify(unit[run], THINNING, share)
         pieces.append(points[run[kept]])
         error = max(error, distance)
-    return _joined(pieces), error
+    return joined(pieces), error
 
 
 def _in_axes_units(points: Points, axes: Axes) -> Points:
     """Return positions as fractions of the axes' width and height, whatever the scales are."""
     with np.errstate(all="ignore"):
+        if isinstance(axes, PolarAxes):
+            return np.asarray((axes.transData - axes.transAxes).transform(points))
         scaled = axes.transScale.transform(points)
         return np.asarray(axes.transLimits.transform(scaled))
 
@@ -251,5 +283,8 @@ def _rounded(points: Points, axes: Axes) -> Points:
         linear = (axes.get_xscale(), axes.get_yscale())[i] == "linear"
         column = points[:, i]
         column = np.where(linear & (np.abs(column) < 1e-12 * span), 0.0, column)
-        rounded[:, i] = [float(f"{value:.{_DIGITS}g}") for value in column]
+        # An axis that shows a small part of large values, as one of dates does, needs more digits.
+        large = max(abs(limits[0]), abs(limits[1])) / span if linear else 1.0
+        digits = _DIGITS + max(0, math.ceil(math.log10(max(large, 1.0) * _FINE * 10**_DIGITS)) - 1)
+        rounded[:, i] = [float(f"{value:.{digits}g}") for value in column]
     return rounded + 0.0  # no negative zeros

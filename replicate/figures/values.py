@@ -15,8 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.figures.polylines import Points
-from replicate.figures.readback import TOLERANCE as THINNING
+from replicate.figures.polylines import THINNING, Points
 from replicate.figures.scaling import TOLERANCE, finite
 
 Array = NDArray[np.float64]

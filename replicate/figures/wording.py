@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from datetime import datetime
+
 import numpy as np
 
 from replicate.figures.axes import Axes, symbol
+from replicate.figures.differences import percent
 from replicate.figures.pair import Pair
 from replicate.figures.polylines import Points
-from replicate.figures.scaling import finite, from_units, in_units
+from replicate.figures.scaling import finite, from_units, in_units, place_of
 from replicate.figures.values import Array, ValueDifference
 
 # Consecutive points no further apart along x than this, and further along y, are a jump.
@@ -26,6 +29,8 @@ def moved_words(pair: Pair, view: Array) -> tuple[str, float]:
     view
         The part of the axes that was compared.
     """
+    if pair.words:
+        return pair.words, pair.size
     if pair.values is None:
         return _distance_words(pair)
     parts, sizes = [], []
@@ -44,9 +49,7 @@ def _distance_words(pair: Pair) -> tuple[str, float]:
         return f"now has {counts[1]} points (was {counts[0]})", furthest.largest
     if not np.isfinite(furthest.largest):
         return "is now out of sight" if furthest is pair.distance[1] else "came into sight", furthest.largest
-    place = (from_units(float(value), pair.axes, axis) for value, axis in zip(furthest.place, "xy", strict=True))
-    names = (symbol(pair.axes, axis) for axis in "xy")
-    at = ", ".join(f"{name} = {_number(value)}" for name, value in zip(names, place, strict=True))
+    at = _at(pair.axes, furthest.place)
     return f"moved: at most {percent(furthest.largest)} of the axes at {at}", furthest.largest
 
 
@@ -63,13 +66,13 @@ def _ends(pair: Pair, found: ValueDifference, view: Array) -> list[tuple[str, fl
         domains.append((along.min(), along.max()))
     for verb, was, now in zip(("begins", "ends"), *domains, strict=True):
         if abs(now - was) > pair.tolerance:
-            ends = [_number(from_units(float(value), pair.axes, "x")) for value in (now, was)]
+            ends = [_number(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (now, was)]
             parts.append((f"now {verb} at {x} = {ends[0]} (was {ends[1]})", abs(float(now - was))))
     inside = (found.x > max(low for low, _ in domains)) & (found.x < min(high for _, high in domains))
     for here, there, words in ((found.before, found.after, "has a gap"), (found.after, found.before, "goes on")):
         gap = found.x[found.alarm & inside & ~np.isnan(here) & np.isnan(there)]
         if len(gap):
-            ends = [_number(from_units(float(value), pair.axes, "x")) for value in (gap[0], gap[-1])]
+            ends = [_number(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (gap[0], gap[-1])]
             parts.append((f"now {words} from {x} = {ends[0]} to {ends[1]}", float(gap[-1] - gap[0])))
     return parts
 
@@ -87,7 +90,7 @@ def _values(pair: Pair, found: ValueDifference) -> list[tuple[str, float]]:
             between = (found.x >= low - pair.tolerance) & (found.x <= high + pair.tolerance)
             if high - low > pair.tolerance and (alarm & between).any():
                 alarm &= ~between
-                ends = [_number(from_units(value, pair.axes, "x")) for value in (was, now)]
+                ends = [_number(from_units(value, pair.axes, "x"), pair.axes, "x") for value in (was, now)]
                 words = f"its jump at {x} = {ends[0]} is now at {ends[1]} ({percent(high - low)} of the axis)"
                 jumps.append((f"{'moved: ' if not jumps else ''}{words}", high - low))
         parts += jumps[:_MOST_JUMPS]
@@ -107,7 +110,7 @@ def _at_most(pair: Pair, found: ValueDifference, worst: int, *, first: bool) -> 
     one, other = (from_units(float(values[worst]), pair.axes, "y") for values in (found.before, found.after))
     size = float(abs(found.after[worst] - found.before[worst]))
     how = f"a factor of {max(one, other) / min(one, other):.4g}" if _is_log(pair.axes) else f"{abs(other - one):.2g}"
-    at = _number(from_units(float(found.x[worst]), pair.axes, "x"))
+    at = _number(from_units(float(found.x[worst]), pair.axes, "x"), pair.axes, "x")
     words = f"{'moved: ' if first else 'elsewhere '}at most {how} ({percent(size)} of the axis)"
     words += f" at {symbol(pair.axes, 'x')} = {at}"
     apart = max((part.largest for part in pair.distance), default=size)
@@ -128,16 +131,26 @@ def _jumps(points: Points) -> list[float]:
     return [float(x) for x in points[:-1][jump, 0]]
 
 
-def percent(size: float) -> str:
-    """Return a fraction in per cent, to two digits.
+def _at(axes: Axes, units: Points) -> str:
+    """Say where a point is, in the words of its axes."""
+    x, y = place_of(units.tolist(), axes)
+    if axes.get("units") == "box":
+        return f"({_number(x)}, {_number(y)}) of the axes"
+    if "polar" in axes:
+        return f"angle = {_number(float(np.degrees(x)))}°, radius = {_number(y)}"
+    return f"{symbol(axes, 'x')} = {_number(x, axes, 'x')}, {symbol(axes, 'y')} = {_number(y, axes, 'y')}"
 
-    Examples
-    --------
-    >>> percent(0.0012), percent(0.5), percent(3.21)
-    ('0.12 %', '50 %', '321 %')
-    """
-    return f"{100.0 * size:.0f} %" if size >= 1.0 else f"{100.0 * size:.2g} %"
 
+def _number(value: float, axes: Axes | None = None, axis: str = "") -> str:
+    """Return a number as text; a date where the axis has dates, and a category where it is one."""
+    kind = axes.get(f"{axis}kind") if axes is not None else None
+    if axes is not None and kind == "categories":
+        names = axes.get(f"{axis}categories", [])
+        if abs(value - round(value)) < 1e-6 and 0 <= round(value) < len(names):
+            return f"'{names[round(value)]}'"
+    if kind == "date":
+        from matplotlib.dates import num2date
 
-def _number(value: float) -> str:
+        date: datetime = num2date(value)  # type: ignore[no-untyped-call]
+        return date.strftime("%Y-%m-%d %H:%M:%S").removesuffix(" 00:00:00")
     return f"{value:.4g}"

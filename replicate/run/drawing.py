@@ -8,7 +8,8 @@ from matplotlib.figure import Figure as Canvas
 
 from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
-from replicate.figures.off_screen import png_bytes, read_figure, svg_text
+from replicate.figures import capture as record_of
+from replicate.figures.off_screen import curves_frame, png_bytes, svg_text
 from replicate.figures.style import style
 
 
@@ -33,14 +34,15 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     with style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = Canvas(figsize=exhibit.size)
         exhibit.draw(canvas)
-        curves, described = read_figure(canvas)
+        record = record_of(canvas)
         return FigureResult(
             paper=paper,
             exhibit=exhibit.id,
             svg=svg_text(canvas, exhibit.title),
             png=png_bytes(canvas),
-            curves=curves,
-            axes=described,
+            curves=curves_frame(record),
+            axes=[dict(panel) for panel in record.panels],
+            figure=dict(record.figure),
         )
 
 

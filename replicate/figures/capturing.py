@@ -1,0 +1,192 @@
+"""Turn a figure into a record: its curves as data, its axes described, and everything that is drawn as named parts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from replicate.errors import FigureError
+from replicate.figures.drawing import recorded
+from replicate.figures.fields import read_field
+from replicate.figures.marks import Box, marks_of
+from replicate.figures.parts import Namer, Part
+from replicate.figures.readback import read_panel
+from replicate.figures.record import Record
+from replicate.figures.recorder import Drawn
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure
+
+    from replicate.figures.polylines import Points
+
+_LONGEST_NAME = 24
+_TITLES = {"title": "title", "_left_title": "left title", "_right_title": "right title"}
+
+
+def record_of(figure: Figure) -> Record:
+    """Return the record of a figure; `replicate.figures.capture` says more."""
+    root = figure.get_figure(root=True) if hasattr(figure, "get_figure") else None
+    if root is not figure or not hasattr(figure, "savefig"):
+        msg = f"a matplotlib figure is needed, not {type(figure).__name__}"
+        raise FigureError(msg)
+    with recorded(figure) as drawn:
+        panels = list(_panels(figure))
+        read = {id(axes): read_panel(name, axes) for name, axes in panels}
+        outside = _outside_the_axes(figure) if panels else {}
+        namers = {id(axes): Namer(axes, read[id(axes)].names, _described_texts(axes)) for _, axes in panels}
+        texts = {id(text): f"text '{text.get_text()}'" for text in figure.texts} if panels else {}
+        title = getattr(figure, "_suptitle", None)
+        if title is not None and panels:
+            texts[id(title)] = "figure title"
+        whole = Namer(figure, {}, texts)
+        for call in drawn:
+            _owner(call, namers, whole, figure)
+        described = []
+        curves: dict[tuple[str, str], Points] = {}
+        for _, axes in panels:
+            panel = read[id(axes)]
+            places: dict[tuple[str, str], list[tuple[float, float]]] = {}
+            for owner, curve, x, y in panel.points:
+                places.setdefault((owner, curve), []).append((x, y))
+            curves |= {key: np.array(value) for key, value in places.items()}
+            box = Box.of(axes.bbox.extents)
+            parts = [_entry(part, box) for part in namers[id(axes)].parts.values()]
+            described.append(panel.description | {"position": _position(axes, figure)} | {"parts": parts})
+        if described:
+            described[0] |= outside
+        frame = Box.of(figure.bbox.extents)
+        parts = [_entry(part, frame) for part in whole.parts.values()]
+    engine = figure.get_layout_engine()
+    about: dict[str, Any] = {"size": [round(float(side), 3) for side in figure.get_size_inches()]}
+    if type(engine).__name__ == "PlaceHolderLayoutEngine":  # `tight_layout()` was called: places follow texts
+        about["fitted"] = True
+    return Record(about | {"parts": parts}, described, curves)
+
+
+def _panels(figure: Figure) -> Iterator[tuple[str, Axes]]:
+    """Name every axes by its title, or by its place where it has none that is short and plain.
+
+    The name stands in every line of the data; one used again gets a number.
+    """
+    used: dict[str, int] = {}
+    for place, axes in enumerate(_all_axes(figure), start=1):
+        title = axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right")
+        name = " ".join(title.split())
+        if not name or len(name) > _LONGEST_NAME or "$" in name:
+            name = f"panel {place}"
+        used[name] = used.get(name, 0) + 1
+        yield (name if used[name] == 1 else f"{name} ({used[name]})"), axes
+
+
+def _all_axes(figure: Figure) -> list[Axes]:
+    """Return all axes that can be seen, those inside others last."""
+    found = [axes for axes in figure.axes if axes.get_visible()]
+    for axes in found:  # grows while it is walked
+        found += [child for child in getattr(axes, "child_axes", ()) if child.get_visible() and child not in found]
+    return found
+
+
+def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer, figure: Figure) -> None:
+    """Hand a mark to the panel it was drawn in, or to the figure."""
+    chain: tuple[Artist, ...] = call.artists
+    inner = max((i for i, artist in enumerate(chain) if id(artist) in namers), default=None)
+    if inner is not None:
+        axes = chain[inner]
+        box: Any = axes.bbox if isinstance(axes, Axes) else figure.bbox
+        namers[id(axes)].add(call, _flat(chain[inner + 1 :], box))
+    else:
+        # Sub-figures are no parts themselves.
+        below = [artist for artist in chain[1:] if not hasattr(artist, "subplots")]
+        whole.add(call, tuple(below))
+
+
+def _flat(chain: tuple[Artist, ...], _: Any) -> tuple[Artist, ...]:
+    """Leave out the artist that newer versions of matplotlib put around the frame and the lines of an inset."""
+    return chain[1:] if len(chain) > 1 and type(chain[0]).__name__ == "InsetIndicator" else chain
+
+
+def _described_texts(axes: Axes) -> dict[int, str]:
+    names = {id(text): f"text '{_one_line(text.get_text())}'" for text in axes.texts}
+    return names | {id(getattr(axes, name)): words for name, words in _TITLES.items() if hasattr(axes, name)}
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _entry(part: Part, box: Box) -> dict[str, Any]:
+    """Return a part for the record."""
+    entry: dict[str, Any] = {"name": part.name, "class": type(part.owner).__name__}
+    entry |= {flag: True for flag in ("told", "loose") if getattr(part, flag)}
+    if not part.named:
+        entry["net"] = True
+    properties = dict(part.properties) | _placed_by_hand(part)
+    if properties:
+        entry["properties"] = properties
+    field = read_field(part.owner)
+    if field:
+        entry["field"] = field
+    marks = marks_of(part.drawn, box, where=part.placed)
+    for mark in marks if field else ():  # its colours follow from its values
+        for name in ("image", "face", *(("at",) if "extent" in field else ()), *_edges(mark)):
+            mark.pop(name, None)
+    if part.told and part.named:  # what it says, and where, is compared by name
+        for mark in marks:
+            mark.pop("texts", None)
+    if part.name.startswith(("tick labels of the x", "tick labels of the y", "minor tick labels")):
+        _along_the_axis(marks, part)
+    entry["marks"] = marks
+    return entry
+
+
+def _along_the_axis(marks: list[dict[str, Any]], part: Part) -> None:
+    """Keep where tick labels stand along their axis, and at which end of the other one; the pad is said in points."""
+    axes: Any = part.owner.axes
+    across = {"x": 1, "y": 0}.get(getattr(part.owner, "axis_name", ""))
+    if axes is None or axes.name != "rectilinear" or across is None:
+        return
+    for mark in marks:
+        for place in mark.get("at", ()):
+            place[across] = float(round(place[across])) + 0.0
+
+
+def _edges(mark: dict[str, Any]) -> tuple[str, ...]:
+    """Edges that have the colours of what they surround say no more than those."""
+    return ("edge",) if not isinstance(mark.get("edge", ""), str) else ()
+
+
+def _placed_by_hand(part: Part) -> dict[str, Any]:
+    """Say where a title or a label stands as far as somebody said so; the rest follows other texts."""
+    text: Any = part.owner
+    if part.name.endswith("title") and part.told and hasattr(text, "get_position"):
+        x, y = text.get_position()
+        fixed = getattr(text.axes, "_autotitlepos", True) is False if text.axes is not None else True
+        return {"across": round(float(x), 4)} | ({"up": round(float(y), 4)} if fixed else {})
+    if part.name.startswith("label of the ") and hasattr(text, "get_position") and part.name[13] in "xy":
+        along = part.name[13] == "y"
+        return {"along": round(float(text.get_position()[along]), 4)}
+    return {}
+
+
+def _position(axes: Axes, figure: Figure) -> list[float]:
+    """Return left, bottom, width and height as fractions of the figure, before the aspect trims the axes."""
+    box = axes.bbox
+    if axes.get_aspect() != "auto" and axes.get_axes_locator() is None:
+        parent: Any = axes.get_figure()
+        box = axes.get_position(original=True).transformed(parent.transSubfigure)
+    frame = Box.of(figure.bbox.extents)
+    low, high = frame.units(np.reshape(box.extents, (2, 2)))
+    return [round(float(part), 4) for part in (*low, *(high - low))]
+
+
+def _outside_the_axes(figure: Figure) -> dict[str, Any]:
+    """Describe texts and legends that belong to the figure as a whole; they are kept with the first panel."""
+    title = figure.get_suptitle()
+    texts = [text.get_text() for text in figure.texts if text.get_text() not in {"", title}]
+    legends = [entry.get_text() for legend in figure.legends for entry in legend.get_texts()]
+    found = {"figure_title": title, "figure_texts": texts, "figure_legend": legends}
+    return {name: value for name, value in found.items() if value}

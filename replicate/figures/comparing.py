@@ -1,0 +1,119 @@
+"""Compare two records of a figure: axes, curves, and every part that is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from replicate.errors import FigureRecordError
+from replicate.figures.axes import Axes, compare_axes, matched_panels, same
+from replicate.figures.curves import compare_curves
+from replicate.figures.differences import Difference, same_number
+from replicate.figures.looks import Frame
+from replicate.figures.pair import Pair
+from replicate.figures.partwise import compare_parts
+from replicate.figures.record import Record
+from replicate.figures.scaling import in_units
+
+# Where the layout follows the size of texts, places on the axes move with it.
+_FITTED = 20.0
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What differs between two records of a figure.
+
+    Attributes
+    ----------
+    differences
+        Each with its words, what it is about, and which layer noticed it.
+    pairs
+        Every curve that both records have.
+    """
+
+    differences: Sequence[Difference] = ()
+    pairs: Sequence[Pair] = field(default_factory=list)
+
+    @property
+    def changes(self) -> list[str]:
+        """What differs, in words, one line each; empty if nothing that can be seen does."""
+        return [" ".join(difference.text.split()) for difference in self.differences]
+
+    @property
+    def unchanged(self) -> int:
+        """Number of curves that are where they were."""
+        return sum(not pair.moved for pair in self.pairs)
+
+
+def compare_records(accepted: Record, new: Record) -> Comparison:
+    """Compare two records; `replicate.figures.compare` says more."""
+    try:
+        return _compare(accepted, new)
+    except (AttributeError, IndexError, KeyError, TypeError, ValueError) as error:
+        # The record was checked when it was read; this is damage deep inside a part.
+        why = f"cannot be compared, it is damaged: {type(error).__name__}: {' '.join(str(error).split())}"
+        raise FigureRecordError(why) from error
+
+
+def _compare(accepted: Record, new: Record) -> Comparison:
+    curves = compare_curves((accepted.curves, accepted.panels), (new.curves, new.panels))
+    found = [*compare_axes(accepted.panels, new.panels), *curves.changes]
+    if accepted.version > 1 and new.version > 1:  # the first version knew no parts
+        found += _figure(accepted.figure, new.figure)
+        found += _parts(accepted, new, curves.renamed)
+    return Comparison(_once(found), curves.pairs)
+
+
+def _figure(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Difference]:
+    sizes = [side.get("size", []) for side in (one, other)]
+    found = []
+    if len(sizes[0]) != len(sizes[1]) or not all(
+        same_number(repr(a), repr(b)) for a, b in zip(sizes[0], sizes[1], strict=True)
+    ):
+        shown = [" × ".join(f"{side:g}" for side in size) for size in (sizes[1], sizes[0])]
+        found.append(Difference("axes", f"the figure is now {shown[0]} in (was {shown[1]})", "figure / size"))
+    return found + compare_parts(one.get("parts", []), other.get("parts", []), {}, "figure")
+
+
+def _parts(accepted: Record, new: Record, renamed: Mapping[tuple[str, str], str]) -> list[Difference]:
+    several = len(accepted.panels) > 1 or len(new.panels) > 1
+    fitted = bool(accepted.figure.get("fitted") or new.figure.get("fitted"))
+    found = []
+    for old, fresh in matched_panels(accepted.panels, new.panels):
+        if old is None or fresh is None:
+            continue
+        panel = str(old["panel"])
+        names = {name: was for (owner, name), was in renamed.items() if owner == panel}
+        own = frozenset(name for owner, name in accepted.curves if owner == panel)
+        prefix = f"'{panel}': " if several else ""
+        ticks = [axis for axis in "xyz" if any(not same(old, fresh, f"{axis}{what}") for what in ("lim", "scale"))]
+        found += compare_parts(
+            old.get("parts", []),
+            fresh.get("parts", []),
+            names,
+            panel,
+            prefix,
+            curves=own,
+            frame=_frame(old, fresh, _FITTED if fitted else 1.0),
+            other_ticks=ticks,
+        )
+    return found
+
+
+def _frame(old: Axes, new: Axes, slack: float) -> Frame:
+    """Return where the new limits lie on the accepted axes."""
+    kept = [same(old, new, name) for name in ("xscale", "yscale", "projection", "units", "polar")]
+    if not all(kept) or "polar" in old or old.get("units") == "box":
+        return Frame(slack)
+    if same(old, new, "xlim") and same(old, new, "ylim"):
+        return Frame(slack)
+    low, high = in_units(np.column_stack([new["xlim"], new["ylim"]]), old)
+    return Frame(slack, (float(low[0]), float(low[1])), (float(high[0] - low[0]), float(high[1] - low[1])))
+
+
+def _once(found: Sequence[Difference]) -> list[Difference]:
+    """Return differences in order, those that say the same once."""
+    return list({difference.text: difference for difference in found}.values())

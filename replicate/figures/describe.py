@@ -1,0 +1,148 @@
+"""Describe axes as a person would: titles, limits, scales, labels, legend, texts, where they are and what they show."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.category import StrCategoryConverter
+from matplotlib.dates import DateConverter, _SwitchableDateConverter
+from matplotlib.projections.polar import PolarAxes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+_DIGITS = 9
+_SIDES = ("left", "center", "right")
+# Steps of a table that gives the place of a value on an axis that is neither linear nor logarithmic.
+_STEPS = 192
+
+
+def describe(panel: str, axes: Axes) -> dict[str, Any]:
+    """Return the description of axes, ready for JSON.
+
+    Returns
+    -------
+    dict
+        ``panel, title, xlabel, ylabel, xscale, yscale, xlim, ylim, legend, texts``. A text is
+        ``{"text", "x", "y"}`` with its anchor in data coordinates, or with ``"in": "axes"`` in fractions of the
+        axes. Only where it applies: ``titles`` (if there are several), ``aspect``, ``hidden`` (axes that are switched
+        off), ``projection``, ``units`` ("box": the coordinates of curves are fractions of the axes), ``xtable``
+        (where values lie on an axis that is neither linear nor logarithmic), ``xkind`` ("date", "categories"),
+        ``xcategories``, ``polar``, ``view`` and what belongs to the third axis.
+    """
+    legend = axes.get_legend()
+    titles = {side: axes.get_title(loc=side) for side in _SIDES}  # type: ignore[arg-type]
+    said = [title for title in (titles["center"], titles["left"], titles["right"]) if title]
+    found: dict[str, Any] = {
+        "panel": panel,
+        "title": said[0] if said else "",
+        "xlabel": axes.get_xlabel(),
+        "ylabel": axes.get_ylabel(),
+        "xscale": axes.get_xscale(),
+        "yscale": axes.get_yscale(),
+        "xlim": [number(limit) for limit in axes.get_xlim()],
+        "ylim": [number(limit) for limit in axes.get_ylim()],
+        "legend": [text.get_text() for text in legend.get_texts()] if legend and legend.get_visible() else [],
+        "texts": [_text(text, axes) for text in axes.texts if text.get_text() and text.get_visible()],
+    }
+    if len(said) > 1:
+        found["titles"] = [titles[side] for side in _SIDES]
+    if axes.get_aspect() != "auto":
+        found["aspect"] = "equal" if axes.get_aspect() == 1.0 else number(axes.get_aspect())
+    if not axes.axison:
+        found["hidden"] = True
+    if axes.name != "rectilinear":
+        found["projection"] = str(axes.name)
+    if isinstance(axes, PolarAxes):
+        found["polar"] = _polar(axes)
+    elif axes.name != "rectilinear":
+        found |= {"units": "box"} | _solid(axes)
+    else:
+        for place, name in enumerate("xy"):
+            found |= _axis(axes, name, place)
+    return found
+
+
+def number(value: Any) -> Any:
+    """Round a number to nine significant digits; a category or a date stays the text it is."""
+    try:
+        return float(f"{float(value):.{_DIGITS}g}")
+    except (TypeError, ValueError):
+        return str(value)
+
+
+def _text(text: Any, axes: Axes) -> dict[str, Any]:
+    x, y = getattr(text, "xy", text.get_position())
+    coordinates = getattr(text, "xycoords", text.get_transform())
+    fraction = coordinates in ("axes fraction", axes.transAxes)
+    return {"text": text.get_text(), "x": number(x), "y": number(y)} | ({"in": "axes"} if fraction else {})
+
+
+def _axis(axes: Axes, name: str, place: int) -> dict[str, Any]:
+    """Describe what is special about one axis: a scale of its own, dates, categories."""
+    axis: Axis = getattr(axes, f"{name}axis")
+    found: dict[str, Any] = {}
+    if axis.get_scale() not in {"linear", "log"}:
+        found[f"{name}table"] = _table(axes, place)
+    converter = axis.get_converter() if hasattr(axis, "get_converter") else getattr(axis, "converter", None)
+    if isinstance(converter, DateConverter | _SwitchableDateConverter):
+        found[f"{name}kind"] = "date"
+        found[f"{name}lim"] = [float(f"{float(end):.14g}") for end in getattr(axes, f"get_{name}lim")()]
+    elif isinstance(converter, StrCategoryConverter):
+        found[f"{name}kind"] = "categories"
+        mapping: dict[str, int] = getattr(getattr(axis, "units", None), "_mapping", {})
+        found[f"{name}categories"] = [str(key) for key, _ in sorted(mapping.items(), key=lambda item: item[1])]
+    return found
+
+
+def _table(axes: Axes, place: int) -> dict[str, list[float]]:
+    """Return values on an axis and where they lie, far to both sides of what can be seen."""
+    at = np.linspace(-1.0, 2.0, 3 * _STEPS + 1)
+    points = np.column_stack([at, at])
+    with np.errstate(all="ignore"):
+        data = axes.transScale.inverted().transform(axes.transLimits.inverted().transform(points))[:, place]
+        back = axes.transLimits.transform(axes.transScale.transform(np.column_stack([data, data])))[:, place]
+    there = np.isfinite(data) & (np.abs(back - at) < 1e-6)
+    # In increasing order, and no value twice where a scale saturates.
+    values, first = np.unique(data[there], return_index=True)
+    return {
+        "data": [float(f"{value:.{_DIGITS}g}") for value in values],
+        "at": [float(f"{value:.6g}") for value in at[there][first]],
+    }
+
+
+def _polar(axes: PolarAxes) -> dict[str, Any]:
+    low, high = axes.get_rorigin(), axes.get_rmax()
+    offset, direction = float(axes.get_theta_offset()), int(axes.get_theta_direction())
+    found: dict[str, Any] = {"offset": float(f"{offset:.9g}"), "direction": direction, "rscale": axes.get_yscale()}
+    found["rlim"] = [number(low), number(high)]
+    to_axes = axes.transData - axes.transAxes
+    # Three points of the unit disk tell where it lies in the box of the axes.
+    angles = (np.array([0.0, np.pi / 2.0]) - offset) / direction
+    with np.errstate(all="ignore"):
+        right, up = to_axes.transform(np.column_stack([angles, [high, high]]))
+        (left,) = to_axes.transform([[(np.pi - offset) / direction, high]])
+    centre = (right + left) / 2.0
+    matrix = np.column_stack([right - centre, up - centre, centre])
+    found["matrix"] = [float(f"{part:.9g}") + 0.0 for part in matrix.ravel()]
+    if axes.get_yscale() != "linear":
+        share = np.linspace(0.0, 1.5, 2 * _STEPS + 1)
+        places = centre + share[:, None] * (right - centre)
+        data = to_axes.inverted().transform(places)[:, 1]
+        there = np.isfinite(data)
+        found["rtable"] = {"data": [float(f"{r:.9g}") for r in data[there]], "at": share[there].tolist()}
+    return found
+
+
+def _solid(axes: Any) -> dict[str, Any]:
+    """Describe the third axis, and where one looks from."""
+    if not hasattr(axes, "get_zlim"):
+        return {}
+    return {
+        "zlabel": axes.get_zlabel(),
+        "zlim": [number(limit) for limit in axes.get_zlim()],
+        "view": [number(getattr(axes, part, 0.0)) for part in ("elev", "azim", "roll")],
+        "proportions": [number(part) for part in getattr(axes, "_box_aspect", ())],
+    }

@@ -1,0 +1,107 @@
+"""Draw a figure on the recording renderer, and leave it as it was found."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from typing import TYPE_CHECKING, Any
+
+from matplotlib.text import Annotation, Text
+
+from replicate.figures.recorder import DPI, Drawn, RecordingRenderer
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.figure import Figure
+
+
+@contextmanager
+def recorded(figure: Figure) -> Iterator[list[Drawn]]:
+    """Yield everything that is drawn, in order; inside the block the axes are where they were drawn.
+
+    The layout engine is switched off, because it places axes by the size of their texts, and so is the figure's own
+    resolution. A first pass settles what artists decide while they draw.
+    """
+    width, height = figure.get_size_inches()
+    renderer = RecordingRenderer(width * DPI, height * DPI)
+    with _on_canvas(figure, renderer), renderer.drawing(figure):
+        figure.draw(renderer)
+        renderer.recording = True
+        with _attributed(figure, renderer):
+            figure.draw(renderer)
+        yield renderer.drawn
+
+
+@contextmanager
+def _on_canvas(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
+    engine, dpi, canvas = figure.get_layout_engine(), figure.dpi, figure.canvas
+    with ExitStack() as stack:
+        if engine is not None:
+            stack.callback(figure.set_layout_engine, engine)
+            figure.set_layout_engine("none")
+        stack.callback(figure._set_dpi, dpi, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001
+        figure._set_dpi(DPI, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001  -- no window changes its size
+        # Artists may ask the canvas for a renderer, and animations begin unless a file is being saved.
+        stack.enter_context(_set(canvas, "get_renderer", lambda: renderer))
+        stack.enter_context(_set(canvas, "_is_saving", True))
+        yield
+        for artist in everything(figure):
+            if isinstance(artist, Text) and getattr(artist, "_renderer", None) is renderer:
+                artist._renderer = None  # type: ignore[attr-defined]  # noqa: SLF001  -- the next one asks anew
+
+
+@contextmanager
+def _attributed(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
+    """Let every artist of a figure tell the renderer when it draws."""
+    with ExitStack() as stack:
+        for artist in everything(figure):
+            if artist is not figure:
+                stack.enter_context(_set(artist, "draw", _telling(artist, renderer)))
+        yield
+
+
+def _telling(artist: Artist, renderer: RecordingRenderer) -> Any:
+    original = artist.draw
+
+    @functools.wraps(original)
+    def draw(*arguments: Any, **options: Any) -> Any:
+        with renderer.drawing(artist):
+            return original(*arguments, **options)
+
+    return draw
+
+
+@contextmanager
+def _set(owner: Any, name: str, value: Any) -> Iterator[None]:
+    """Set an attribute of one object for a while, without a trace of it on the object afterwards."""
+    missing = object()
+    before = owner.__dict__.get(name, missing)
+    owner.__dict__[name] = value
+    try:
+        yield
+    finally:
+        if before is missing:
+            owner.__dict__.pop(name, None)
+        else:
+            owner.__dict__[name] = before
+
+
+def everything(figure: Figure) -> list[Artist]:
+    """Return a figure and all artists in it, each once, also the boxes and arrows that belong to texts."""
+    found: dict[int, Artist] = {}
+    waiting: list[Artist] = [figure]
+    while waiting:
+        artist = waiting.pop()
+        if id(artist) in found:
+            continue
+        found[id(artist)] = artist
+        children = list(artist.get_children())
+        if isinstance(artist, Text):
+            children += [part for part in (artist.get_bbox_patch(), _arrow(artist)) if part is not None]
+        waiting += children
+    return list(found.values())
+
+
+def _arrow(text: Text) -> Any:
+    return text.arrow_patch if isinstance(text, Annotation) else None

@@ -1,0 +1,100 @@
+"""Compare the values of images and meshes: by how much of the colour range they differ, and where mostly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from replicate.figures.digests import Array
+
+#: Values and means of blocks are the same up to this fraction of the range of the colours ...
+TOLERANCE = 5e-4
+#: ... and the sums of all values, over the square root of their number, up to this.
+_SIGNS = 2e-5
+
+_LIMITS = 1e-6
+Field = Mapping[str, Any]
+
+
+def field_words(one: Field, other: Field) -> Iterator[str]:
+    """Yield what differs, each a sentence in which ``{}`` stands for the name."""
+    if not one or not other:
+        if one or other:
+            yield f"{{}} {'no longer shows' if one else 'now shows'} values in colours"
+        return
+    yield from _simple(one, other)
+    if one["shape"] != other["shape"]:
+        sizes = ["×".join(map(str, side["shape"])) for side in (other, one)]
+        yield f"{{}} now has {sizes[0]} values (had {sizes[1]})"
+        return
+    first, second, spans = _values(one), _values(other), _limits(one)
+    if first.shape != second.shape:
+        yield "values of {} changed"
+        return
+    moved = spans is not None and _moved(spans, _limits(other))
+    if spans is not None and moved:  # compare the values themselves, in units of the accepted range
+        low, span = spans[0], spans[1] - spans[0]
+        ends = _limits(other) or spans
+        second = np.where(second <= -9.0, second, (second * (ends[1] - ends[0]) + ends[0] - low) / (span or 1.0))
+    apart = np.abs(second - first)
+    if apart.max(initial=0.0) > TOLERANCE:
+        yield _at_most(one, apart)
+    elif not moved and np.abs(np.asarray(other["signs"]) - np.asarray(one["signs"])).max() > _SIGNS:
+        yield "single values of {} changed"
+    elif one.get("masked", 0) != other.get("masked", 0):
+        yield f"{{}} now leaves out {other.get('masked', 0)} values (left out {one.get('masked', 0)})"
+
+
+def _simple(one: Field, other: Field) -> Iterator[str]:
+    for name, words in (("interpolation", "interpolation"), ("origin", "origin"), ("scale", "colour scale")):
+        if one.get(name) != other.get(name):
+            yield f"{words} of {{}} is now {other.get(name)} (was {one.get(name)})"
+    if abs(one.get("alpha", 1.0) - other.get("alpha", 1.0)) > 2e-3:
+        yield f"opacity of {{}} is now {other.get('alpha', 1.0):.3g} (was {one.get('alpha', 1.0):.3g})"
+    if one.get("map", [])[1:] != other.get("map", [])[1:]:
+        names = [side.get("map", ["nothing"])[0] for side in (other, one)]
+        yield f"colour map of {{}} is now {names[0]} (was {names[1]})"
+    before, after = _limits(one), _limits(other)
+    if before is not None and after is not None and _moved(before, after):
+        yield "colours of {} now run from {:.6g} to {:.6g} (ran from {:.6g} to {:.6g})".format("{}", *after, *before)
+    extents = one.get("extent"), other.get("extent")
+    if None not in extents:
+        first, second = (np.asarray(extent, dtype=float) for extent in extents)
+        if np.abs(second - first).max() > 1e-6 * max(np.ptp(first), 1e-300):
+            shown = [", ".join(f"{end:.6g}" for end in extent or ()) for extent in (extents[1], extents[0])]
+            yield f"{{}} now covers {shown[0]} (covered {shown[1]})"
+
+
+def _limits(field: Field) -> tuple[float, float] | None:
+    limits = field.get("limits")
+    return None if limits is None else (float(limits[0]), float(limits[1]))
+
+
+def _moved(before: tuple[float, float], after: tuple[float, float] | None) -> bool:
+    if after is None:
+        return True
+    span = abs(before[1] - before[0]) or max(abs(before[0]), 1e-300)
+    return max(abs(a - b) for a, b in zip(before, after, strict=True)) > _LIMITS * span
+
+
+def _values(field: Field) -> Array:
+    return np.asarray(field["values"], dtype=float)
+
+
+def _at_most(one: Field, apart: Array) -> str:
+    largest = float(apart.max())
+    row, column = np.unravel_index(int(np.argmax(apart)), apart.shape)
+    words = f"values of {{}} differ by at most {100.0 * largest:.2g} % of the colour range"
+    if apart.shape[1] == 1:
+        shape = one["shape"]
+        first = int((row + 0.5) / apart.shape[0] * shape[0])
+        return f"{words}, mostly around number {first + 1}"
+    x, y = (column + 0.5) / apart.shape[1], (row + 0.5) / apart.shape[0]
+    if "extent" in one:
+        left, right, bottom, top = one["extent"]
+        share = 1.0 - y if one.get("origin") == "upper" else y
+        return f"{words}, mostly around ({left + x * (right - left):.3g}, {bottom + share * (top - bottom):.3g})"
+    rows, columns = one["shape"][:2]
+    return f"{words}, mostly around row {int(y * rows) + 1}, column {int(x * columns) + 1}"

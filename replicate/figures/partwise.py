@@ -1,0 +1,188 @@
+"""Compare what is drawn part by part: which one is new or gone, looks different, moved, or lies over another."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
+
+from replicate.figures.differences import Difference, FigureChange, Layer
+from replicate.figures.fieldwise import field_words
+from replicate.figures.looks import Frame, Mark, mark_words
+
+Part = Mapping[str, Any]
+
+_NAMED_TOGETHER = 3
+_PLACES = {"outline", "places", "at", "texts"}
+_PLURALS = ("labels", "marks", "lines")
+
+
+def compare_parts(
+    before: Sequence[Part],
+    after: Sequence[Part],
+    names: Mapping[str, str],
+    where: str,
+    prefix: str = "",
+    *,
+    curves: frozenset[str] = frozenset(),
+    frame: Frame | None = None,
+    other_ticks: Collection[str] = (),
+) -> list[Difference]:
+    """Compare the parts of one panel, or of the figure itself.
+
+    Parameters
+    ----------
+    names
+        Accepted names by new names, of the parts that have another name now.
+    where
+        What `Difference.where` begins with.
+    prefix
+        What the sentences begin with, where a figure has several panels.
+    curves
+        Names of parts that are curves.
+    frame
+        How places are to be compared.
+    other_ticks
+        The axes that have other limits or another scale now: their ticks follow from that.
+    """
+    old = {str(part["name"]): part for part in before}
+    # The entries of a legend follow the names of their curves.
+    entries = {f"legend entry '{name}'": f"legend entry '{was}'" for name, was in names.items()}
+    was = {**entries, **names}
+    new = {was.get(str(part["name"]), str(part["name"])): part for part in after}
+    found = list(_come_and_gone(old, new, where, prefix, curves, other_ticks))
+    sentences: dict[tuple[str, bool], dict[str, float | None]] = {}
+    for name, part in old.items():
+        if name in new:
+            net = bool(part.get("net") or new[name].get("net"))
+            follows = _ticks_of(name, other_ticks)
+            for words, size in _differ(part, new[name], frame or Frame(), follows=follows):
+                parts = sentences.setdefault((words, net), {})
+                parts[name] = size if size is None else max(size, parts.get(name) or 0.0)
+    for (words, net), parts in sentences.items():
+        sizes = [size for size in parts.values() if size is not None]
+        text = prefix + _sentence(words, list(parts), curves)
+        layer: Layer = "net" if net else "named"
+        place = f"{where} / {next(iter(parts))}"
+        found.append(Difference("look", text, place, size=max(sizes, default=None), layer=layer))
+    found += [
+        Difference("look", prefix + text, f"{where} / {name}") for name, text in _order(list(old), list(new), curves)
+    ]
+    return found
+
+
+def _sentence(words: str, names: Sequence[str], curves: frozenset[str]) -> str:
+    """Put the names of parts into a sentence, with the verb that fits their number."""
+    if len(names) > 1 or _plural(names[0]):
+        for one, several in (("{} is ", "{} are "), ("{} has ", "{} have "), ("{} no longer has", "{} no longer have")):
+            words = several.join(words.split(one, 1)) if words.startswith(one) else words
+    return words.replace("{}", _together([_called(name, curves) for name in names]))
+
+
+def _plural(name: str) -> bool:
+    return name.partition(" of the ")[0].endswith(_PLURALS) and " of the " in name
+
+
+def _come_and_gone(
+    old: Mapping[str, Part],
+    new: Mapping[str, Part],
+    where: str,
+    prefix: str,
+    curves: frozenset[str],
+    other_ticks: Collection[str],
+) -> Iterator[Difference]:
+    sides: tuple[tuple[Mapping[str, Part], Mapping[str, Part], str, FigureChange], ...] = (
+        (old, new, "gone", "removed"),
+        (new, old, "new", "new"),
+    )
+    for parts, others, words, kind in sides:
+        for name, part in parts.items():
+            if name not in others and not part.get("told") and not _ticks_of(name, other_ticks):
+                layer: Layer = "net" if part.get("net") else "named"
+                text = f"{prefix}{_called(name, curves)} {'are' if _plural(name) else 'is'} {words}"
+                yield Difference(kind, text, f"{where} / {name}", layer=layer)
+
+
+def _ticks_of(name: str, axes: Collection[str]) -> bool:
+    return any(name.endswith(f"of the {axis} axis") for axis in axes) and not name.startswith("label")
+
+
+def _differ(one: Part, other: Part, frame: Frame, *, follows: bool) -> Iterator[tuple[str, float | None]]:
+    before, after = one.get("properties", {}), other.get("properties", {})
+    for name in dict.fromkeys((*before, *after)):
+        if not _same(before.get(name), after.get(name)):
+            yield f"{name} of {{}} is now {_shown(after.get(name))} (was {_shown(before.get(name))})", None
+    fields = one.get("field", {}), other.get("field", {})
+    yield from ((words, None) for words in field_words(*fields))
+    loose = bool(one.get("loose") or other.get("loose"))
+    marks = one["marks"], other["marks"]
+    if follows:
+        marks = _anywhere(marks[0]), _anywhere(marks[1])
+    yield from mark_words(*marks, frame, loose=loose)
+
+
+def _anywhere(marks: Sequence[Mark]) -> list[Mark]:
+    """Leave out where ticks are and what they read."""
+    return [{name: value for name, value in mark.items() if name not in _PLACES} for mark in marks]
+
+
+def _order(before: Sequence[str], after: Sequence[str], curves: frozenset[str]) -> Iterator[tuple[str, str]]:
+    """Say what is drawn over what now, with as few words as the new order needs."""
+    place = {name: i for i, name in enumerate(before)}
+    common = [name for name in after if name in place]
+    kept = _longest_increasing([place[name] for name in common])
+    for i, name in enumerate(common):
+        if i in kept:
+            continue
+        below = [other for other in common[:i] if place[other] > place[name]]
+        over = [other for other in common[i + 1 :] if place[other] < place[name]]
+        verb = "are" if _plural(name) else "is"
+        for others, words in ((below, "over"), (over, "below")):
+            if others:
+                which = next((other for other in reversed(others) if other in curves), others[-1])
+                yield name, f"{_called(name, curves)} {verb} drawn {words} {_called(which, curves)} now"
+                break
+
+
+def _longest_increasing(places: Sequence[int]) -> set[int]:
+    """Return the indices of a longest increasing subsequence (Fredman, "On computing the length", 1975)."""
+    ends: list[int] = []
+    index: list[int] = []
+    previous: list[int] = []
+    for i, place in enumerate(places):
+        at = bisect_left(ends, place)
+        previous.append(index[at - 1] if at else -1)
+        ends[at : at + 1] = [place]
+        index[at : at + 1] = [i]
+    kept = set()
+    i = index[-1] if index else -1
+    while i >= 0:
+        kept.add(i)
+        i = previous[i]
+    return kept
+
+
+def _called(name: str, curves: frozenset[str]) -> str:
+    return f"curve '{name}'" if name in curves else name
+
+
+def _together(names: Sequence[str]) -> str:
+    if len(names) <= _NAMED_TOGETHER:
+        return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return f"{', '.join(names[:2])} and {len(names) - 2} more"
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, list) and isinstance(other, list):
+        return len(one) == len(other) and all(map(_same, one, other))
+    if isinstance(one, float | int) and isinstance(other, float | int):
+        return abs(one - other) <= 2e-3 * max(1.0, abs(one))
+    return bool(one == other)
+
+
+def _shown(value: Any) -> str:
+    if value is None:
+        return "automatic"
+    if isinstance(value, list):
+        return f"({', '.join(map(_shown, value))})"
+    return f"{value:g}" if isinstance(value, float) else str(value)
