@@ -47,6 +47,10 @@ drift: build/drift/.ready ## the same comparison under an older matplotlib and o
 	@build/drift/bin/python -c 'import matplotlib; print("matplotlib", matplotlib.__version__, "and kernels for", "$(DRIFT_CORE)")'
 	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/replicate diff $(ONLY) --out build/drift/run
 
+.PHONY: torture
+torture: $(VENV)/.ready ## attack every promise and count what held: killed, interrupted, damaged, misused
+	$(BIN)/python -m pytest tests/torture --torture -n auto --dist load -q $(ARGS)
+
 .PHONY: bench
 bench: $(VENV)/.ready ## measure speed and accuracy against python-control
 	set -e; for script in benchmarks/*.py; do $(BIN)/python "$$script"; done

@@ -11,7 +11,7 @@ import jinja2
 
 from replicate.errors import OutputError, PaperDefinitionError
 from replicate.resources import templates_dir
-from replicate.staging import staged
+from replicate.staging import replace_files
 
 _PLACES = {
     "__init__.py": "__init__.py",
@@ -81,9 +81,5 @@ def write_templates(source: str, places: dict[str, str], folder: Path, **variabl
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701 -- the templates make Python, TOML and Markdown, not HTML
     )
-    with staged(folder) as aside:
-        for name, place in places.items():
-            path = aside / place
-            path.parent.mkdir(parents=True, exist_ok=True)
-            text = environment.get_template(f"{name}.jinja").render(variables)
-            path.write_text(text, encoding="utf-8", newline="\n")
+    texts = {place: environment.get_template(f"{name}.jinja").render(variables) for name, place in places.items()}
+    replace_files(folder, {place: text.encode() for place, text in texts.items()})

@@ -8,10 +8,31 @@ from pathlib import Path
 
 import installed_paper
 import pytest
+from attack import attack, table
 
 from replicate import cli
 
+__all__ = ["attack"]
+
 Run = Callable[..., tuple[int, str, str]]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--torture", action="store_true", help="try every case of every attack, not a few of each kind")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Print the table of the attacks."""
+    if config.getoption("--torture"):
+        reports = [
+            report
+            for outcome in ("passed", "failed")
+            for report in terminalreporter.getreports(outcome)
+            if report.when == "call"
+        ]
+        terminalreporter.section("torture")
+        for line in table(reports):
+            terminalreporter.write_line(line)
 
 
 @pytest.fixture

@@ -64,6 +64,18 @@ def root():
     return Finding("holds", 2**0.5, "It is 1.41.")
 """
 
+_HANDOUT = """# Roots
+
+::: lead
+Why?
+:::
+
+## The numbers
+
+{{ table('table-1', readings={'as-written': 'exact'}) }}
+**A table** of roots.
+"""
+
 FILES = {
     "lab_paper/__init__.py": _INIT,
     "lab_paper/exhibits.py": _EXHIBITS,
@@ -77,6 +89,7 @@ cause = "misprint"
 reading = "decimal"
 explanation = "The last digit is wrong: {{ value('table-1', '3', 'log', 'decimal') }}."
 """,
+    "lab_paper/handout.md": _HANDOUT,
     "lab_paper/notes.md": "The roots hold.\n\n{{ exhibit('table-1') }}\n",
     "lab_paper-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: lab-paper\nVersion: 1.0\n",
     "lab_paper-1.0.dist-info/entry_points.txt": "[replicate.papers]\nlab = lab_paper:paper\n",

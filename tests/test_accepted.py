@@ -329,32 +329,6 @@ def test_accepting_is_all_or_nothing(accepted: Path, data: Path, monkeypatch: py
     assert {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()} == before
 
 
-@pytest.mark.parametrize("when", ["before", "after"])
-@pytest.mark.parametrize("step", range(4))
-def test_an_interruption_between_any_two_steps(
-    accepted: Path, data: Path, monkeypatch: pytest.MonkeyPatch, step: int, when: str
-) -> None:
-    before = {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()}
-    rename = Path.rename
-    steps = 0
-
-    def interrupted(self: Path, target: Path) -> Path:
-        nonlocal steps
-        steps += 1
-        if steps == step + 1 and when == "before":
-            raise KeyboardInterrupt
-        moved = rename(self, target)
-        if steps == step + 1:
-            raise KeyboardInterrupt
-        return moved
-
-    monkeypatch.setattr(Path, "rename", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        accept(outcome(data, figure({"output": INPUT}), as_written=synthetic.frame(ax=1.5)), accepted, "half")
-    assert steps > step
-    assert {path: path.read_bytes() for path in accepted.rglob("*") if path.is_file()} == before
-
-
 def test_check_wants_explanations_and_comparisons(accepted: Path, data: Path) -> None:
     both = {"as_written": synthetic.frame(ax=7.0), "authors": synthetic.frame(ax=7.0)}
     problems = check(outcome(data, **both), accepted)

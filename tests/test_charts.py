@@ -13,7 +13,7 @@ from matplotlib.figure import Figure as Canvas
 from replicate import cli
 from replicate.errors import OutputError, PaperDefinitionError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
-from replicate.run.charts import file_name, find_chart, read_parameters, write_chart
+from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
 
 
 @pytest.fixture
@@ -73,17 +73,16 @@ def test_files(paper: Paper, tmp_path: Path) -> None:
     chart, values = find_chart(paper), {"rate": 0.5, "until": 3.0}
     assert file_name(paper, chart, values) == "lab-decay-rate-0.5-until-3.svg"
     svg, again, png = (tmp_path / "new" / name for name in ("a.svg", "b.svg", "a.png"))
+    (tmp_path / "new").mkdir()
     for path in (svg, again, png):
-        write_chart(paper, chart, values, path)
+        path.write_bytes(draw_chart(paper, chart, values, path))
     assert svg.read_text().startswith("<?xml")
     assert svg.read_bytes() == again.read_bytes()
     assert png.read_bytes().startswith(b"\x89PNG")
     with pytest.raises(OutputError, match=r"must end in \.svg or \.png"):
-        write_chart(paper, chart, values, tmp_path / "a.txt")
-    with pytest.raises(OutputError, match="cannot be written"):
-        write_chart(paper, chart, values, svg / "a.svg")
+        draw_chart(paper, chart, values, tmp_path / "a.txt")
     with pytest.raises(ReplicateError, match="chart 'decay': rate must be positive, not -1"):
-        write_chart(paper, chart, {"rate": -1.0, "until": 3.0}, svg)
+        draw_chart(paper, chart, {"rate": -1.0, "until": 3.0}, svg)
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
@@ -103,6 +102,8 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         tmp_path / "build/charts/krajewski-design-tau-0.35.svg"
     ).read_bytes()
     capsys.readouterr()
+    assert run("krajewski", "--out", "mine.svg/a.svg", "--chart=design", "--tau=0.35") == 2
+    assert capsys.readouterr().err.startswith("replicate: mine.svg: cannot be written: ")
     assert run("krajewski", "--tau", "0") == 2
     assert capsys.readouterr().err == "replicate: chart 'combined': tau must be between 0.01 and 20, not 0\n"
     assert run("bayhan", "--tau", "1") == 2

@@ -45,9 +45,9 @@ def diff(
 
     within = library(papers_dir, bundled)
     folder = output_folder(within, out)
-    with staged(folder) as fresh:
-        papers, selection = within.select(names or ())
-        baseline = accepted_folder(within, papers, accepted)
+    papers, selection = within.select(names or ())
+    baseline = accepted_folder(within, papers, accepted)
+    with staged(folder, "diff", expects=("diff.json", "diff/index.html")) as fresh:
         outcome = recompute(papers, selection, jobs, folder, no_cache)
         comparison = compare(outcome, baseline, within.ids())
         print_comparison(comparison, console())  # before anything else can go wrong

@@ -41,11 +41,11 @@ def handout(
     chosen = with_handout(within.papers(papers or ()), all_needed=bool(papers))
     file_format = checked_format(format)
     editions = (False, True) if solutions is None else (solutions,)
-    with staged(place / "handouts") as fresh:
+    with staged(place, "handouts", renews=lambda _: False) as fresh:  # those of other papers, and other editions, stay
         outcome = recompute(chosen, None, jobs, place, no_cache)
         verdicts = outcome.judgement.verdicts
         written = build_handouts(
-            outcome.papers, outcome.results, verdicts, fresh, solutions=editions, file_format=file_format
+            outcome.papers, outcome.results, verdicts, fresh / "handouts", solutions=editions, file_format=file_format
         )
     for path in written:
         typer.echo(f"handout: {place / 'handouts' / path.name}")

@@ -83,10 +83,17 @@ def accepted_folder(papers: Library, chosen: Sequence[Paper], folder: Path | Non
     ProjectError
         If there is neither a project nor a folder named; the state of the bundled papers is read, never written.
     """
+    from replicate.staging import finish_interrupted
+
+    if folder is None:
+        folder = _accepted_folder(papers, chosen, writing=writing)
+    finish_interrupted(folder)
+    return folder
+
+
+def _accepted_folder(papers: Library, chosen: Sequence[Paper], *, writing: bool) -> Path:
     from replicate.resources import accepted_dir
 
-    if folder is not None:
-        return folder
     project = papers.project
     foreign = not (project is not None and project.bundled) and all(papers.is_bundled(paper.id) for paper in chosen)
     own = project is not None and all((project.accepted / paper.id).is_dir() for paper in chosen)

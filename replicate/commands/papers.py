@@ -91,12 +91,22 @@ def chart(
 
     Without any, the message names those of the chart.
     """
-    from replicate.run.charts import file_name, find_chart, read_parameters, write_chart
+    from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
+    from replicate.staging import replace_files, staged
 
     within = library(papers_dir)
     owner = within.paper(paper)
     found = find_chart(owner, name)
     values = read_parameters(found, context.args)
-    path = out or output_folder(within, None) / "charts" / file_name(owner, found, values)
-    write_chart(owner, found, values, path)
-    typer.echo(f"chart: {path}")
+    file = file_name(owner, found, values)
+    content = draw_chart(owner, found, values, out or Path(file))
+    if out is None:
+        folder = output_folder(within, None)
+        with staged(folder, "charts", renews=lambda _: False) as fresh:  # earlier charts stay
+            (fresh / "charts").mkdir()
+            (fresh / "charts" / file).write_bytes(content)
+        out = folder / "charts" / file
+    else:
+        place = out.resolve() if out.is_symlink() else out
+        replace_files(place.parent, {place.name: content})
+    typer.echo(f"chart: {out}")

@@ -31,7 +31,7 @@ def report(
     no_cache: NoCache = False,
 ) -> None:
     """Recompute every exhibit and write the report."""
-    from replicate.report.data import write_outputs
+    from replicate.report.data import expected_files, write_outputs
     from replicate.report.pages import build_report
     from replicate.report.site import site_of
     from replicate.staging import staged
@@ -40,9 +40,9 @@ def report(
 
     within = library(papers_dir, bundled)
     folder = output_folder(within, out)
-    with staged(folder) as fresh:  # first of all, so that a folder that cannot be written is noticed at once
-        chosen = within.papers(papers or ())
-        about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in chosen))
+    chosen = within.papers(papers or ())
+    about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in chosen))
+    with staged(folder, "report", expects=expected_files(chosen)) as fresh:
         outcome = recompute(chosen, None, jobs, folder, no_cache)
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)

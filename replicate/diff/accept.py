@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Collection
 from pathlib import Path
 
 from replicate.diff.accepted import files_of, state_files
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
-from replicate.errors import ReplicateError
+from replicate.errors import OutputError, ReplicateError
 from replicate.run.outcome import Outcome
-from replicate.staging import staged
+from replicate.staging import replace_files
 
 LOG = "CHANGES.md"
 
@@ -42,7 +41,7 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
     ReplicateError
         If the reason is empty or an exhibit raised.
     OutputError
-        If the folder cannot be written; it is as it was, then.
+        If the folder cannot be written, or holds files in the way that are not ours; it is as it was, then.
     """
     reason = require_reason(reason)
     if outcome.failures:
@@ -52,20 +51,18 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
     fresh_states = dict.fromkeys((diff.paper, diff.exhibit) for diff in (*comparison.changed, *comparison.outdated))
     if not fresh_states:
         return comparison
-    with staged(folder) as fresh:
-        for paper in dict.fromkeys(paper for paper, _ in fresh_states):
-            if (folder / paper).is_dir():
-                shutil.copytree(folder / paper, fresh / paper)
-            else:
-                (fresh / paper).mkdir()
-        for paper, exhibit in fresh_states:
-            for old in files_of(fresh / paper, exhibit):
-                old.unlink()
-            if (paper, exhibit) in outcome.results:
-                for name, content in state_files(outcome, outcome.results[paper, exhibit]).items():
-                    (fresh / paper / name).write_bytes(content)
-        earlier = (folder / LOG).read_text(encoding="utf-8") if (folder / LOG).is_file() else _TITLE
-        (fresh / LOG).write_text(earlier + _entry(reason, comparison), encoding="utf-8", newline="\n")
+    log = _log(folder)
+    if not log:
+        _refuse_foreign(comparison, folder)
+    files: dict[str, bytes] = {}
+    obsolete: list[str] = []
+    for paper, exhibit in fresh_states:
+        result = outcome.results.get((paper, exhibit))
+        made = state_files(outcome, result) if result is not None else {}
+        files |= {f"{paper}/{name}": content for name, content in made.items()}
+        obsolete += [f"{paper}/{old.name}" for old in files_of(folder / paper, exhibit) if old.name not in made]
+    files[LOG] = ((log or _TITLE) + _entry(reason, comparison)).encode()
+    replace_files(folder, files, obsolete)
     return comparison
 
 
@@ -82,6 +79,30 @@ def require_reason(reason: str) -> str:
         msg = "accepting needs a reason: --reason 'why the present state is right'"
         raise ReplicateError(msg)
     return reason
+
+
+def _log(folder: Path) -> str:
+    """Return the log of an accepted folder, empty if there is none."""
+    path = folder / LOG
+    if not path.exists():
+        return ""
+    try:
+        log = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        log = ""
+    if not log.startswith(_TITLE):
+        msg = f"{path}: is not a log of accepted changes, which begins with '{_TITLE.strip()}'; nothing was written"
+        raise OutputError(msg)
+    return log
+
+
+def _refuse_foreign(comparison: Comparison, folder: Path) -> None:
+    """Refuse to replace files in a folder without our log, unless they can be read as an accepted state."""
+    for diff in comparison.changed:
+        if diff.before is None:
+            for path in files_of(folder / diff.paper, diff.exhibit):
+                msg = f"{path}: is in the way, and not of an accepted state: {folder} has no {LOG}; nothing was written"
+                raise OutputError(msg)
 
 
 def _entry(reason: str, comparison: Comparison) -> str:

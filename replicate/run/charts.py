@@ -90,15 +90,15 @@ def file_name(paper: Paper, chart: Chart, values: Mapping[str, float]) -> str:
     return f"{paper.id}-{chart.id}{told}.svg"
 
 
-def write_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Path) -> None:
-    """Draw a chart and write it, as SVG or PNG after the name of the file.
+def draw_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Path) -> bytes:
+    """Draw a chart and return the content of a file, SVG or PNG after its name.
 
     Raises
     ------
     ReplicateError
         If a value makes no sense to the chart.
     OutputError
-        If the file cannot be written or its name does not tell one of the two formats.
+        If the file's name does not tell one of the two formats.
     """
     from replicate.run.drawing import capture
 
@@ -112,10 +112,4 @@ def write_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: P
     except ValueError as error:
         msg = f"chart '{chart.id}': {error}"
         raise ReplicateError(msg) from error
-    content = drawn.png if path.suffix.lower() == ".png" else drawn.svg.encode()
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
-    except OSError as error:
-        msg = f"{path}: cannot be written: {error.strerror or error}"
-        raise OutputError(msg) from error
+    return drawn.png if path.suffix.lower() == ".png" else drawn.svg.encode()

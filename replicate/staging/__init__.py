@@ -1,0 +1,14 @@
+"""Replace files of ours all together or not at all, and never a file of the user's.
+
+A run writes into a hidden folder inside its target, `.replicate`. When everything is there and flushed to the disk, a
+journal is renamed into place: this one step decides. Before it everything can be thrown away; after it everything is
+carried out, by this run or, if it is killed, by the next one.
+
+`staged`            a part of an output folder, whose manifest tells which files earlier runs wrote
+`replace_files`     named files in any folder, for the accepted state, a chart, a new paper
+`finish_interrupted` before reading a folder that another run may have been killed in
+"""
+
+from replicate.staging.stage import finish_interrupted, replace_files, staged
+
+__all__ = ["finish_interrupted", "replace_files", "staged"]

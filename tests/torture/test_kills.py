@@ -1,0 +1,116 @@
+"""Kill, interrupt and tear: whatever happens to a run, what it replaces is the earlier state or the new one."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import installed_paper
+import pytest
+from attack import Attack
+
+from replicate.staging import replace_files
+
+HERE = Path(__file__).parent
+
+# Nothing here depends on what the disk flushes; in memory, flushing takes no time.
+MEMORY = Path("/dev/shm")  # noqa: S108  -- a folder of its own is made inside
+
+SCENARIOS = ("report", "report behind a link", "accept")
+
+
+@pytest.fixture
+def quick(tmp_path: Path) -> Iterator[Path]:
+    if not os.access(MEMORY, os.W_OK):
+        yield tmp_path
+        return
+    with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
+        yield Path(folder)
+
+
+def run(script: str, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(HERE), "NO_COLOR": "1"}
+    environment.pop("GITHUB_STEP_SUMMARY", None)
+    command = [sys.executable, str(HERE / script), *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd, env=environment)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system with fork")
+@pytest.mark.parametrize("scenario", SCENARIOS)
+@pytest.mark.parametrize(("kind", "words", "every"), [("killed", "killed twice", 9), ("signalled", "two signals", 13)])
+def test_swaps(attack: Attack, quick: Path, kind: str, words: str, every: int, scenario: str) -> None:
+    done = run("killed_swaps.py", kind, scenario, str(quick / "build"), "1" if attack.everything else str(every))
+    assert done.returncode == 0, done.stderr
+    cases = json.loads(done.stdout)
+    attack.report(f"{words} at any file operation: {scenario}", len(cases), [(case, why) for case, why in cases if why])
+
+
+COMMANDS = {
+    "report": ["report", "lab"],
+    "diff": ["diff", "lab", "--accepted", "accepted"],
+    "accept": ["accept", "lab", "--accepted", "accepted", "--reason", "moved"],
+    "handout": ["handout", "lab", "--format", "html"],
+    "chart": ["chart", "krajewski", "--tau", "{}", "--chart", "design", "--out", "charts/mine.svg"],
+    "new": ["new", "another"],
+}
+
+
+def edit(site: Path, replacement: str) -> None:
+    """Change the paper, so that the next run writes other files."""
+    exhibits = site / "lab_paper/exhibits.py"
+    exhibits.write_text(exhibits.read_text().replace("2**0.5, 3**0.5", replacement).replace("math.log(", "math.log1p("))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_commands(attack: Attack, quick: Path, command: str) -> None:
+    here, site, states = quick / "here", quick / "site", quick / "states"
+    with installed_paper.installed(site):
+        pass  # the files stay
+
+    def replicate(value: str, *, copied: bool = False, command: str = command) -> None:
+        arguments = [part.format(value) for part in COMMANDS[command]] + ["-j1"] * (command not in ("chart", "new"))
+        where = states if copied else quick / "unused"
+        done = run("crash_states.py", str(here), str(where), str(site), *arguments, cwd=here)
+        shutil.rmtree(quick / "unused", ignore_errors=True)
+        assert done.returncode in (0, 1), done.stderr
+
+    here.mkdir()
+    (here / "build/report").mkdir(parents=True)
+    (here / "build/report/main.tex").write_text("thesis")
+    if command == "diff":
+        replicate("", command="accept")
+    if command != "new":
+        replicate("0.3")
+    edit(site, "2**0.5, 3**0.51")
+    old = tree(here)
+    replicate("0.4", copied=True)
+    new = tree(here)
+    assert old != new
+
+    def held(number: int) -> str:
+        state = states / str(number)
+        torn = [name for name, content in tree(state).items() if content not in (old.get(name), new.get(name))]
+        if torn:
+            return f"half written: {', '.join(torn)}"
+        for target in {path.parent for path in state.rglob(".replicate")}:
+            replace_files(target, {})
+        left = [path.name for path in state.rglob(".replicate/*") if path.name != "manifest.json"]
+        if left:
+            return f"left behind: {', '.join(left)}"
+        return "" if tree(state) in (old, new) else "a mixture of the earlier and the new state"
+
+    numbers = range(1, len(list(states.iterdir())) + 1)
+    attack(f"killed at any file operation: {command}", numbers, held, short=12)
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    """Return what a user sees of a folder, without what is kept for the next run."""
+    hidden = {"cache", ".replicate"}
+    files = (path for path in folder.rglob("*") if path.is_file() and not hidden & {*path.relative_to(folder).parts})
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
