@@ -15,7 +15,7 @@ from typing import Annotated
 
 import typer
 
-from replicate.commands import accepted, beginnings, handouts, papers, report
+from replicate.commands import accepted, beginnings, handouts, papers, printed, report
 from replicate.commands.options import BROKEN
 from replicate.errors import ReplicateError
 
@@ -97,3 +97,4 @@ app.command()(accepted.accept)
 app.command()(handouts.handout)
 app.command()(beginnings.init)
 app.command()(beginnings.new)
+app.add_typer(printed.app, name="printed")

@@ -141,7 +141,8 @@ def test_without_a_command_the_commands_are_listed(replicate: Run) -> None:
     status, out, err = replicate()
     assert (status, err) == (2, "")
     lines = out[out.index("Commands:") :].splitlines()[1:]
-    assert len(lines) == 10
+    named = {line.split()[0] for line in lines}
+    assert {"list", "show", "report", "check", "diff", "accept", "handout", "init", "new", "printed"} <= named
     assert not any(line.endswith("...") for line in lines)
 
 

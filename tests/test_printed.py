@@ -62,12 +62,12 @@ def test_reads_what_spreadsheets_write(tmp_path: Path, content: str) -> None:
         ),
         (
             "r,x,y\nA,1,2\nA,1,2\nB,3,4\n",
-            r"toy/printed/table-1.csv:3: row 'A' is there twice \(first in line 2\)",
+            r"toy/printed/table-1.csv:3: row 'A' appears twice \(first in line 2\)",
         ),
         ("r,x,y\nB,1,2\nA,3,4\n", "toy/printed/table-1.csv:2: row 'B' is out of order, 'A' comes first; .*"),
         ("r,x\nA,1\nB,3\n", "toy/printed/table-1.csv:1: column 'y' is missing"),
         ("r,x,y,z\nA,1,2,3\nB,1,2,3\n", "toy/printed/table-1.csv:1: column 'z' is not one of .*: 'x', 'y'"),
-        ("r,x,x\nA,1,2\nB,3,4\n", "toy/printed/table-1.csv:1: column 'x' is there twice"),
+        ("r,x,x\nA,1,2\nB,3,4\n", "toy/printed/table-1.csv:1: column 'x' appears twice"),
         (
             "r,y,x\nA,1,2\nB,3,4\n",
             "toy/printed/table-1.csv:1: column 'y' is out of order, 'x' comes first; .*",

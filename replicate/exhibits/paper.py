@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
-from replicate.exhibits.printed import USUAL, Key, Near, read_texts
+from replicate.exhibits.printed import USUAL, Key, Near, read_transcription
 from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_points
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
@@ -243,4 +243,4 @@ class Paper:
 
 @cache
 def _printed_cells(package: str, exhibit: str) -> Mapping[tuple[str, str], str]:
-    return MappingProxyType(read_texts(importlib.resources.files(package) / "printed" / f"{exhibit}.csv"))
+    return MappingProxyType(read_transcription(importlib.resources.files(package) / "printed" / f"{exhibit}.csv").cells)

@@ -163,18 +163,39 @@ def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedVal
     }
 
 
-def read_texts(path: Traversable | Path) -> dict[Key, str]:
-    """Return the cells of a printed CSV as texts by (row, column), for exhibits that weigh the print as evidence.
+@dataclass(frozen=True)
+class Transcription:
+    """A printed CSV as it was typed.
 
-    Blank cells are left out. Nothing is compared with the exhibit's keys: `read_printed` does that.
+    Attributes
+    ----------
+    columns
+        Column keys, in the order of the file.
+    lines
+        Line of each row by its key, in the order of the file.
+    cells
+        Texts by (row, column); blank cells are left out.
+    """
+
+    columns: tuple[str, ...]
+    lines: dict[str, int]
+    cells: dict[Key, str]
+
+
+def read_transcription(path: Traversable | Path) -> Transcription:
+    """Read a printed CSV as texts; nothing is compared with an exhibit's keys: `read_printed` does that.
 
     Raises
     ------
     PrintedFileError
-        If the file cannot be read or its rows are of different lengths.
+        If the file cannot be read, its rows are of different lengths, or a row or column appears twice.
     """
-    (_, columns), body = _grid(path, display_name(path), ("row",))
-    return {(row, column): text for _, row, texts in body for column, text in zip(columns, texts, strict=True) if text}
+    name = display_name(path)
+    (header_line, columns), body = _grid(path, name, ("row",))
+    _check_once(f"{name}:{header_line}", "column", [(header_line, key) for key in columns])
+    _check_once(name, "row", [(line, row) for line, row, _ in body])
+    cells = {(row, column): text for _, row, texts in body for column, text in zip(columns, texts, strict=True) if text}
+    return Transcription(tuple(columns), {row: line for line, row, _ in body}, cells)
 
 
 def _grid(
@@ -220,20 +241,28 @@ def _records(path: Traversable | Path, name: str) -> list[tuple[int, list[str]]]
     return records
 
 
-def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expected: Sequence[str]) -> None:
-    """Demand the expected keys, all of them, once each and in their order."""
+def _check_once(place: str, kind: str, found: Sequence[tuple[int, str]]) -> None:
+    """Demand that no key appears twice."""
     first_line: dict[str, int] = {}
     for line, key in found:
-        where = place if kind == "column" else f"{place}:{line}"
         if key in first_line:
+            where = place if kind == "column" else f"{place}:{line}"
             also = f" (first in line {first_line[key]})" if kind == "row" else ""
-            msg = f"{where}: {kind} '{key}' is there twice{also}"
-            raise PrintedFileError(msg)
-        if key not in expected:
-            msg = f"{where}: {kind} '{key}' is not one of the exhibit's; allowed: {_listed(expected)}"
+            msg = f"{where}: {kind} '{key}' appears twice{also}"
             raise PrintedFileError(msg)
         first_line[key] = line
-    missing = [key for key in expected if key not in first_line]
+
+
+def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expected: Sequence[str]) -> None:
+    """Demand the expected keys, all of them, once each and in their order."""
+    _check_once(place, kind, found)
+    for line, key in found:
+        if key not in expected:
+            where = place if kind == "column" else f"{place}:{line}"
+            msg = f"{where}: {kind} '{key}' is not one of the exhibit's; allowed: {_listed(expected)}"
+            raise PrintedFileError(msg)
+    keys = {key for _, key in found}
+    missing = [key for key in expected if key not in keys]
     if missing:
         last = f":{found[-1][0]}" if kind == "row" and found else ""
         msg = f"{place}{last}: {kind} {_listed(missing)} is missing"
