@@ -33,7 +33,7 @@ def diff(
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
-    """Show what differs from the accepted state, in words here and in pictures on a page.
+    """Show what differs from the accepted state, in words and pictures.
 
     The page is diff/index.html in the output folder. Exit status 1 if something differs.
     """

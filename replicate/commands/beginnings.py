@@ -15,7 +15,7 @@ def init(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Created if it does not exist.")],
     title: Annotated[str, typer.Option("--title", help="Title of the report.")] = "",
 ) -> None:
-    """Begin a project: a folder with a project file, a place for papers, a Makefile and a workflow for CI."""
+    """Begin a project: a folder for papers, with what CI needs."""
     from replicate.new_project import new_project
 
     new_project(folder, title)
@@ -30,7 +30,7 @@ def init(
 def new(
     paper: Annotated[str, typer.Argument(metavar="PAPER", help="Its id: lower-case letters, digits and _.")],
 ) -> None:
-    """Begin a paper: in the project's folder of papers, or here if there is no project."""
+    """Begin a paper, in the project or in this folder."""
     from replicate.new_paper import new_paper
 
     within = library()

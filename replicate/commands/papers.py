@@ -27,7 +27,7 @@ def list_(
     papers_dir: PapersDir = None,
     bundled: Bundled = False,
 ) -> None:
-    """List the papers, or the exhibits of one of them and what cannot be computed."""
+    """List the papers, or the exhibits of one of them."""
     from replicate.terminal.console import console
     from replicate.terminal.inventory import print_exhibits, print_papers
 
@@ -54,7 +54,7 @@ def show(
     out: Out = None,
     no_cache: NoCache = False,
 ) -> None:
-    """Show one exhibit: printed values, readings, verdicts and explanations."""
+    """Show one exhibit: prints, readings, verdicts, explanations."""
     from replicate.exhibits import Table
     from replicate.run.discovery import find_exhibit
     from replicate.terminal.console import console
@@ -87,9 +87,9 @@ def chart(
         Path | None, typer.Option("--out", help="File, .svg or .png; default: in build/charts.", dir_okay=False)
     ] = None,
 ) -> None:
-    """Draw a chart of a paper for parameters of your own, given as --NAME VALUE.
+    """Draw a chart of a paper for parameters of your own.
 
-    Without any, the message names those of the chart.
+    They are given as --NAME VALUE; without any, the message names those of the chart.
     """
     from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
     from replicate.staging import replace_files, staged

@@ -61,7 +61,10 @@ def check(
     no_cache: NoCache = False,
     accepted: Accepted = None,
 ) -> None:
-    """Check that every value holds or is explained and that nothing differs from the accepted state."""
+    """Check that all is explained and as accepted.
+
+    Every printed value holds or has an explanation, and nothing differs from the accepted state.
+    """
     from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
 
