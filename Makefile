@@ -68,6 +68,7 @@ lock: $(VENV)/.ready ## remake requirements.lock from pyproject.toml: make lock 
 	$(BIN)/uv pip compile pyproject.toml --group dev --output-file requirements.lock --quiet \
 	    --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 	    --custom-compile-command "make lock" $(ARGS)
+	$(BIN)/python .ci/date_lock.py $(BIN)/uv
 
 .PHONY: dist
 dist: $(VENV)/.ready ## build the source archive and the wheel in dist/

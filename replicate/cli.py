@@ -18,6 +18,7 @@ import typer
 from replicate.commands import accepted, beginnings, handouts, papers, printed, report
 from replicate.commands.options import BROKEN
 from replicate.errors import ReplicateError
+from replicate.figures.isolation import isolate_matplotlib
 
 TERMINATED = 143
 
@@ -51,6 +52,7 @@ def main() -> None:
 
 def _prepare() -> None:
     """Let a terminal without Unicode show what it can, and a run that is told to end tidy up first."""
+    isolate_matplotlib()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
