@@ -18,7 +18,7 @@ import typer
 from replicate.commands import accepted, beginnings, handouts, papers, printed, report
 from replicate.commands.options import BROKEN
 from replicate.errors import ReplicateError
-from replicate.figures.isolation import isolate_matplotlib
+from replicate.run.isolation import isolate_matplotlib
 
 TERMINATED = 143
 

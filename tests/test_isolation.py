@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 CODE = """
-from replicate.figures.isolation import isolate_matplotlib
+from replicate.run.isolation import isolate_matplotlib
 isolate_matplotlib()
 import os
 here = os.getcwd()
