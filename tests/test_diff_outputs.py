@@ -373,6 +373,6 @@ def test_accepting_what_differs(diff: Run, replicate: Run) -> None:
     status, out, _ = replicate("accept", "lab/fig-1", "--reason", "less\n offset", "--accepted", "accepted", "-j1")
     assert status == 0
     assert out.startswith("lab/fig-1: curve 'output' moved")
-    assert out.endswith("changes accepted: 1\n")
+    assert out.endswith("changes accepted: 1; in accepted\n")
     assert "## less offset\n\n- lab/fig-1: curve 'output' moved" in Path("accepted/CHANGES.md").read_text()
     assert "in 1 of 3 exhibits" in diff()[1]

@@ -54,7 +54,7 @@ def diff(
         write_diff(comparison, outcome, fresh, jobs)
     typer.echo(f"pictures: {folder / 'diff' / 'index.html'}")
     broken = comparison.broken or not comparison.compared
-    exit_with(within, outcome, BROKEN if broken else DIFFERS if comparison.changes else 0)
+    exit_with(within, outcome, BROKEN if broken else DIFFERS if comparison.changes else 0, failures_shown=True)
 
 
 def accept(

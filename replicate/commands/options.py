@@ -109,11 +109,14 @@ def _accepted_folder(papers: Library, chosen: Sequence[Paper], *, writing: bool)
     return shortest(project.accepted)
 
 
-def exit_with(papers: Library, outcome: Outcome | None = None, status: int = 0) -> NoReturn:
+def exit_with(
+    papers: Library, outcome: Outcome | None = None, status: int = 0, *, failures_shown: bool = False
+) -> NoReturn:
     """Report what raised and which papers could not be used, and end; either makes the run a broken one."""
     broken, failed = list(papers.broken), False
     if outcome is not None:
-        tell_failures(outcome)
+        if not failures_shown:
+            tell_failures(outcome)
         broken += outcome.broken.values()
         failed = bool(outcome.failures)
     for line in broken:

@@ -14,6 +14,7 @@ from typing import Literal
 
 from markupsafe import Markup
 
+from replicate.display.safe_html import sanitised
 from replicate.errors import TemplateError
 
 Form = Literal["block", "inline", "plain"]
@@ -23,7 +24,11 @@ Form = Literal["block", "inline", "plain"]
 _LISTS = "-fancy_lists-example_lists"
 # A "<" is a less-than sign: texts hold inequalities, and elements in them could break the page.
 _NO_HTML = "-raw_html-native_divs-native_spans-markdown_in_html_blocks-raw_attribute"
-_FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LISTS}{_NO_HTML}"
+# Attributes could carry handlers and styles; `sanitised` would remove them, but what is not read cannot slip through.
+_NO_ATTRIBUTES = (
+    "-bracketed_spans-fenced_divs-header_attributes-link_attributes-fenced_code_attributes-inline_code_attributes"
+)
+_FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LISTS}{_NO_HTML}{_NO_ATTRIBUTES}"
 _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 
@@ -88,14 +93,14 @@ class MarkdownBatch:
         if not self._texts:
             return []
         marked = [f"\ue004{i}\ue005\n\n{text}\n" for text, i in self._texts.items()]
-        options = ["--mathml", "--wrap=none", "--fail-if-warnings", "--reference-location=block"]
+        options = ["--sandbox", "--mathml", "--wrap=none", "--fail-if-warnings", "--reference-location=block"]
         try:
             document = pypandoc.convert_text("\n".join(marked), "html", format=_FORMAT, extra_args=options)
         except RuntimeError as error:
             msg = f"{self.name}: pandoc cannot convert a text: {self._culprit(str(error))}"
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
-        document = document.replace("\r\n", "\n").replace(' id="footnotes"', "")
+        document = sanitised(document.replace("\r\n", "\n")).replace(' id="footnotes"', "")
         parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import partial
 from typing import Any
@@ -12,6 +13,7 @@ from markupsafe import Markup
 from replicate.display import environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.markdown import MarkdownBatch
+from replicate.display.safe_html import policy
 from replicate.resources import templates_dir
 
 
@@ -49,17 +51,36 @@ def render(template: str, name: str, **context: Any) -> str:
     loader.filters |= {
         "md": batch.block, "inline": batch.inline, "plain": batch.plain, "key": partial(_key, batch),
     }  # fmt: skip
-    style = (templates_dir() / "style.css").read_text(encoding="utf-8")
     text = loader.get_template(template).render(
         context,
-        style=Markup(style),  # noqa: S704 -- the project's own style sheet
         words=words,
         anchor=anchor,
         scores=scores,
         numbers=numbers,
         versions=environment.versions(),
+        style=Markup(_STYLE),  # noqa: S704 -- two marks, replaced below
+        policy=Markup(_POLICY),  # noqa: S704
     )
-    return batch.substitute(text)
+    return with_policy(batch.substitute(text).replace(_STYLE, style_sheet(context.get("theme") or {})))
+
+
+_STYLE, _POLICY = "\ue006style\ue007", "\ue006policy\ue007"
+
+
+def style_sheet(theme: Mapping[str, str]) -> str:
+    """Return the style sheet of all pages, in the colours of a project where it names some."""
+    style = (templates_dir() / "style.css").read_text(encoding="utf-8")
+    colours = "".join(f"--{_COLOURS[name]}: {colour}; " for name, colour in theme.items())
+    return f"{style}@media not (prefers-color-scheme: dark) {{ :root {{ {colours}}} }}\n" if colours else style
+
+
+_COLOURS = {"accent": "link", "paper": "bg", "ink": "ink"}
+
+
+def with_policy(page: str) -> str:
+    """Return a page with the policy that allows the styles and scripts it carries, and nothing else."""
+    styles, scripts = (re.findall(rf"<{name}[^>]*>(.*?)</{name}>", page, re.DOTALL) for name in ("style", "script"))
+    return page.replace(_POLICY, policy(styles, scripts))
 
 
 def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:
