@@ -45,7 +45,7 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
     """
     reason = require_reason(reason)
     if outcome.failures:
-        msg = f"nothing is accepted, because an exhibit could not be computed: {outcome.failures[0]}"
+        msg = f"nothing was accepted, because an exhibit could not be computed: {outcome.failures[0]}"
         raise ReplicateError(msg)
     comparison = compare(outcome, folder, known)
     fresh_states = dict.fromkeys((diff.paper, diff.exhibit) for diff in (*comparison.changed, *comparison.outdated))

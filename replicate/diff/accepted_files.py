@@ -1,4 +1,4 @@
-"""Read the files of the accepted state; a damaged one is named with its line and with what is allowed.
+"""Read the files of the accepted state; a damaged file is reported with its line and with what is allowed.
 
 They are written by `replicate.diff.accepted` and compared by hand in reviews, so a merge or an editor may damage
 them. Nothing is guessed then: half a file would look like a change of the results.
@@ -30,14 +30,14 @@ def read_cells(path: Path, columns: Sequence[str]) -> dict[tuple[str, ...], dict
     Raises
     ------
     AcceptedStateError
-        If the file is no such table, or a cell stands in it twice.
+        If the file is not such a table, or contains a cell twice.
     """
     cells: dict[tuple[str, ...], dict[str, str]] = {}
     lines: dict[tuple[str, ...], int] = {}
     for line, row in _rows(path, columns):
         key, others = keyed(columns, row)
         if key in lines:
-            _damaged(path, line, f"'{' '.join(key)}' stands in line {lines[key]} already, needed: every cell once")
+            _damaged(path, line, f"'{' '.join(key)}' already appears in line {lines[key]}; allowed: each cell once")
         lines[key] = line
         cells[key] = others
     return cells
@@ -62,7 +62,7 @@ def read_curves(path: Path) -> dict[tuple[str, str], Points]:
     for line, (panel, curve, *place) in _rows(path, CURVE_COLUMNS):
         x, y = (_number(text) for text in place)
         if not (place == ["", ""] or (math.isfinite(x) and math.isfinite(y))):
-            _damaged(path, line, f"x and y are {','.join(place)}, needed: two numbers, or nothing at a break")
+            _damaged(path, line, f"x and y are {','.join(place)}; expected: two numbers, or nothing at a break")
         points.setdefault((panel, curve), []).append((x, y))
     return {key: np.array(value) for key, value in points.items()}
 
@@ -88,15 +88,15 @@ def _rows(path: Path, columns: Sequence[str]) -> Iterator[tuple[int, list[str]]]
     try:
         header = next(reader, [])
         if header != list(columns):
-            _damaged(path, 1, f"the columns are {','.join(header) or 'missing'}, needed: {','.join(columns)}")
+            _damaged(path, 1, f"the columns are {','.join(header) or 'missing'}; expected: {','.join(columns)}")
         for row in reader:
             if len(row) != len(columns):
-                _damaged(path, reader.line_num, f"has {len(row)} cells, needed: {len(columns)}")
+                _damaged(path, reader.line_num, f"has {len(row)} cells; expected: {len(columns)}")
             yield reader.line_num, row
     except csv.Error as error:
-        _damaged(path, reader.line_num, f"is no CSV: {error}")
+        _damaged(path, reader.line_num, f"is not valid CSV: {error}")
     if not text.endswith("\n"):
-        _damaged(path, reader.line_num, "ends in the middle of a line, needed: a line end")
+        _damaged(path, reader.line_num, "ends in the middle of a line; expected: a newline at the end")
 
 
 def _text(path: Path) -> str:
@@ -105,7 +105,7 @@ def _text(path: Path) -> str:
     except OSError as error:
         _damaged(path, None, f"cannot be read: {error.strerror or error}")
     except UnicodeDecodeError as error:
-        _damaged(path, error.object[: error.start].count(b"\n") + 1, "is no text in UTF-8")
+        _damaged(path, error.object[: error.start].count(b"\n") + 1, "is not UTF-8 text")
 
 
 def _damaged(path: Path, line: int | None, why: str) -> NoReturn:

@@ -18,7 +18,7 @@ from replicate.run.outcome import Outcome
 
 Kind = Literal["table", "claims", "figure", ""]
 
-REMOVED = "was accepted, but is not computed any more"
+REMOVED = "was accepted, but is no longer computed"
 
 
 @dataclass(frozen=True)

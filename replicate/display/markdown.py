@@ -105,7 +105,7 @@ class MarkdownBatch:
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():
             if number not in texts:  # two unclosed fences, and what lies between them became code
-                msg = f"{self.name}: a fence is not closed in or before the text '{text[:60]}'"
+                msg = f"{self.name}: a code fence is not closed in or before the text '{text[:60]}'"
                 raise TemplateError(msg)
         return [texts[number].strip() for number in range(len(texts))]
 

@@ -23,7 +23,7 @@ class Score:
 
     @property
     def holding(self) -> int:
-        """How many printed values come out equal under a reading, or how many claims hold."""
+        """How many printed values are equal under a reading, or how many claims hold."""
         return sum(count for word, count in self.counts if word.id in {*HOLDING, "holds"})
 
     def of(self, verdict: str) -> int:
@@ -33,7 +33,7 @@ class Score:
     @property
     def sentence(self) -> str:
         """The counts as text."""
-        return ", ".join(f"{count} {word.name}" for word, count in self.counts)
+        return ", ".join(word.counted(count) for word, count in self.counts)
 
 
 def values(verdicts: Iterable[VerdictRow]) -> Score:

@@ -11,16 +11,21 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Word:
-    """A verdict (or match) as the report shows it; `meaning` completes the sentence "This says that ..."."""
+    """A verdict as the report shows it: its symbol, its meaning, and its plural where that differs."""
 
     id: str
     symbol: str
     meaning: str
+    plural: str = ""
 
     @property
     def name(self) -> str:
         """The word as text."""
         return self.id.replace("-", " ")
+
+    def counted(self, count: int) -> str:
+        """Return the word with a count before it: "1 holds", "12 hold"."""
+        return f"{count} {self.plural if self.plural and count != 1 else self.name}"
 
 
 VERDICTS = {
@@ -28,9 +33,9 @@ VERDICTS = {
     for word in (
         Word("reproduced", "✓", "as the paper says, the value rounds or truncates to the printed digits"),
         Word("consistent", "∈", "inputs that round to the printed ones give a value that rounds to the printed digits"),
-        Word("reconstructed", "↻", "the printed digits come out under another, documented reading"),
+        Word("reconstructed", "↻", "equal under another, documented reading"),
         Word("near", "≈", "within two units of the last printed digit, or within one per cent"),
-        Word("misprint", "✎", "the print is wrong, whatever copy one reads; the evidence shows what it should be"),
+        Word("misprint", "✎", "the print is wrong in any copy; the evidence shows what it should be", "misprints"),
         Word("damaged", "⊘", "wrong in the print or in our copy of it; the evidence shows what it should be"),
         Word("discrepant", "≠", "differs for a known, documented cause; there is no single right value"),
         Word("unexplained", "?", "differs, and no cause was found; what was tried is listed"),
@@ -42,10 +47,10 @@ VERDICTS = {
 CLAIM_VERDICTS = {
     word.id: word
     for word in (
-        Word("holds", "✓", "true, shown by the number beside it"),
-        Word("holds-partly", "◐", "true in part, or only under conditions the paper does not name"),
-        Word("undecided", "○", "what the paper gives does not suffice to call it true or false"),
-        Word("fails", "✗", "false, shown by the number beside it"),
+        Word("holds", "✓", "true, as the number beside it shows", "hold"),
+        Word("holds-partly", "◐", "true in part, or only under conditions the paper does not name", "hold partly"),
+        Word("undecided", "○", "the paper gives too little to call it true or false"),
+        Word("fails", "✗", "false, as the number beside it shows", "fail"),
     )
 }
 """Verdicts of claims, best first."""
@@ -78,10 +83,10 @@ CAUSES = {
 CONSEQUENCES = {
     word.id: word
     for word in (
-        Word("safety", "!!", "a statement on stability or robustness flips"),
-        Word("formula", "!", "who types the printed formula gets a wrong controller"),
+        Word("safety", "!!", "a statement about stability or robustness flips"),
+        Word("formula", "!", "the printed formula gives a wrong controller"),
         Word("comparison", "⇅", "a ranking or an inequality of the paper flips"),
-        Word("none", "", "nothing that the paper uses the number for changes"),
+        Word("none", "", "changes nothing that the paper uses the number for"),
     )
 }
 """Of an error: what follows from it, worst first."""

@@ -69,7 +69,7 @@ def _ends(pair: Pair, found: ValueDifference, view: Array) -> list[tuple[str, fl
             ends = [_number(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (now, was)]
             parts.append((f"now {verb} at {x} = {ends[0]} (was {ends[1]})", abs(float(now - was))))
     inside = (found.x > max(low for low, _ in domains)) & (found.x < min(high for _, high in domains))
-    for here, there, words in ((found.before, found.after, "has a gap"), (found.after, found.before, "goes on")):
+    for here, there, words in ((found.before, found.after, "has a gap"), (found.after, found.before, "continues")):
         gap = found.x[found.alarm & inside & ~np.isnan(here) & np.isnan(there)]
         if len(gap):
             ends = [_number(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (gap[0], gap[-1])]

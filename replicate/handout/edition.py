@@ -113,7 +113,7 @@ def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
 def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:
     """Split off the heading of level 1 that every handout begins with; the others move up one level."""
     if not blocks or blocks[0]["t"] != "Header" or blocks[0]["c"][0] != 1:
-        msg = f"{source}:1: a handout begins with its title, a heading of level 1"
+        msg = f"{source}:1: a handout must begin with its title, a heading of level 1"
         raise TemplateError(msg)
 
     def raised(element: Element) -> list[Element] | None:

@@ -16,7 +16,7 @@ _TITLES = {
         "The corrected value follows from the evidence given; our copy cannot tell whether the paper itself is wrong.",
     ),
     "discrepant": ("Discrepancies", "The values differ from what the paper defines, for a documented cause."),
-    "claims": ("Sentences that do not hold", "What the computation contradicts, wholly or in part."),
+    "claims": ("Sentences that do not hold", "Claims that the computation contradicts, wholly or in part."),
     "unexplained": ("Open questions", "The values differ and no cause was found."),
 }
 

@@ -164,7 +164,7 @@ class _Placing:
         if view.page != self._page:
             return f"[{view.label or view.title}]({view.page}#{id})"
         if id in self._placed:
-            msg = f"exhibit('{id}'): is placed twice on this page; link to it with [text](#{id})"
+            msg = f"exhibit('{id}') is placed twice on this page; link to it with [text](#{id})"
             raise TemplateError(msg)
         self._placed.add(id)
         return place(id)

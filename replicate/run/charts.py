@@ -51,7 +51,7 @@ def read_parameters(chart: Chart, arguments: Sequence[str]) -> dict[str, float]:
         name, is_joined, value = rest.pop(0).partition("=")
         key = name.removeprefix("--")
         if not name.startswith("--") or key not in chart.parameters:
-            msg = f"'{name}' is not a parameter of chart '{chart.id}'; needed: {_usage(chart)}"
+            msg = f"'{name}' is not a parameter of chart '{chart.id}'; it has: {_usage(chart)}"
             raise ReplicateError(msg)
         if key in found:
             msg = f"--{key} is given twice"
@@ -85,9 +85,9 @@ def _number(key: str, text: str) -> float:
 
 
 def file_name(paper: Paper, chart: Chart, values: Mapping[str, float]) -> str:
-    """Return a name that tells paper, chart and parameters, for example ``lab-nyquist-gain-2.5.svg``."""
-    told = "".join(f"-{key}-{values[key]:g}" for key in chart.parameters)
-    return f"{paper.id}-{chart.id}{told}.svg"
+    """Return a name made of paper, chart and parameters, for example ``lab-nyquist-gain-2.5.svg``."""
+    settings = "".join(f"-{key}-{values[key]:g}" for key in chart.parameters)
+    return f"{paper.id}-{chart.id}{settings}.svg"
 
 
 def draw_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Path) -> bytes:

@@ -70,7 +70,7 @@ def run(
         If `jobs` is not positive, or a worker process died.
     """
     if jobs is not None and jobs < 1:
-        msg = f"the number of jobs is {jobs}, allowed: 1 or more"
+        msg = f"the number of jobs must be at least 1, not {jobs}"
         raise ReplicateError(msg)
     wanted = [
         (paper, exhibit)
@@ -126,7 +126,7 @@ def _compute_all(units: Sequence[Unit], jobs: int) -> Iterator[tuple[Unit, Resul
             workers = Parallel(n_jobs=min(jobs, len(units)), batch_size=1, return_as="generator_unordered")
             yield from workers(delayed(_named)(unit) for unit in units)
     except TerminatedWorkerError as error:
-        msg = f"a worker process died, perhaps for want of memory; try fewer --jobs: {_first_line(error)}"
+        msg = f"a worker process died, perhaps because memory ran out; try fewer --jobs: {_first_line(error)}"
         raise ReplicateError(msg) from error
 
 

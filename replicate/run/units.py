@@ -53,7 +53,7 @@ def compute(unit: Unit) -> Result:
         return _draw(unit, exhibit)
     if isinstance(exhibit, Claims):
         return _check_claims(unit, exhibit)
-    msg = f"{unit} is nothing that can be computed"
+    msg = f"{unit} cannot be computed"
     raise TypeError(msg)
 
 
@@ -76,7 +76,7 @@ def _compute_reading(unit: Unit, table: Table) -> TableResult:
     try:
         frame: object = table.readings[unit.reading].compute()
         if not isinstance(frame, pd.DataFrame):
-            msg = f"the reading returns {type(frame).__name__}, needed: a pandas DataFrame"
+            msg = f"the reading returns {type(frame).__name__}; expected: a pandas DataFrame"
             raise TypeError(msg)  # noqa: TRY301  -- reported like everything else the reading gets wrong
     except Exception as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error)})
@@ -99,7 +99,7 @@ def _check_claims(unit: Unit, claims: Claims) -> ClaimsResult:
         try:
             finding: object = claim.check()
             if not isinstance(finding, Finding):
-                msg = f"the check returns {type(finding).__name__}, needed: a Finding"
+                msg = f"the check returns {type(finding).__name__}; expected: a Finding"
                 raise TypeError(msg)  # noqa: TRY301  -- reported like everything else the check gets wrong
             findings[id] = finding
         except Exception as error:  # noqa: BLE001  -- one claim must not take the others down

@@ -139,7 +139,7 @@ class Ledger:
         raw = data.pop("entry", [])
         if data or not isinstance(raw, list) or not all(isinstance(item, dict) for item in raw):
             found = f"; found '{next(iter(data))}'" if data else ""
-            msg = f"{name}: allowed is a list of [[entry]] tables and nothing else{found}"
+            msg = f"{name}: allowed: [[entry]] tables only{found}"
             raise LedgerError(msg)
         lines = [number for number, line in enumerate(text.splitlines(), 1) if _ENTRY_HEADER.match(line)]
         if len(lines) != len(raw):  # an inline list of tables, or the header inside a multi-line text
@@ -184,7 +184,7 @@ def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> Ledge
     unknown = [key for key in raw if key not in _REQUIRED + _OPTIONAL]
     if missing or unknown:
         what = f"'{missing[0]}' is missing" if missing else f"'{unknown[0]}' is not a field"
-        msg = f"{place}: {what}; needed: {', '.join(_REQUIRED)}; allowed: {', '.join(_OPTIONAL)}"
+        msg = f"{place}: {what}; required: {', '.join(_REQUIRED)}; allowed: {', '.join(_OPTIONAL)}"
         raise LedgerError(msg)
     exhibit_id = _text(place, raw, "exhibit")
     exhibit = paper.exhibits.get(exhibit_id)
@@ -249,7 +249,7 @@ def _text(place: str, raw: dict[str, object], field: str, default: str | None = 
     value = raw.get(field, default)
     if not isinstance(value, str) or (default is None and not value.strip()):
         extent = "" if default is not None else " that is not empty"
-        msg = f"{place}: {field} = {value!r}; needed: a text in quotes{extent}"
+        msg = f"{place}: {field} = {value!r}; expected: a quoted string{extent}"
         raise LedgerError(msg)
     return " ".join(value.split())
 
@@ -259,14 +259,14 @@ def _keys(place: str, raw: dict[str, object], field: str, allowed: Sequence[str]
     if value == ANY:
         return (ANY,)
     if not isinstance(value, list) or not value:
-        msg = f'{place}: {field} = {value!r}; needed: a list of keys or "{ANY}"'
+        msg = f'{place}: {field} = {value!r}; expected: a list of keys or "{ANY}"'
         raise LedgerError(msg)
     for key in value:
         if key not in allowed:
             msg = f"{place}: {field}: {key!r} is not in the exhibit; allowed: {_listed(allowed)}"
             raise LedgerError(msg)
         if value.count(key) > 1:
-            msg = f"{place}: {field}: {key!r} is there twice"
+            msg = f"{place}: {field}: {key!r} appears twice"
             raise LedgerError(msg)
     return tuple(value)
 
@@ -281,7 +281,7 @@ def _check_named_once(name: str, entries: Iterable[LedgerEntry]) -> None:
                 first = seen.setdefault((entry.exhibit, row, column), entry)
                 if first is not entry:
                     where = f"{entry.exhibit} row '{row}', column '{column}'"
-                    msg = f"{name}:{entry.line}: {where} is named already by the entry in line {first.line}"
+                    msg = f"{name}:{entry.line}: {where} is already named by the entry in line {first.line}"
                     raise LedgerError(msg)
 
 

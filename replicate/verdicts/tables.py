@@ -122,9 +122,7 @@ class TableJudge:
             else:
                 found = [key for key in self.printed if key in open_keys - taken and entry.covers(*key)]
                 if not found:
-                    self.judgement.problems.append(
-                        f"{place}: {self.table.id}: no printed value that differs is left to explain"
-                    )
+                    self.judgement.problems.append(f"{place}: {self.table.id}: explains no printed value that differs")
             right = [key for key in found if self._correction_holds(key, entry)]
             taken.update(right)
             yield from ((key, entry) for key in right)
