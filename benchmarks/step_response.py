@@ -60,7 +60,7 @@ def main() -> None:
 
     def theirs() -> np.ndarray:
         loop = control.feedback(control.tf([K, KI], [1.0, 0.0]) * control.tf([1.0], [1.0, 1.0]) * delay)
-        return control.step_response(loop, TIMES).outputs
+        return np.asarray(control.step_response(loop, TIMES).outputs)
 
     rows = [
         ("replicate.loops", best_of(ours, 50), np.max(np.abs(ours()[::40] - reference))),

@@ -194,7 +194,7 @@ def test_missing_and_superfluous_files(accepted: Path, data: Path) -> None:
     assert compare(present, accepted) == [
         "toy/table-1: has no accepted state: toy/table-1.csv is missing",
         "toy/fig-1: has no accepted state: toy/fig-1.json is missing",
-        "toy/table-9: was accepted, but is not computed any more",
+        "toy/table-9: was accepted, but is no longer computed",
     ]
     assert len(compare(replace(present, complete=False), accepted)) == 2
     assert accept(present, accepted, "clean up").changes
@@ -209,7 +209,7 @@ def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
     assert found.broken
     changed, damaged = found.lines  # the damage hides no other change
     assert changed.startswith("toy/table-1: A x 1 -> 1.001")
-    assert damaged.startswith("toy/fig-1: its accepted state is damaged: toy/fig-1.json:2: is no JSON")
+    assert damaged.startswith("toy/fig-1: its accepted state is damaged: toy/fig-1.json:2: is not valid JSON")
     accept(present, accepted, "made whole")
     assert compare(present, accepted) == []
 
@@ -222,12 +222,12 @@ def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
         ('"xlim": [0.0,', '"xlim": ["0",', "xlim of panel 'panel 1' is [\"0\", 10.0], needed: two different"),
         ('"xlim": [0.0,', '"xlim": [10.0,', "xlim of panel 'panel 1' is [10.0, 10.0], needed: two different"),
         ('"xscale": "linear"', '"xscale": "log"', "xlim of panel 'panel 1' is not positive on a logarithmic axis"),
-        ('"title": ""', '"title": 5', "title of panel 'panel 1' is 5, needed: a text"),
+        ('"title": ""', '"title": 5', "title of panel 'panel 1' is 5; expected: a text"),
         ('"title": ""', '"legend": [null]', "toy/fig-1.json"),
-        ('"title": ""', '"points": "output"', "points of panel 'panel 1' is \"output\", needed: a list of texts"),
-        ('"title": ""', '"texts": [{"text": "peak"}]', "needed: a list of objects, each with text, x and y"),
-        ('"title": ""', '"thinned": {"output": "x"}', "needed: numbers by name"),
-        ('"title": ""', '"hidden": 1', "hidden of panel 'panel 1' is 1, needed: true or false"),
+        ('"title": ""', '"points": "output"', "points of panel 'panel 1' is \"output\"; expected: a list of texts"),
+        ('"title": ""', '"texts": [{"text": "peak"}]', "expected: a list of objects, each with text, x and y"),
+        ('"title": ""', '"thinned": {"output": "x"}', "expected: numbers by name"),
+        ('"title": ""', '"hidden": 1', "hidden of panel 'panel 1' is 1; expected: true or false"),
         ('"panel": "panel 1"', '"panel": "panel 2"', "does not describe panel 'panel 1', where curve 'output' is"),
         ('"panels": [', '"panels": [' + "[" * 5000, "toy/fig-1.json"),
         ('"version": 2', '"version": 3', "was written by a newer version: its format is 3, this one reads up to 2"),
@@ -258,14 +258,14 @@ def test_a_panel_described_twice_is_damage(accepted: Path, data: Path) -> None:
     [
         ("fig-1.csv", lambda text: text[:-1], f":{2 * len(T) + 1}: ends in the middle of a line"),
         ("fig-1.csv", lambda text: text + "panel 1,input,10,1.2", "ends in the middle of a line"),
-        ("fig-1.csv", lambda text: text[:-4], "has 3 cells, needed: 4"),
-        ("fig-1.csv", lambda text: text.replace("panel 1,output,", "panel 1,output,nan", 1), "needed: two numbers"),
-        ("fig-1.csv", lambda text: text + "panel 1,output,1,\n", "x and y are 1,, needed: two numbers, or nothing"),
-        ("fig-1.csv", lambda text: text + "panel 1,output,1,inf\n", "x and y are 1,inf, needed: two numbers"),
-        ("fig-1.csv", lambda text: text + '"panel 1,output,1,2\n', "is no CSV: unexpected end of data"),
-        ("table-1.csv", lambda text: text + text.splitlines()[1] + "\n", "'A x as-written' stands in line 2 already"),
-        ("claims.csv", lambda _: "", ":1: the columns are missing, needed: row,verdict,computed"),
-        ("claims.csv", lambda _: "row,verdict\n", ":1: the columns are row,verdict, needed: row,verdict,computed"),
+        ("fig-1.csv", lambda text: text[:-4], "has 3 cells; expected: 4"),
+        ("fig-1.csv", lambda text: text.replace("panel 1,output,", "panel 1,output,nan", 1), "expected: two numbers"),
+        ("fig-1.csv", lambda text: text + "panel 1,output,1,\n", "x and y are 1,; expected: two numbers, or nothing"),
+        ("fig-1.csv", lambda text: text + "panel 1,output,1,inf\n", "x and y are 1,inf; expected: two numbers"),
+        ("fig-1.csv", lambda text: text + '"panel 1,output,1,2\n', "is not valid CSV: unexpected end of data"),
+        ("table-1.csv", lambda text: text + text.splitlines()[1] + "\n", "'A x as-written' already appears in line 2"),
+        ("claims.csv", lambda _: "", ":1: the columns are missing; expected: row,verdict,computed"),
+        ("claims.csv", lambda _: "row,verdict\n", ":1: the columns are row,verdict; expected: row,verdict,computed"),
     ],
 )
 def test_half_a_file_is_damage(accepted: Path, data: Path, name: str, cut: Callable[[str], str], said: str) -> None:
@@ -279,13 +279,13 @@ def test_half_a_file_is_damage(accepted: Path, data: Path, name: str, cut: Calla
 def test_bytes_that_are_no_text_are_damage(accepted: Path, data: Path) -> None:
     (accepted / "toy/claims.csv").write_bytes(b"row,verdict,computed\n\xff\xfe\x00\n")
     (line,) = compare(outcome(data), accepted)
-    assert line.endswith("toy/claims.csv:2: is no text in UTF-8")
+    assert line.endswith("toy/claims.csv:2: is not UTF-8 text")
 
 
 def test_a_missing_picture_is_told_and_put_back(accepted: Path, data: Path) -> None:
     (accepted / "toy/fig-1.png").unlink()
     (line,) = compare(outcome(data), accepted)
-    assert line == "toy/fig-1: its picture for people, toy/fig-1.png, is missing; 2 curves unchanged"
+    assert line == "toy/fig-1: its picture, toy/fig-1.png, is missing; 2 curves unchanged"
     accept(outcome(data), accepted, "picture")
     assert (accepted / "toy/fig-1.png").is_file()
 
@@ -309,7 +309,7 @@ def test_accepting_touches_only_what_changed(accepted: Path, data: Path) -> None
 def test_accepting_needs_a_reason_and_whole_results(accepted: Path, data: Path) -> None:
     with pytest.raises(ReplicateError, match="needs a reason"):
         accept(outcome(data), accepted, "  ")
-    with pytest.raises(ReplicateError, match=r"nothing is accepted.*toy/table-1 \(authors\)"):
+    with pytest.raises(ReplicateError, match=r"nothing was accepted.*toy/table-1 \(authors\)"):
         accept(outcome(data, errors={"authors": "ValueError: no"}), accepted, "why not")
 
 
@@ -331,7 +331,7 @@ def test_accepting_is_all_or_nothing(accepted: Path, data: Path, monkeypatch: py
 
 def test_check_wants_explanations_and_comparisons(accepted: Path, data: Path) -> None:
     both = {"as_written": synthetic.frame(ax=7.0), "authors": synthetic.frame(ax=7.0)}
-    problems = check(outcome(data, **both), accepted)
+    problems = check(outcome(data, None, **both), accepted)
     assert any("has no ledger entry" in problem for problem in problems)
     assert any("verdict reproduced -> unexplained" in problem for problem in problems)
     assert check(Outcome([], {}, {}), data / "nothing") == ["no printed value was compared with a computed one"]

@@ -70,7 +70,7 @@ def room(module: str) -> str:
 
 
 @pytest.mark.parametrize("name", ALLOWED)
-def test_a_room_imports_only_what_lies_below_it(name):
+def test_a_room_imports_only_what_lies_below_it(name: str) -> None:
     wrong = [
         f"{module} imports {other}"
         for module, path in MODULES.items()
@@ -81,7 +81,7 @@ def test_a_room_imports_only_what_lies_below_it(name):
     assert not wrong
 
 
-def test_no_paper_is_imported_by_the_framework_nor_by_another_paper():
+def test_no_paper_is_imported_by_the_framework_nor_by_another_paper() -> None:
     wrong = [
         f"{module} imports {other}"
         for module, path in MODULES.items()
@@ -91,7 +91,7 @@ def test_no_paper_is_imported_by_the_framework_nor_by_another_paper():
     assert not wrong
 
 
-def test_no_module_imports_itself_through_others():
+def test_no_module_imports_itself_through_others() -> None:
     try:
         graph = {name: set(imports(path, at_run_time=True)) & MODULES.keys() for name, path in MODULES.items()}
         TopologicalSorter(graph).prepare()
@@ -99,18 +99,18 @@ def test_no_module_imports_itself_through_others():
         pytest.fail(" -> ".join(error.args[1]))
 
 
-def test_no_room_imports_itself_through_others():
+def test_no_room_imports_itself_through_others() -> None:
     rooms = {room(name): set[str]() for name in MODULES}
     for name, path in MODULES.items():
         rooms[room(name)] |= {room(other) for other in imports(path)} - {room(name), ""}
     TopologicalSorter(rooms).prepare()
 
 
-def test_the_top_level_is_short():
+def test_the_top_level_is_short() -> None:
     assert len(list(ROOT.glob("*.py"))) <= 9
 
 
-def test_every_file_can_be_read_at_a_sitting():
+def test_every_file_can_be_read_at_a_sitting() -> None:
     lines = {name: len(path.read_text(encoding="utf-8").splitlines()) for name, path in MODULES.items()}
     assert not {name: count for name, count in lines.items() if count > 350}
     assert sorted(lines.values())[len(lines) // 2] <= 110

@@ -197,7 +197,7 @@ def test_when_everything_fails_the_first_lines_tell(replicate: Run, monkeypatch:
 
 def test_a_new_paper_needs_an_id_of_its_own(replicate: Run) -> None:
     status, _, err = replicate("new", "lab")
-    assert (status, err) == (2, "replicate: there is a paper 'lab' already; choose another id\n")
+    assert (status, err) == (2, "replicate: the paper 'lab' already exists; choose another id\n")
     assert not Path("replicate-lab").exists()
 
 

@@ -316,7 +316,7 @@ def test_the_distance_is_that_of_many_points(seed: int) -> None:
         ]
         return np.vstack(pieces)
 
-    expected = KDTree(many(other)).query(many(one))[0].max()
+    expected = np.max(KDTree(many(other)).query(many(one))[0])
     found = distances(one, other, 1e-4)
     assert found.largest == pytest.approx(expected, abs=2e-3 / 2)
     exact = KDTree(many(other)).query(found.points)[0]

@@ -141,10 +141,10 @@ def test_a_deleted_baseline(diff: Run, name: str) -> None:
         (
             "fig-1.csv",
             "panel,curve,x,y\na,b,1,2\na,b,1,two\n",
-            "lab/fig-1.csv:3: x and y are 1,two, needed: two numbers",
+            "lab/fig-1.csv:3: x and y are 1,two; expected: two numbers",
         ),
-        ("fig-1.csv", "panel,curve,x\n", "lab/fig-1.csv:1: the columns are panel,curve,x, needed: panel,curve,x,y"),
-        ("fig-1.json", '[{"panel": "a"}]', "lab/fig-1.json: needed: a list of objects, each with panel, xlim, ylim"),
+        ("fig-1.csv", "panel,curve,x\n", "lab/fig-1.csv:1: the columns are panel,curve,x; expected: panel,curve,x,y"),
+        ("fig-1.json", '[{"panel": "a"}]', "lab/fig-1.json: expected: a list of objects, each with panel, xlim, ylim"),
         ("table-1.csv", "row,column,reading,computed,printed,verdict\n1,2\n", "lab/table-1.csv:2: has 2 cells"),
     ],
 )
@@ -195,7 +195,7 @@ def test_exhibits_and_papers_that_are_gone(diff: Run, replicate: Run) -> None:
     Path("accepted/barn/fig-1.csv").write_text("row\n")
     _, out, _ = diff()
     for name in ("lab/table-9", "barn/fig-1"):
-        assert f"{name}: was accepted, but is not computed any more" in out
+        assert f"{name}: was accepted, but is no longer computed" in out
     assert replicate("accept", "lab", "--reason", "gone", "--accepted", "accepted", "-j1")[0] == 0
     assert diff()[0] == 0
 
@@ -354,7 +354,7 @@ def test_the_page_strikes_out_only_what_changed(diff: Run) -> None:
 
 def test_the_page_draws_no_figure_for_a_missing_picture(diff: Run) -> None:
     (Path("accepted/lab") / "fig-1.png").unlink()
-    assert "lab/fig-1: its picture for people, lab/fig-1.png, is missing; 1 curve unchanged" in diff()[1]
+    assert "lab/fig-1: its picture, lab/fig-1.png, is missing; 1 curve unchanged" in diff()[1]
     assert "<svg" not in index()
     assert "No pictures here" not in index()
 

@@ -1,4 +1,5 @@
 import re
+from pathlib import Path
 
 import pytest
 
@@ -15,7 +16,9 @@ from replicate.run.library import Library
         ("ratio = 1.0\nratio /= 0.0\n", "broken/__init__.py:2: ZeroDivisionError: float division by zero"),
     ],
 )
-def test_a_package_that_cannot_be_imported_is_named_with_file_and_line(tmp_path, monkeypatch, code, message):
+def test_a_package_that_cannot_be_imported_is_named_with_file_and_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, code: str, message: str
+) -> None:
     (tmp_path / "broken").mkdir()
     (tmp_path / "broken" / "__init__.py").write_text(code)
     monkeypatch.setattr(replicate.papers, "__path__", [str(tmp_path)])

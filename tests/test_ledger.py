@@ -83,12 +83,12 @@ def test_every_cause_is_accepted(tmp_path: Path, cause: str) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('rows = ["A"]\n', "", r":2: 'rows' is missing; needed: exhibit, rows, .*; allowed: reading, .*"),
-        ('["A"]\n', '["A"]\nrow = "A"\n', r":2: 'row' is not a field; needed: .*"),
+        ('rows = ["A"]\n', "", r":2: 'rows' is missing; required: exhibit, rows, .*; allowed: reading, .*"),
+        ('["A"]\n', '["A"]\nrow = "A"\n', r":2: 'row' is not a field; required: .*"),
         ('["A"]', '["C"]', r":2: rows: 'C' is not in the exhibit; allowed: 'A', 'B'"),
-        ('["A"]', '["A", "A"]', r":2: rows: 'A' is there twice"),
-        ('["A"]', "[]", r':2: rows = \[\]; needed: a list of keys or "\*"'),
-        ('["A"]', '"A"', r""":2: rows = 'A'; needed: a list of keys or "\*\""""),
+        ('["A"]', '["A", "A"]', r":2: rows: 'A' appears twice"),
+        ('["A"]', "[]", r':2: rows = \[\]; expected: a list of keys or "\*"'),
+        ('["A"]', '"A"', r""":2: rows = 'A'; expected: a list of keys or "\*\""""),
         ('["x"]', '["z"]', r":2: columns: 'z' is not in the exhibit; allowed: 'x', 'y'"),
         (
             '"table-1"',
@@ -99,13 +99,13 @@ def test_every_cause_is_accepted(tmp_path: Path, cause: str) -> None:
         ('"table-1"', '"claims"', r":2: exhibit 'claims' has no printed values to explain; .*"),
         ('"misprint"', '"typo"', r":2: cause 'typo' is unknown; allowed: misprint, print-or-copy, scan, .*, unknown"),
         ('"misprint"', '["misprint"]', r":2: cause \['misprint'\] is unknown; allowed: .*"),
-        ('"A digit is wrong."', '" "', r":2: explanation = ' '; needed: a text in quotes that is not empty"),
+        ('"A digit is wrong."', '" "', r":2: explanation = ' '; expected: a quoted string that is not empty"),
         (
             '"misprint"',
             '"scan"\nreading = "ours"',
             r":2: 'ours' is not a reading .*: 'as-written', 'authors'",
         ),
-        ('"misprint"', '"scan"\ncorrected = 1.50', r":2: corrected = 1\.5; needed: a text in quotes"),
+        ('"misprint"', '"scan"\ncorrected = 1.50', r":2: corrected = 1\.5; expected: a quoted string"),
         (
             '"misprint"',
             '"scan"\ncorrected = "1,5"',
@@ -138,6 +138,6 @@ def test_refuses_naming_file_and_line(tmp_path: Path, old: str, new: str, messag
 
 def test_two_entries_for_one_cell_are_refused(tmp_path: Path) -> None:
     second = ENTRY.replace('["A"]', '["B", "A"]')
-    message = r"^toy/ledger\.toml:9: table-1 row 'A', column 'x' is named already by the entry in line 2$"
+    message = r"^toy/ledger\.toml:9: table-1 row 'A', column 'x' is already named by the entry in line 2$"
     with pytest.raises(LedgerError, match=message):
         load(tmp_path, ENTRY + second)

@@ -162,7 +162,7 @@ def test_format_like_keeps_significant_digits(digits: int, mantissa: int, expone
     assert not ("." in text and text.endswith("0"))
 
 
-def test_meets_rounds_and_truncates():
+def test_meets_rounds_and_truncates() -> None:
     assert meets("75.7", 75.7508)  # truncated
     assert meets("38.4", 38.351)
     assert not meets("7.23", 7.2406)

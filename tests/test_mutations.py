@@ -5,12 +5,14 @@ The results are those of a full run of every paper; they come from the same cach
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from replicate.diff.check import check
+from replicate.exhibits import Paper
 from replicate.exhibits.printed import PrintedValue
 from replicate.run.library import Library
 from replicate.run.outcome import Outcome, recompute
@@ -25,7 +27,7 @@ PAPERS = {paper.id: paper for paper in Library(bundled=True).papers()}
 
 
 @pytest.fixture(scope="module", params=sorted(PAPERS))
-def outcome(request) -> Outcome:
+def outcome(request: pytest.FixtureRequest) -> Outcome:
     return recompute([PAPERS[request.param]], cache_dir=ROOT / "build" / "cache")
 
 
@@ -38,7 +40,7 @@ def altered(text: str, by: int = 3) -> str:
     return text[:place] + str(digit + by if digit + by <= 9 else digit - by) + text[place + 1 :]
 
 
-def test_altering():
+def test_altering() -> None:
     assert [altered(t) for t in ("1.43", "-0.52", "0", "0.00", "972", "8e-3")] == [
         "4.43",
         "-0.82",
@@ -49,7 +51,7 @@ def test_altering():
     ]
 
 
-def _mutants(paper, cells, by):
+def _mutants(paper: Paper, cells: Collection[tuple[str, str, str]], by: int) -> Inputs:
     inputs = read_inputs(paper)
     printed = {
         exhibit: {
@@ -63,7 +65,7 @@ def _mutants(paper, cells, by):
     return Inputs(printed, inputs.ledger)
 
 
-def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
+def test_an_altered_print_changes_its_verdict_and_fails_check(outcome: Outcome) -> None:
     (paper,) = outcome.papers
     before = outcome.judgements[paper.id]
     cells = {(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in HOLDS}
@@ -86,7 +88,7 @@ def test_an_altered_print_changes_its_verdict_and_fails_check(outcome):
     assert not silent
 
 
-def test_a_verdict_without_its_ledger_entry_fails_check(outcome):
+def test_a_verdict_without_its_ledger_entry_fails_check(outcome: Outcome) -> None:
     (paper,) = outcome.papers
     before = outcome.judgements[paper.id]
     cells = [(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in EXPLAINED and v.column != "claim"]
@@ -103,5 +105,5 @@ def test_a_verdict_without_its_ledger_entry_fails_check(outcome):
     assert not silent
 
 
-def test_the_paper_as_it_is_passes(outcome):
+def test_the_paper_as_it_is_passes(outcome: Outcome) -> None:
     assert check(outcome, ROOT / "figures") == []

@@ -47,7 +47,7 @@ def test_reads_what_spreadsheets_write(tmp_path: Path, content: str) -> None:
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("", "toy/printed/table-1.csv:1: the file is empty; needed: a header with the columns 'x', 'y'"),
+        ("", "toy/printed/table-1.csv:1: the file is empty; expected: a header with the columns 'x', 'y'"),
         (
             'r,x,y\nA,1,2\nB,3,"1,2"\n',
             f"toy/printed/table-1.csv:3: column 'y': '1,2' is not a number; allowed: {ALLOWED}; .*would accept it",

@@ -1,22 +1,26 @@
 import re
 import sys
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure as MatplotlibFigure
 
 from replicate.display.markdown import MarkdownBatch
 from replicate.display.numbers import aligned, shown
 from replicate.errors import OutputError, TemplateError
-from replicate.exhibits import Finding, Paper
+from replicate.exhibits import Figure, Finding, Paper
 from replicate.exhibits.printed import PrintedValue
-from replicate.exhibits.results import ClaimsResult, TableResult
+from replicate.exhibits.results import ClaimsResult, Results, TableResult
 from replicate.report import build_report
 from replicate.resources import templates_dir
 from replicate.run.drawing import capture
 from replicate.verdicts.inputs import read_inputs
 from replicate.verdicts.judge import judge
+
+Make = Callable[..., dict[str, str]]
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 
@@ -58,21 +62,21 @@ class Page(HTMLParser):
         self.feed(text)
         self.unbalanced += self._open
 
-    def handle_starttag(self, tag, attrs):
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.elements.append((tag, dict(attrs)))
         if tag not in VOID:
             self._open.append(tag)
 
-    def handle_startendtag(self, tag, attrs):
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.elements.append((tag, dict(attrs)))
 
-    def handle_endtag(self, tag):
+    def handle_endtag(self, tag: str) -> None:
         if self._open and self._open[-1] == tag:
             self._open.pop()
         else:
             self.unbalanced.append(f"/{tag}")
 
-    def handle_data(self, data):
+    def handle_data(self, data: str) -> None:
         self.text += data
 
     def values(self, attribute: str) -> list[str]:
@@ -88,7 +92,7 @@ def check_claim() -> Finding:
     return Finding("fails", 2.25, "It is $2.25 < 2.5$.")
 
 
-def draw(fig) -> None:
+def draw(fig: MatplotlibFigure) -> None:
     axes = fig.subplots()
     axes.plot([0, 1], [0, 1], label="PA & ZN")
     axes.set(xlabel="time $t$", ylabel="output")
@@ -96,7 +100,7 @@ def draw(fig) -> None:
 
 
 @pytest.fixture
-def make(tmp_path, monkeypatch):
+def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
     """Return a function that makes a paper with one exhibit of each kind and builds its report."""
 
     def build(
@@ -105,7 +109,7 @@ def make(tmp_path, monkeypatch):
         out: Path = tmp_path / "report",
         prefix: str = "",
         **files: str,
-    ):
+    ) -> dict[str, str]:
         package = f"paper_{tmp_path.name.replace('-', '_')}"
         folder = tmp_path / package
         (folder / "printed").mkdir(parents=True, exist_ok=True)
@@ -143,11 +147,13 @@ def make(tmp_path, monkeypatch):
         paper.not_computable("fig-2", "Measured flow", "measured data")
         paper._loaded = True
         other = pd.DataFrame({"k": [0.9, 0.95], "Ti": [3.3, 2.6]}, index=["ZN", "CC"])
-        results = {
+        figure = paper.exhibits[f"{prefix}fig-1"]
+        assert isinstance(figure, Figure)
+        results: Results = {
             ("synthetic", f"{prefix}table-1"): TableResult(
                 "synthetic", f"{prefix}table-1", {"as-written": check_table_1(), "other": other}
             ),
-            ("synthetic", f"{prefix}fig-1"): capture("synthetic", paper.exhibits[f"{prefix}fig-1"]),
+            ("synthetic", f"{prefix}fig-1"): capture("synthetic", figure),
             ("synthetic", "claims"): ClaimsResult("synthetic", "claims", {"margin": check_claim()}),
         }
         judgement = judge(paper, results, read_inputs(paper))
@@ -156,7 +162,7 @@ def make(tmp_path, monkeypatch):
     return build
 
 
-def test_pages_are_well_formed_and_every_reference_has_its_target(make):
+def test_pages_are_well_formed_and_every_reference_has_its_target(make: Make) -> None:
     pages = {name: Page(text) for name, text in make().items()}
     assert set(pages) == {"index.html", "synthetic.html"}
     for name, page in pages.items():
@@ -171,7 +177,7 @@ def test_pages_are_well_formed_and_every_reference_has_its_target(make):
                 assert fragment in [*pages[file or name].values("id"), ""], address
 
 
-def test_pages_stand_alone(make):
+def test_pages_stand_alone(make: Make) -> None:
     for text in make().values():
         page = Page(text)
         assert {"script", "link", "img", "iframe"}.isdisjoint(tag for tag, _ in page.elements)
@@ -182,7 +188,7 @@ def test_pages_stand_alone(make):
         assert not [attribute for _, attrs in page.elements for attribute in attrs if attribute.startswith("on")]
 
 
-def test_every_printed_and_computed_value_stands_with_its_verdict(make):
+def test_every_printed_and_computed_value_stands_with_its_verdict(make: Make) -> None:
     text = make()["synthetic.html"]
     rows = dict(re.findall(r'<td id="table-1[\w.-]+" class="judged ([a-z-]+)">([\d.]+)', text))
     # 0.9 as written; 0.95 under the other reading; 3.41 a misprint; 7.0 unexplained
@@ -198,7 +204,7 @@ def test_every_printed_and_computed_value_stands_with_its_verdict(make):
         assert word in plain
 
 
-def test_figures_have_a_text_alternative_a_label_and_downloads(make):
+def test_figures_have_a_text_alternative_a_label_and_downloads(make: Make) -> None:
     text = make()["synthetic.html"]
     assert re.search(r'<svg id="svg-fig-1" role="img" aria-labelledby="svg-fig-1-title svg-fig-1-desc"', text)
     assert re.search(r'<desc id="svg-fig-1-desc">output from .* over time \$t\$ from .*PA &amp; ZN', text)
@@ -208,13 +214,13 @@ def test_figures_have_a_text_alternative_a_label_and_downloads(make):
     assert "#1b1f24" not in text.partition("<svg")[2].partition("</svg>")[0]
 
 
-def test_sources_are_shown_escaped(make):
+def test_sources_are_shown_escaped(make: Make) -> None:
     text = make()["synthetic.html"]
     assert "check_table_1() -&gt; pd.DataFrame:" in text
     assert "<i># a &lt; b</i>" in text
 
 
-def test_prose_places_exhibits_and_titles_are_escaped(make):
+def test_prose_places_exhibits_and_titles_are_escaped(make: Make) -> None:
     text = make()["synthetic.html"]
     story, table, link = (text.index(part) for part in ('<h2 id="s-the-story">', 'id="table-1"', "See <a"))
     assert story < table < link < text.index('id="fig-1"')
@@ -223,23 +229,23 @@ def test_prose_places_exhibits_and_titles_are_escaped(make):
     assert text.count('<section class="exhibit"') == 4
 
 
-def test_the_story_stands_before_contents_and_exhibits(make):
+def test_the_story_stands_before_contents_and_exhibits(make: Make) -> None:
     page = Page(make()["synthetic.html"])
     assert page.text.index("Gains follow from") < page.text.index("Contents") < page.text.index("The story")
 
 
-def test_the_overview_of_parts_quotes_the_first_paragraph_of_each(make):
+def test_the_overview_of_parts_quotes_the_first_paragraph_of_each(make: Make) -> None:
     pages = make(prefix="II-", notes="", notes_II="# Part two\n\nIts *abstract*.\n\nMore of it.\n")
     assert "Its abstract." in Page(pages["synthetic.html"]).text
     assert "More of it." not in Page(pages["synthetic.html"]).text
     assert "More of it." in Page(pages["synthetic-II.html"]).text
 
 
-def test_two_runs_give_the_same_bytes(make, tmp_path):
+def test_two_runs_give_the_same_bytes(make: Make, tmp_path: Path) -> None:
     assert make() == make(out=tmp_path / "again")
 
 
-def test_a_part_with_notes_of_its_own_has_a_page(make):
+def test_a_part_with_notes_of_its_own_has_a_page(make: Make) -> None:
     pages = make(
         "Overview. {{ exhibit('I-table-1') }}",
         prefix="I-",
@@ -264,40 +270,40 @@ def test_a_part_with_notes_of_its_own_has_a_page(make):
         ("$\\nonsense{x}$", r"synthetic\.html: pandoc cannot convert a text: .*nonsense"),
     ],
 )
-def test_wrong_prose_is_named(make, notes, message, tmp_path):
+def test_wrong_prose_is_named(make: Make, notes: str, message: str, tmp_path: Path) -> None:
     with pytest.raises(TemplateError, match=message):
         make(notes)
     assert not (tmp_path / "report").exists()
 
 
-def test_a_text_that_swallows_the_next_is_named():
+def test_a_text_that_swallows_the_next_is_named() -> None:
     batch = MarkdownBatch("test")
     page = "".join(map(str, (batch.block("~~~\nopen"), batch.block("lost"), batch.block("~~~"))))
-    with pytest.raises(TemplateError, match="test: a fence is not closed in or before the text 'lost'"):
+    with pytest.raises(TemplateError, match="test: a code fence is not closed in or before the text 'lost'"):
         batch.substitute(page)
 
 
-def test_markup_in_texts_is_text():
+def test_markup_in_texts_is_text() -> None:
     batch = MarkdownBatch("test")
     html = batch.substitute(str(batch.block("a<b> & <script>x</script>")))
     assert Page(html).text.strip() == "a<b> & <script>x</script>"
 
 
-def test_an_unwritable_folder_is_named(make, tmp_path):
+def test_an_unwritable_folder_is_named(make: Make, tmp_path: Path) -> None:
     (tmp_path / "report").write_text("in the way")
     with pytest.raises(OutputError, match="report"):
         make()
 
 
 @pytest.mark.parametrize("text", ["(5) and (6) give it.", "5. is it", "- so", "# so", "> so", "+ so", "| so"])
-def test_a_short_text_is_never_a_block(text):
+def test_a_short_text_is_never_a_block(text: str) -> None:
     batch = MarkdownBatch("test")
     html = batch.substitute(str(batch.inline(text)))
     assert not html.startswith("<")
     assert Page(html).text == text
 
 
-def test_columns_are_aligned_at_the_decimal_point():
+def test_columns_are_aligned_at_the_decimal_point() -> None:
     texts = aligned(["1.25", "−10", "3.4"]).values()
     assert len({len(text) - len(text.split(".")[0].rstrip("\u2007\u2008")) for text in texts}) == 1
 
@@ -309,7 +315,7 @@ def test_columns_are_aligned_at_the_decimal_point():
         (1234567.0, None, "1234567"), (-float("inf"), None, "−∞"), (5e-7, "0", "5.00000e−7"), (None, "1", ""),
     ],
 )  # fmt: skip
-def test_numbers_show_a_little_more_than_the_print(number, printed, text):
+def test_numbers_show_a_little_more_than_the_print(number: float | None, printed: str | None, text: str) -> None:
     assert shown(number, PrintedValue(printed) if printed else None) == text
 
 
@@ -326,7 +332,7 @@ def _contrast(one: str, other: str) -> float:
 
 
 @pytest.mark.parametrize("theme", [0, 1, 2], ids=["light", "dark", "paper"])
-def test_text_has_the_contrast_of_wcag_aa(theme):
+def test_text_has_the_contrast_of_wcag_aa(theme: int) -> None:
     style = (templates_dir() / "style.css").read_text("utf-8")
     block = re.findall(r":root \{(.*?)\}", style, re.DOTALL)[theme]
     colours = {name: code if len(code) == 7 else "#" + "".join(2 * c for c in code[1:])

@@ -167,5 +167,5 @@ def test_part_of_a_paper(paper: Paper) -> None:
 
 
 def test_no_workers_is_an_error(paper: Paper) -> None:
-    with pytest.raises(ReplicateError, match="jobs is 0"):
+    with pytest.raises(ReplicateError, match="jobs must be at least 1, not 0"):
         run.run([paper], jobs=0, cache_dir=None)

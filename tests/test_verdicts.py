@@ -14,7 +14,7 @@ from synthetic import frame, printed, results
 from replicate.exhibits import AS_WRITTEN, Finding
 from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import PrintedValue
-from replicate.exhibits.results import FigureResult, TableResult
+from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.ledger import Ledger, LedgerEntry
@@ -46,12 +46,12 @@ def entry(
     )
 
 
-def judged(*entries: LedgerEntry, run: dict | None = None, **texts: str) -> Judgement:  # type: ignore[type-arg]
+def judged(*entries: LedgerEntry, run: Results | None = None, **texts: str) -> Judgement:
     """Judge the tiny paper with some of its printed texts changed."""
     return judge(
         synthetic.paper(),
         results() if run is None else run,
-        Inputs(printed(**texts), Ledger("toy/ledger.toml", entries)),
+        Inputs(printed(significant_digits=None, **texts), Ledger("toy/ledger.toml", entries)),
     )
 
 
@@ -164,12 +164,12 @@ def test_a_cell_that_is_named_wins_over_a_star() -> None:
         (
             entry(rows=("*",)),
             {},
-            "toy/ledger.toml:7: table-1: no printed value that differs is left to explain",
+            "toy/ledger.toml:7: table-1: explains no printed value that differs",
         ),
     ],
 )
 def test_an_entry_that_no_longer_applies_is_a_problem(found: LedgerEntry, texts: dict[str, str], message: str) -> None:
-    assert judged(found, **texts).problems == [message]
+    assert judged(found, run=results(), **texts).problems == [message]
 
 
 def test_a_reconstructed_value_needs_no_entry() -> None:
@@ -279,10 +279,10 @@ def test_nothing_computed(nothing: object) -> None:
 )
 def test_only_numbers_are_numbers(value: object, shown: str) -> None:
     made = frame().astype(object)
-    made.loc["A", "x"] = value
+    made["x"] = pd.Series([value, *made["x"].tolist()[1:]], made.index, dtype=object)
     judgement = judged(run=results(as_written=made))
     assert judgement.problems == [
-        f"toy table-1: reading 'as-written': row 'A', column 'x' holds {shown}, needed: a number"
+        f"toy table-1: reading 'as-written': row 'A', column 'x' holds {shown}; expected: a number"
     ]
     assert verdict(judgement).verdict == "reconstructed"
 
@@ -294,7 +294,7 @@ def test_numbers_of_any_type_are_numbers(value: object) -> None:
 
 def test_measured_values_leave_an_exhibit_not_computable() -> None:
     texts = {"ax": "8.1", "ay": "8.2", "bx": "8.3", "by": "8.4"}
-    judgement = judged(entry("measured", ("*",), ("*",)), **texts)
+    judgement = judged(entry("measured", ("*",), ("*",)), run=results(), **texts)
     assert exhibit(judgement, "table-1").status == "not-computable"
     assert judgement.problems == []
 
@@ -425,7 +425,8 @@ def test_judging_is_pure() -> None:
         judged(entry(rows=("*",)), run=run, bx="9.9"),
     )
     assert first == second
-    for key in run:
-        if isinstance(before[key], TableResult):
-            for reading, made in before[key].frames.items():
-                pd.testing.assert_frame_equal(run[key].frames[reading], made)
+    for key, result in run.items():
+        untouched = before[key]
+        if isinstance(result, TableResult) and isinstance(untouched, TableResult):
+            for reading, made in untouched.frames.items():
+                pd.testing.assert_frame_equal(result.frames[reading], made)

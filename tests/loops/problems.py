@@ -11,6 +11,7 @@ rules (SIMC: S. Skogestad, J. Process Control 13, 2003; AMIGO: Åström and Häg
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -56,7 +57,7 @@ class Problem:
         return Loop(self.plant, self.controller)
 
 
-def _foptd(dead_time: float, k: float, ki: float, **more: float) -> ReferenceLoop:
+def _foptd(dead_time: float, k: float, ki: float, **more: Any) -> ReferenceLoop:
     return ReferenceLoop((1.0,), (1.0, 1.0), dead_time, k, ki, **more)
 
 
@@ -158,4 +159,4 @@ ROOT_POLES = (-1.3077 + 0.4109j, -8.2746 + 5.8215j, -87.5786 + 20.3559j)
 
 def root_plant_function(s: np.ndarray) -> np.ndarray:
     """``e^{-sqrt(s)}`` in numpy."""
-    return np.exp(-np.sqrt(s))
+    return np.asarray(np.exp(-np.sqrt(s)))

@@ -12,7 +12,7 @@ Time is counted from the step and includes the dead time; frequencies are in rad
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -24,7 +24,7 @@ Transform = Callable[[mp.mpc], mp.mpc]
 DIGITS = 40
 
 
-def _poly(coefficients: Sequence[float], s: mp.mpc) -> mp.mpc:
+def _poly(coefficients: Iterable[float], s: mp.mpc) -> mp.mpc:
     # Horner's rule serves mpmath numbers and numpy arrays alike
     value = 0 * s
     for coefficient in coefficients:

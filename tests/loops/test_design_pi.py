@@ -110,7 +110,7 @@ class Bounds:
             center, radius = self.circle
             return np.abs(center + value) - radius
         to_point = np.abs(1.0 + value)
-        return np.minimum(to_point - 1.0 / self.ms, to_point - np.abs(value) / self.mp)
+        return np.asarray(np.minimum(to_point - 1.0 / self.ms, to_point - np.abs(value) / self.mp))
 
 
 def frequencies(case: Case, per_decade: int) -> np.ndarray:
@@ -141,7 +141,7 @@ class Search:
     def keeps(self, k: float, ki: np.ndarray) -> np.ndarray:
         """Whether the bounds hold on all the frequencies, for one k and many ki."""
         value = (k - 1j * ki[:, None] / self.w) * self.gain
-        return (self.bounds.margin(value) > 0.0).all(axis=1)
+        return np.asarray((self.bounds.margin(value) > 0.0).all(axis=1))
 
     def stable(self, k: float, ki: float) -> bool:
         """Mikhailov's criterion: the characteristic function over (s + 1)^n does not turn between 0 and infinity."""
@@ -159,7 +159,7 @@ class Search:
             return False
         low = np.nonzero((margin[1:-1] <= margin[:-2]) & (margin[1:-1] <= margin[2:]) & (margin[1:-1] < 0.02))[0] + 1
         for i in low:
-            left, right = self.w[i - 1], self.w[i + 1]
+            left, right, inner = self.w[i - 1], self.w[i + 1], margin
             for _ in range(4):
                 w = np.linspace(left, right, 33)
                 num, den = self.case.parts(1j * w)
@@ -242,7 +242,7 @@ def searched(name: str, bounds: Bounds) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_largest_ki_with_bounded_sensitivity(name):
+def test_the_largest_ki_with_bounded_sensitivity(name: str) -> None:
     ms = 2.0
     design = design_pi(CASES[name].plant, ms=ms)
     k, ki = searched(name, Bounds(ms=ms))
@@ -253,20 +253,20 @@ def test_the_largest_ki_with_bounded_sensitivity(name):
 
 
 @pytest.mark.parametrize("name", ["G1", "G3", "G4", "G7", "G9", "G12, a=0", "G12, a=2 (G6)", "G14, a=8"])
-def test_the_largest_ki_with_a_tighter_bound(name):
+def test_the_largest_ki_with_a_tighter_bound(name: str) -> None:
     design = design_pi(CASES[name].plant, ms=1.4)
     assert design.ki == pytest.approx(searched(name, Bounds(ms=1.4))[1], rel=TOLERANCE)
 
 
 @pytest.mark.parametrize("name", ["G1", "G3", "G8", "G12, a=0.2", "G12, a=2 (G6)", "G14, a=8"])
-def test_the_largest_ki_with_bounded_complementary_sensitivity(name):
+def test_the_largest_ki_with_bounded_complementary_sensitivity(name: str) -> None:
     # the constraint of the search is |T| itself, not a circle
     design = design_pi(CASES[name].plant, mp=1.5)
     assert design.ki == pytest.approx(searched(name, Bounds(mp=1.5))[1], rel=TOLERANCE)
 
 
 @pytest.mark.parametrize("name", ["G1", "G3", "G4", "G7", "G12, a=0.2"])
-def test_the_largest_ki_outside_the_combined_circle(name):
+def test_the_largest_ki_outside_the_combined_circle(name: str) -> None:
     ms, mp = 2.0, 1.4
     # errata of the thesis: the circle whose diameter on the real axis runs from -Mp/(Mp - 1) to -(Ms - 1)/Ms
     center = (ms * (2 * mp - 1) - (mp - 1)) / (2 * ms * (mp - 1))
@@ -278,7 +278,7 @@ def test_the_largest_ki_outside_the_combined_circle(name):
     assert both.keeps(design.k, np.array([design.ki])).all()
 
 
-def test_a_conditionally_stable_plant_has_two_solutions():
+def test_a_conditionally_stable_plant_has_two_solutions() -> None:
     case = CASES["G13"]
     design = design_pi(case.plant, ms=2.0)
     assert len(design.solutions) == 2
@@ -288,7 +288,7 @@ def test_a_conditionally_stable_plant_has_two_solutions():
     assert slow.ki == pytest.approx(ki, rel=TOLERANCE)
 
 
-def test_the_fast_solution_is_gone_with_a_tighter_bound():
+def test_the_fast_solution_is_gone_with_a_tighter_bound() -> None:
     case = CASES["G13"]
     design = design_pi(case.plant, ms=1.4)
     assert len(design.solutions) == 1
@@ -297,7 +297,7 @@ def test_the_fast_solution_is_gone_with_a_tighter_bound():
     assert design.ki == pytest.approx(ki, rel=TOLERANCE)
 
 
-def test_a_resonance_makes_corners_and_damping_makes_them_smooth():
+def test_a_resonance_makes_corners_and_damping_makes_them_smooth() -> None:
     for a, frequencies_of_tangency in ((0.2, 2), (1.0, 2), (2.0, 1)):
         design = design_pi(resonant(a).plant, ms=2.0)
         assert design.case == ("corner" if frequencies_of_tangency == 2 else "smooth")
@@ -308,14 +308,14 @@ def test_a_resonance_makes_corners_and_damping_makes_them_smooth():
 
 
 @pytest.mark.parametrize("a", [1.5, 2.9])
-def test_no_controller_where_the_phase_does_not_allow_one(a):
+def test_no_controller_where_the_phase_does_not_allow_one(a: float) -> None:
     # a/((s+a)(s-1)) stays outside the circle of Ms = 2 only if a >= 3 (example 7): here no k, ki does
     assert design_pi(unstable(a).plant, ms=2.0).status == "no-controller"
     assert all(np.isnan(brute_force(unstable(a), Bounds(ms=2.0))))
     assert design_pi(unstable(3.1).plant, ms=2.0).status == "optimal"
 
 
-def test_a_first_order_lag_bears_any_integral_gain():
+def test_a_first_order_lag_bears_any_integral_gain() -> None:
     design = design_pi(Plant([1.0], [1.0, 1.0]), ms=1.4)
     assert design.status == "unbounded"
     assert np.isnan(design.ki)
@@ -324,7 +324,7 @@ def test_a_first_order_lag_bears_any_integral_gain():
     assert all(search.stable(ki, ki) and search.keeps(ki, np.array([ki])).all() for ki in (1e1, 1e4, 1e7))
 
 
-def test_the_setpoint_weight_makes_the_setpoint_gain_one():
+def test_the_setpoint_weight_makes_the_setpoint_gain_one() -> None:
     case = CASES["G1"]
     design = design_pi(case.plant, ms=2.0)
     w = np.linspace(0.5, 1.5, 200001)
@@ -337,13 +337,13 @@ def test_the_setpoint_weight_makes_the_setpoint_gain_one():
     assert abs(gain[peak]) == pytest.approx(1.0, abs=2.0 * float(np.max(np.abs(np.diff(np.abs(gain))))))
 
 
-def test_the_setpoint_weight_is_cut_to_its_range():
+def test_the_setpoint_weight_is_cut_to_its_range() -> None:
     assert setpoint_weight(CASES["G1"].plant, -0.1, 0.1) == 0.0  # (25) divides by k
     assert setpoint_weight(CASES["G1"].plant, 0.1, 1.0, at=(0.5, 3.0)) == 0.0  # the root is imaginary
     assert setpoint_weight(CASES["G1"].plant, 0.1, 0.1, at=(0.0, 1.0)) == 1.0  # no resonance
 
 
 @pytest.mark.parametrize("bounds", [{}, {"ms": 1.0}, {"ms": 0.5}, {"mp": 1.0}, {"ms": 2.0, "mp": 0.9}])
-def test_a_bound_is_needed_and_must_exceed_one(bounds):
+def test_a_bound_is_needed_and_must_exceed_one(bounds: dict[str, float]) -> None:
     with pytest.raises(LoopError):
         design_pi(CASES["G1"].plant, **bounds)

@@ -14,7 +14,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq, differential_evolution, nnls
+from scipy.optimize import Bounds, brentq, differential_evolution, nnls
 
 from replicate.loops import PI, Constraint, Loop, LoopError, PIDDesign, Plant, design_pi, design_pid, search_range
 
@@ -180,7 +180,7 @@ class Search:
         gain, w = self.ultimate()
         found = differential_evolution(
             self.cost,
-            bounds=[(0.0, 2.0 * gain), (-0.1 * gain / w, 2.5 * gain / w)],
+            bounds=Bounds([0.0, -0.1 * gain / w], [2.0 * gain, 2.5 * gain / w]),
             rng=7,
             mutation=(0.4, 1.0),
             popsize=popsize,
@@ -188,7 +188,8 @@ class Search:
             tol=1e-9,
             polish=False,
         )
-        return -float(found.fun), *(float(v) for v in found.x)
+        k, kd = (float(v) for v in found.x)
+        return -float(found.fun), k, kd
 
 
 @cache
@@ -320,7 +321,7 @@ def test_circle_bounds_derivative_gain_at_infinite_frequency(
     search = Search("F", ms, (), (0.1, 1.0), points=4000)
 
     def highest(kd: float) -> float:
-        gains = np.linspace(0.0, 2.0, 81)
+        gains, heights = np.linspace(0.0, 2.0, 81), [0.0]
         for _ in range(4):
             heights = [search.largest_ki(k, kd) for k in gains]
             top = int(np.argmax(heights))

@@ -1,5 +1,9 @@
 """The emulated toolchain (made of python-control) against scipy, mpmath and hand-made samples."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -10,7 +14,7 @@ from replicate.loops.emulation import SampledResponse, dominant_pole, pade_loop,
 from replicate.loops.errors import LoopError
 
 
-def closed_form(numerator, denominator, t):
+def closed_form(numerator: Sequence[mp.mpf], denominator: Sequence[mp.mpf], t: float) -> float:
     """Step response of a rational function with simple poles: residues of Y(s) e^{st}, in 40 digits."""
     with mp.workdps(40):
         poles = mp.polyroots(denominator, maxsteps=500, extraprec=400)
@@ -28,7 +32,7 @@ DEN = [mp.mpf(1) / 12, mp.mpf(7) / 12, mp.mpf(3) / 2, mp.mpf(1)]
 
 @pytest.mark.parametrize("b", [1.0, 0.3])
 @pytest.mark.parametrize("t", [0.5, 2.0, 7.0])
-def test_setpoint_response_of_the_pade_loop_is_its_residue_sum(b, t):
+def test_setpoint_response_of_the_pade_loop_is_its_residue_sum(b: float, t: float) -> None:
     k, ki = mp.mpf("0.6"), mp.mpf("0.5")
     closed = [*DEN, mp.mpf(0)]
     for i, c in enumerate(NUM):  # (k s + ki) N(s), aligned at the low powers
@@ -40,7 +44,7 @@ def test_setpoint_response_of_the_pade_loop_is_its_residue_sum(b, t):
     assert response.output[-1] == pytest.approx(closed_form(numerator, closed, t), abs=1e-11)
 
 
-def test_load_response_agrees_with_scipy_for_a_second_order_plant():
+def test_load_response_agrees_with_scipy_for_a_second_order_plant() -> None:
     system = pade_loop(Plant([2.0], [1.0, 3.0, 2.0], 0.4), PI(0.7, 0.9), order=3, response="load")
     # Padé (3, 3) of e^{-0.4 s}: 1 -+ x/2 + x^2/10 -+ x^3/120 with x = 0.4 s.
     x = np.array([0.4**3 / 120, 0.4**2 / 10, 0.2, 1.0])
@@ -52,12 +56,12 @@ def test_load_response_agrees_with_scipy_for_a_second_order_plant():
     np.testing.assert_allclose(response.output, expected, atol=1e-10)
 
 
-def test_without_dead_time_the_loop_is_the_rational_one():
+def test_without_dead_time_the_loop_is_the_rational_one() -> None:
     response = sampled_step(pade_loop(Plant([1.0], [1.0, 1.0], 0.0), PI(2.0, 2.0)), 3.0, 300)
     np.testing.assert_allclose(response.output, 1.0 - np.exp(-2.0 * response.time), atol=1e-12)
 
 
-def test_dominant_pole_of_a_double_pole_is_accurate_to_rounding():
+def test_dominant_pole_of_a_double_pole_is_accurate_to_rounding() -> None:
     # k and ki that put a double pole at -1/2 for the plant of NUM and DEN, from P(-1/2) = P'(-1/2) = 0 in
     # exact fractions.
     n, dn = mp.polyval(NUM, -0.5), mp.polyval([NUM[0] * 2, NUM[1]], -0.5)
@@ -71,13 +75,13 @@ def test_dominant_pole_of_a_double_pole_is_accurate_to_rounding():
     assert pole.real == pytest.approx(-0.5, abs=1e-13)
 
 
-def test_dominant_pole_of_a_pair_is_the_upper_one():
+def test_dominant_pole_of_a_pair_is_the_upper_one() -> None:
     # k s + ki over s (s + 1) with k = 1, ki = 5: s^2 + 2 s + 5 = 0.
     pole = dominant_pole(pade_loop(Plant([1.0], [1.0, 1.0], 0.0), PI(1.0, 5.0)))
     assert pole == pytest.approx(-1.0 + 2.0j, abs=1e-12)
 
 
-def test_metrics_are_samples_not_interpolations():
+def test_metrics_are_samples_not_interpolations() -> None:
     response = SampledResponse(np.linspace(0.0, 2.0, 9), np.array([0.0, 0.1, 0.49, 0.5, 0.89, 0.95, 1.3, 0.9, 1.01]))
     assert response.spacing == 0.25
     assert response.overshoot() == pytest.approx(0.3)
@@ -86,13 +90,13 @@ def test_metrics_are_samples_not_interpolations():
     assert response.rise_time() == 1.25 - 0.25
 
 
-def test_what_the_model_leaves_out_is_refused():
+def test_what_the_model_leaves_out_is_refused() -> None:
     with pytest.raises(LoopError, match="needs a rational plant"):
         pade_loop(Plant.from_function(lambda s: np.exp(-np.sqrt(s))), PI(1.0, 1.0))
     with pytest.raises(LoopError, match="without filters"):
         pade_loop(Plant([1.0], [1.0, 1.0], 1.0), PI(1.0, 1.0, measurement_filter=0.1))
 
 
-def test_a_level_that_is_never_reached_is_an_error():
+def test_a_level_that_is_never_reached_is_an_error() -> None:
     with pytest.raises(ValueError, match=r"does not reach 0\.5 within its 3 samples"):
         SampledResponse(np.arange(3.0), np.array([0.0, 0.1, 0.2])).delay_time()

@@ -14,7 +14,7 @@ from replicate.loops import PI, PID, Loop, Plant
 
 
 @given(st.floats(0.02, 1.5), st.floats(0.05, 20.0))
-def test_integrating_plant(product, dead_time):
+def test_integrating_plant(product: float, dead_time: float) -> None:
     # L = k e^{-sL}/s: w180 = pi/(2 L), wc = k
     k = product / dead_time
     m = Loop(Plant([1.0], [1.0, 0.0], dead_time=dead_time), PI(k=k)).margins()
@@ -27,7 +27,7 @@ def test_integrating_plant(product, dead_time):
 
 
 @pytest.mark.parametrize("dead_time", [0.05, 0.2, 1.0, 5.0, 50.0])
-def test_first_order_plant_with_cancelled_lag(dead_time):
+def test_first_order_plant_with_cancelled_lag(dead_time: float) -> None:
     # Ti = T makes L = (k/T) e^{-sL}/s
     k = 0.5 / dead_time
     m = Loop(Plant.foptd(gain=1.0, time_constant=1.0, dead_time=dead_time), PI(k=k, ki=k)).margins()
@@ -37,7 +37,7 @@ def test_first_order_plant_with_cancelled_lag(dead_time):
 
 
 @pytest.mark.parametrize("order", [3, 4, 8])
-def test_multiple_lags(order):
+def test_multiple_lags(order: int) -> None:
     m = Loop(Plant([1.0], np.poly(-np.ones(order))), PI(k=1.1)).margins()
     assert m.gain == pytest.approx(1 / np.cos(np.pi / order) ** order / 1.1, rel=1e-10)
     assert m.phase_crossover == pytest.approx(np.tan(np.pi / order), rel=1e-10)
@@ -46,7 +46,7 @@ def test_multiple_lags(order):
     assert m.phase == pytest.approx(180 - order * np.degrees(np.arctan(wc)), rel=1e-10)
 
 
-def test_second_order_without_dead_time_has_no_gain_margin():
+def test_second_order_without_dead_time_has_no_gain_margin() -> None:
     m = Loop(Plant([1.0], [1.0, 1.0, 0.0]), PI(k=1.0)).margins()
     wc = np.sqrt((np.sqrt(5) - 1) / 2)
     assert m.gain == np.inf
@@ -54,7 +54,7 @@ def test_second_order_without_dead_time_has_no_gain_margin():
     assert m.delay == pytest.approx((np.pi / 2 - np.arctan(wc)) / wc, rel=1e-11)
 
 
-def test_no_gain_crossover_means_any_delay_is_tolerated():
+def test_no_gain_crossover_means_any_delay_is_tolerated() -> None:
     m = Loop(Plant.foptd(gain=0.5, time_constant=1.0, dead_time=1.0), PI(k=1.0)).margins()
     assert m.phase == np.inf
     assert m.delay == np.inf
@@ -64,7 +64,7 @@ def test_no_gain_crossover_means_any_delay_is_tolerated():
     assert m.gain == pytest.approx(2 * np.sqrt(1 + w * w), rel=1e-11)
 
 
-def test_unstable_plant_has_two_gain_margins():
+def test_unstable_plant_has_two_gain_margins() -> None:
     # L = -k e^{-iwL}/(1 - iw): arg L = -pi at w = 0, and where w L = atan(w)
     k, dead_time = 2.5, 0.2
     m = Loop(Plant([1.0], [1.0, -1.0], dead_time=dead_time), PI(k=k)).margins()
@@ -77,12 +77,12 @@ def test_unstable_plant_has_two_gain_margins():
     assert m.delay == pytest.approx(np.arctan(wc) / wc - dead_time, rel=1e-11)
 
 
-def test_positive_feedback_loses_stability_at_steady_state():
+def test_positive_feedback_loses_stability_at_steady_state() -> None:
     m = Loop(Plant.foptd(gain=1.0, time_constant=1.0, dead_time=0.3), PI(k=-0.6)).margins()
     assert m.gain == pytest.approx(1 / 0.6, rel=1e-11)
 
 
-def test_root_plant():
+def test_root_plant() -> None:
     # arg e^{-sqrt(iw)} = -sqrt(w/2): -pi at w = 2 pi^2, where |P| = e^{-pi}
     k = 2.0
     m = Loop(Plant.from_function(root_plant_function), PI(k=k)).margins()
@@ -93,7 +93,7 @@ def test_root_plant():
     assert m.phase == pytest.approx(180 - np.degrees(np.log(k)), rel=1e-10)
 
 
-def test_three_gain_crossovers_of_a_resonance():
+def test_three_gain_crossovers_of_a_resonance() -> None:
     problem = PROBLEMS["oscillating"]
     r, m = problem.reference, problem.loop.margins()
     with mp.workdps(30):
@@ -107,12 +107,12 @@ def test_three_gain_crossovers_of_a_resonance():
 
 
 @pytest.mark.parametrize("name", [name for name in STABLE if name not in ("lag-8", "no-dead-time")])
-def test_margins_are_where_stability_ends(name):
+def test_margins_are_where_stability_ends(name: str) -> None:
     """Scale the gain or the dead time by a bit less and a bit more than the margin and count unstable poles."""
     problem = PROBLEMS[name]
     r, m = problem.reference, problem.loop.margins()
 
-    def unstable(factor=1.0, delay=0.0):
+    def unstable(factor: float = 1.0, delay: float = 0.0) -> int:
         changed = ReferenceLoop(
             tuple(factor * a for a in r.num),
             r.den,
@@ -137,7 +137,7 @@ def test_margins_are_where_stability_ends(name):
         assert unstable(delay=1.001 * m.delay) > 0
 
 
-def test_neutral_loop_loses_stability_in_its_tail():
+def test_neutral_loop_loses_stability_in_its_tail() -> None:
     # |L| tends to kd K/T = 0.3; the smallest factor of the finite crossovers competes with 1/0.3
     m = PROBLEMS["neutral"].loop.margins()
     assert m.gain <= 1 / 0.3

@@ -6,6 +6,7 @@ of the digits only, its value by all.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 
 import mpmath as mp
@@ -13,20 +14,23 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from loops.closed_forms import foptd_load_ise, integrator_p_ise
 from loops.problems import INTEGRAL, PROBLEMS, STABLE
-from loops.references import crossing
+from loops.references import ReferenceLoop, crossing
 from replicate.loops import PI, Loop, LoopError, NotSettledError, Plant, Signal, UnstableLoopError
 
 PROMISE = 1e-9
+
+Array = NDArray[np.float64]
 
 # --------------------------------------------------------------------------------------------------------------
 # closed forms
 
 
 @given(st.floats(0.05, 20.0))
-def test_first_order_loop(k):
+def test_first_order_loop(k: float) -> None:
     # y = 1 - e^{-kt}
     loop = Loop(Plant([1.0], [1.0, 0.0]), PI(k=k))
     y = loop.step()
@@ -47,13 +51,13 @@ def test_first_order_loop(k):
 
 
 @given(st.floats(0.05, 0.95), st.floats(0.1, 10.0))
-def test_second_order_loop(zeta, w0):
+def test_second_order_loop(zeta: float, w0: float) -> None:
     # e = 1 - y solves e'' + 2 zeta w0 e' + w0^2 e = 0, e(0) = 1, e'(0) = 0; extrema at n pi/wd with |e| = q^n
     root = np.sqrt(1 - zeta**2)
     sigma, wd, q = zeta * w0, w0 * root, np.exp(-np.pi * zeta / root)
 
-    def error(t):
-        return np.exp(-sigma * t) * (np.cos(wd * t) + sigma / wd * np.sin(wd * t))
+    def error(t: Array) -> Array:
+        return np.asarray(np.exp(-sigma * t) * (np.cos(wd * t) + sigma / wd * np.sin(wd * t)))
 
     y = Loop(Plant([1.0], [1.0, 2 * sigma, 0.0]), PI(k=w0**2)).step()
     assert y.overshoot() == pytest.approx(q, rel=PROMISE)
@@ -71,29 +75,32 @@ def test_second_order_loop(zeta, w0):
     for band in (0.02, 0.05):
         n = int(np.floor(np.log(band) / np.log(q)))  # the last extremum outside the band
         assume(abs(np.log(band) / np.log(q) - round(np.log(band) / np.log(q))) > 1e-3)
-        inside = lambda t, sign=(-1) ** n, band=band: sign * error(t) - band  # noqa: E731
         low, high = n * np.pi / wd, first + n * np.pi / wd
         for _ in range(200):
             middle = 0.5 * (low + high)
-            low, high = (middle, high) if inside(middle) > 0 else (low, middle)
+            is_outside = (-1) ** n * error(np.array(middle)) > band
+            low, high = (middle, high) if is_outside else (low, middle)
         assert y.settling_time(band) == pytest.approx(low, rel=PROMISE)
 
 
-def test_time_weighted_integrals_of_a_second_order_loop():
+def test_time_weighted_integrals_of_a_second_order_loop() -> None:
     zeta, w0 = 0.5, 2.0
     y = Loop(Plant([1.0], [1.0, 2 * zeta * w0, 0.0]), PI(k=w0**2)).step()
     with mp.workdps(25):
         wd, sigma = w0 * mp.sqrt(1 - mp.mpf(zeta) ** 2), zeta * w0
         first = (mp.pi - mp.atan2(wd, sigma)) / wd
         ends = [0, first, *(first + n * mp.pi / wd for n in range(1, 25))]
-        error = lambda t: mp.exp(-sigma * t) * (mp.cos(wd * t) + sigma / wd * mp.sin(wd * t))  # noqa: E731
+
+        def error(t: mp.mpf) -> mp.mpf:
+            return mp.exp(-sigma * t) * (mp.cos(wd * t) + sigma / wd * mp.sin(wd * t))
+
         itae = mp.quad(lambda t: t * abs(error(t)), ends)
         itse = mp.quad(lambda t: t * error(t) ** 2, ends)
     assert y.itae() == pytest.approx(float(itae), rel=PROMISE)
     assert y.itse() == pytest.approx(float(itse), rel=PROMISE)
 
 
-def test_integrating_plant_under_proportional_control():
+def test_integrating_plant_under_proportional_control() -> None:
     # e^{-s}/s, k = 0.8, with z = t - 2 on [2, 3] and w = t - 3 on [3, 4]:
     # y = 0.8 (t - 1); 0.8 + 0.8 z - 0.32 z^2; 0.8 (t - 1) - 0.32 (t - 2)^2 + 0.8^3/6 (t - 3)^3
     y = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(k=0.8)).step()
@@ -108,7 +115,7 @@ def test_integrating_plant_under_proportional_control():
     assert y.ie() == pytest.approx(1 / 0.8, rel=PROMISE)
 
 
-def test_staircase():
+def test_staircase() -> None:
     # e^{-s} under P control: y = c (1 - (-k)^n) on [n, n+1), c = k/(1+k): all metrics are geometric sums
     k, c = 0.6, 0.375
     y = Loop(Plant([1.0], [1.0], dead_time=1.0), PI(k=k)).step()
@@ -126,7 +133,7 @@ def test_staircase():
     assert y.itae() == pytest.approx(c * (k / (1 - k) ** 2 + 0.5 / (1 - k)), rel=PROMISE)
 
 
-def test_jumps_are_crossings():
+def test_jumps_are_crossings() -> None:
     # e^{-s} under 0.5 + 0.1/s: from 0 to 0.5 at t = 1, down by 0.25 at t = 2
     y = Loop(Plant([1.0], [1.0], dead_time=1.0), PI(k=0.5, ki=0.1)).step(until=3.0)
     assert y.crossings(0.3) == pytest.approx([1.0], rel=1e-14)
@@ -140,20 +147,20 @@ def test_jumps_are_crossings():
 
 
 @pytest.mark.parametrize("name", INTEGRAL)
-def test_integrated_error_of_a_load_step(name):
+def test_integrated_error_of_a_load_step(name: str) -> None:
     assert PROBLEMS[name].loop.load_step().ie() == pytest.approx(1 / PROBLEMS[name].reference.ki, rel=PROMISE)
 
 
 @pytest.mark.parametrize(
     "name", ["foptd-0.2", "foptd-1", "foptd-5", "foptd-50", "lag-8", "lag-8-dead-time", "no-dead-time", "neutral"]
 )
-def test_integrated_error_of_a_set_point_step(name):
+def test_integrated_error_of_a_set_point_step(name: str) -> None:
     # u ends at 1/K with K = 1, and is k (b - 1) + ki IE
     r = PROBLEMS[name].reference
     assert PROBLEMS[name].loop.step().ie() == pytest.approx((1 + r.k * (1 - r.b)) / r.ki, rel=PROMISE)
 
 
-def test_absolute_error_of_a_monotone_load_response():
+def test_absolute_error_of_a_monotone_load_response() -> None:
     # the load response of this slow loop does not change its sign: IAE = IE
     loop = Loop(Plant.foptd(gain=1.0, time_constant=1.0, dead_time=1.0), PI(k=0.3, ki=0.1))
     load = loop.load_step()
@@ -162,21 +169,23 @@ def test_absolute_error_of_a_monotone_load_response():
 
 
 @pytest.mark.parametrize("name", ["foptd-0.05", "foptd-1", "foptd-5", "foptd-50"])
-def test_squared_error_of_a_load_step(name):
+def test_squared_error_of_a_load_step(name: str) -> None:
     r = PROBLEMS[name].reference
     expected = float(foptd_load_ise(1.0, 1.0, r.dead_time, r.k, r.ki))
     assert PROBLEMS[name].loop.load_step().ise() == pytest.approx(expected, rel=PROMISE)
 
 
 @given(st.floats(0.1, 1.4), st.floats(0.1, 10.0))
-def test_squared_error_of_integrating_plants(product, dead_time):
+def test_squared_error_of_integrating_plants(product: float, dead_time: float) -> None:
     k = product / dead_time
     y = Loop(Plant([1.0], [1.0, 0.0], dead_time=dead_time), PI(k=k)).step()
     assert y.ise() == pytest.approx(float(integrator_p_ise(1.0, dead_time, k)), rel=PROMISE)
 
 
 @given(st.floats(0.05, 5.0), st.floats(0.1, 0.8), st.floats(0.1, 0.8), st.floats(0.1, 10.0))
-def test_random_loops_have_the_integrated_error_of_the_integral_gain(dead_time, k_share, ki_share, gain):
+def test_random_loops_have_the_integrated_error_of_the_integral_gain(
+    dead_time: float, k_share: float, ki_share: float, gain: float
+) -> None:
     k = k_share * (1 + 1 / dead_time) / gain
     ki = ki_share * (k + 1 / gain) / (1 + dead_time)
     loop = Loop(Plant.foptd(gain=gain, time_constant=1.0, dead_time=dead_time), PI(k=k, ki=ki))
@@ -189,11 +198,13 @@ def test_random_loops_have_the_integrated_error_of_the_integral_gain(dead_time, 
 # metrics on the references: every answer is polished in mpmath, and a coarse scan shows that it is the right one
 
 
+Scan = tuple[ReferenceLoop, Signal, Array, Array]
+
 SCANNED = {"foptd-0.2": 5.0, "foptd-1": 15.0, "integrating": 30.0, "no-dead-time": 15.0}
 
 
 @pytest.fixture(scope="module", params=SCANNED)
-def scanned(request):
+def scanned(request: pytest.FixtureRequest) -> Scan:
     """The reference, the response under test, and a coarse scan of the reference."""
     name = request.param
     reference, until = PROBLEMS[name].reference, SCANNED[name]
@@ -202,11 +213,11 @@ def scanned(request):
     return reference, PROBLEMS[name].loop.step(until=until), times, values
 
 
-def polished(reference, level, near):
+def polished(reference: ReferenceLoop, level: float, near: float) -> float:
     return float(crossing(lambda t: reference(t) - level, near - 1e-5, near + 1e-5))
 
 
-def test_scanned_peak(scanned):
+def test_scanned_peak(scanned: Scan) -> None:
     reference, y, times, values = scanned
     peak = y.peak()
     assert peak.value >= values.max() - 1e-12
@@ -224,7 +235,7 @@ def test_scanned_peak(scanned):
     assert abs(times[values.argmax()] - peak.time) < 2.5 * (times[1] - times[0])
 
 
-def test_scanned_rise_and_delay(scanned):
+def test_scanned_rise_and_delay(scanned: Scan) -> None:
     reference, y, times, values = scanned
     reached = {}
     for level in (0.1, 0.5, 0.9):
@@ -235,7 +246,7 @@ def test_scanned_rise_and_delay(scanned):
 
 
 @pytest.mark.parametrize("band", [0.02, 0.05])
-def test_scanned_settling(scanned, band):
+def test_scanned_settling(scanned: Scan, band: float) -> None:
     reference, y, times, values = scanned
     settled = y.settling_time(band)
     level = 1 + band if reference(settled) > 1 else 1 - band
@@ -243,7 +254,7 @@ def test_scanned_settling(scanned, band):
     assert (np.abs(values[times > settled] - 1) < band).all()
 
 
-def test_scanned_absolute_error(scanned):
+def test_scanned_absolute_error(scanned: Scan) -> None:
     reference, y, times, values = scanned
     ends = [0.0]
     for left, right, a, b in zip(times[:-1], times[1:], values[:-1], values[1:], strict=True):
@@ -260,9 +271,13 @@ def test_scanned_absolute_error(scanned):
 # --------------------------------------------------------------------------------------------------------------
 # signals as such
 
+#: Of each piece: amplitude, frequency and phase of its sinusoids.
+Sines = list[list[tuple[float, float, float]]]
+Wave = tuple[Sines, Array]
+
 
 @st.composite
-def waves(draw):
+def waves(draw: st.DrawFn) -> Wave:
     """Piecewise sums of two sinusoids, with jumps between the pieces, as fast as pieces of degree 18 resolve."""
     pieces = draw(st.integers(1, 5))
     number = st.floats(-1.0, 1.0)
@@ -273,18 +288,19 @@ def waves(draw):
     return functions, np.concatenate([[0.0], np.cumsum(lengths)])
 
 
-def wave_signal(functions):
-    def value(piece, x):
-        return sum(a * np.sin(w * x + phase) for a, w, phase in functions[piece])
+def wave_signal(functions: Sines) -> tuple[Callable[[int, Array], Array], Array]:
+    def value(piece: int, x: Array) -> Array:
+        return np.asarray(np.sum([a * np.sin(w * x + phase) for a, w, phase in functions[piece]], axis=0))
 
-    interpolate = np.polynomial.chebyshev.chebinterpolate
-    coefficients = np.array([interpolate(lambda x, p=p: value(p, x) + 0 * x, 18) for p in range(len(functions))])
+    points = np.polynomial.chebyshev.chebpts1(19)
+    fit = np.polynomial.chebyshev.chebfit
+    coefficients = np.array([fit(points, value(piece, points), 18) for piece in range(len(functions))])
     return value, coefficients
 
 
 @settings(max_examples=60)
 @given(waves(), st.floats(-1.5, 1.5))
-def test_extrema_and_crossings_of_waves(wave, level):
+def test_extrema_and_crossings_of_waves(wave: Wave, level: float) -> None:
     functions, breaks = wave
     value, coefficients = wave_signal(functions)
     y = Signal(breaks, coefficients, final=0.0)
@@ -304,7 +320,7 @@ def test_extrema_and_crossings_of_waves(wave, level):
 
 @settings(max_examples=60)
 @given(waves())
-def test_integrals_of_waves(wave):
+def test_integrals_of_waves(wave: Wave) -> None:
     functions, breaks = wave
     value, coefficients = wave_signal(functions)
     y = Signal(breaks, coefficients, final=0.25)
@@ -323,14 +339,14 @@ def test_integrals_of_waves(wave):
 # what has no answer
 
 
-def test_unstable_loop_has_no_metrics():
+def test_unstable_loop_has_no_metrics() -> None:
     y = PROBLEMS["unstable-loop"].loop.step(until=20.0)
     for ask in (y.overshoot, y.settling_time, y.rise_time, y.delay_time, y.iae, y.ise, y.ie, y.itae, y.itse):
         with pytest.raises(UnstableLoopError, match="unstable"):
             ask()
 
 
-def test_short_horizon_is_not_a_settling_time():
+def test_short_horizon_is_not_a_settling_time() -> None:
     y = PROBLEMS["foptd-1"].loop.step(until=2.0)
     with pytest.raises(NotSettledError):
         y.settling_time()
@@ -338,13 +354,13 @@ def test_short_horizon_is_not_a_settling_time():
         y.rise_time()
 
 
-def test_overshoot_needs_a_final_value():
+def test_overshoot_needs_a_final_value() -> None:
     with pytest.raises(LoopError):
         PROBLEMS["foptd-1"].loop.load_step().overshoot()
 
 
 @pytest.mark.parametrize("name", STABLE)
-def test_final_value_is_approached(name):
+def test_final_value_is_approached(name: str) -> None:
     loop = PROBLEMS[name].loop
     response = loop.respond(setpoint=1.0, load=0.5)
     for signal in (response.output, response.control):

@@ -46,14 +46,14 @@ MEANINGS = {
 
 
 @pytest.mark.parametrize("text", MEANINGS)
-def test_a_text_means_what_it_says(text):
+def test_a_text_means_what_it_says(text: str) -> None:
     plant = parse_plant(text)
     for s in POINTS:
         assert complex(plant(s)) == pytest.approx(MEANINGS[text](s), rel=4e-15)
 
 
 @pytest.mark.parametrize("text", MEANINGS)
-def test_what_is_written_is_read_as_the_same_plant(text):
+def test_what_is_written_is_read_as_the_same_plant(text: str) -> None:
     plant = parse_plant(text)
     again = parse_plant(plant_notation(plant))
     assert (plant.num.tolist(), plant.den.tolist(), plant.dead_time) == (
@@ -79,11 +79,11 @@ def test_what_is_written_is_read_as_the_same_plant(text):
         ("1/( 1+s^{0.9} )*e^{-0.2s}", "1/(1+s^{0.9}) e^{-0.2s}"),
     ],
 )
-def test_a_plant_is_written_as_one_would_write_it(text, written):
+def test_a_plant_is_written_as_one_would_write_it(text: str, written: str) -> None:
     assert plant_notation(parse_plant(text)) == written
 
 
-def test_a_hyperbolic_plant_does_not_overflow():
+def test_a_hyperbolic_plant_does_not_overflow() -> None:
     # e^{-100} where cosh itself would be 1e43 at sqrt(s) = 100, and nothing but zero far beyond the range of a float
     plant = parse_plant("cosh(0.5sqrt(s))/cosh(sqrt(s))")
     assert abs(complex(plant(4e4))) == pytest.approx(np.exp(-100.0), rel=1e-12)
@@ -96,7 +96,7 @@ positive = st.floats(1e-9, 1e9)
 
 @given(num=st.lists(finite, min_size=1, max_size=4), den=st.lists(finite, min_size=1, max_size=3),
        leading=positive, dead_time=st.one_of(st.just(0.0), positive))  # fmt: skip
-def test_any_plant_round_trips_bit_by_bit(num, den, leading, dead_time):
+def test_any_plant_round_trips_bit_by_bit(num, den, leading: float, dead_time) -> None:
     if not np.any(num):
         num = [*num, 1.0]
     plant = Plant(num, [leading, *[0.0] * len(num), *den], dead_time)
@@ -109,7 +109,7 @@ def test_any_plant_round_trips_bit_by_bit(num, den, leading, dead_time):
 
 
 @given(k=finite, ki=finite, b=finite, tf=positive, sp=st.one_of(positive, st.tuples(positive, positive)))
-def test_any_controller_round_trips(k, ki, b, tf, sp):
+def test_any_controller_round_trips(k, ki, b, tf: float, sp) -> None:
     setpoint_filter = sp if isinstance(sp, float) else ((1.0,), (*sp, 1.0))
     pi = PI(k, ki, b, measurement_filter=tf, setpoint_filter=setpoint_filter)
     pid = PID(k, ki, kd=k, b=b, c=ki, derivative_filter=tf, measurement_filter_order=2)
@@ -120,7 +120,7 @@ def test_any_controller_round_trips(k, ki, b, tf, sp):
 
 
 @given(st.text(alphabet="s0123456789.e^{}()+-*/ sqrtcoh\\fa,=k", max_size=14))
-def test_any_text_is_a_plant_or_one_line_with_a_column(text):
+def test_any_text_is_a_plant_or_one_line_with_a_column(text: str) -> None:
     for slip in (_slip(parse_plant, text), _slip(parse_controller, text)):
         assert slip is None or ("\n" not in str(slip) and 1 <= slip.column <= len(text) + 1)
 
@@ -133,7 +133,7 @@ def _slip(read, text):
     return None
 
 
-def test_the_forms_of_a_controller():
+def test_the_forms_of_a_controller() -> None:
     assert parse_controller("k=0.6,ki=0.5,b=1") == PI(0.6, 0.5)
     assert parse_controller("Kp = 0.6, Ti = 2") == PI(0.6, 0.3)
     assert parse_controller("k=2,ti=4,td=0.5,c=1") == PID.ideal(2.0, 4.0, 0.5, c=1.0)
@@ -171,7 +171,7 @@ def test_the_forms_of_a_controller():
         ("(" * 50 + "s", 41, "more than 40 parentheses"),
     ],
 )
-def test_a_slip_in_a_plant_is_one_line_with_its_column(text, column, reason):
+def test_a_slip_in_a_plant_is_one_line_with_its_column(text: str, column: int, reason: str) -> None:
     with pytest.raises(NotationError, match=reason) as caught:
         parse_plant(text)
     assert caught.value.column == column
@@ -194,13 +194,13 @@ def test_a_slip_in_a_plant_is_one_line_with_its_column(text, column, reason):
         ("k=1,measurement_filter=-1", 1, "measurement_filter must be a time constant >= 0"),
     ],
 )
-def test_a_slip_in_a_controller_is_one_line_with_its_column(text, column, reason):
+def test_a_slip_in_a_controller_is_one_line_with_its_column(text: str, column: int, reason: str) -> None:
     with pytest.raises(NotationError, match=reason) as caught:
         parse_controller(text)
     assert caught.value.column == column
 
 
-def test_what_is_no_text_and_what_has_none():
+def test_what_is_no_text_and_what_has_none() -> None:
     with pytest.raises(NotationError, match="a text is needed, not float"):
         parse_plant(3.0)
     with pytest.raises(NotationError, match="a text is needed, not int"):

@@ -14,14 +14,15 @@ from loops.references import characteristic, polished_root, zeros_right_of
 from replicate.loops import PI, PID, Loop, Plant
 
 
-def same_pole(pole, expected, rel=1e-12):
+def same_pole(pole: complex, expected: mp.mpc, rel: float = 1e-12) -> bool:
     expected = complex(expected)
-    return abs(complex(pole.real, abs(pole.imag)) - complex(expected.real, abs(expected.imag))) <= rel * abs(expected)
+    distance = abs(complex(pole.real, abs(pole.imag)) - complex(expected.real, abs(expected.imag)))
+    return distance <= float(rel * abs(expected))
 
 
 @pytest.mark.parametrize("dead_time", [0.05, 1.0, 20.0])
 @pytest.mark.parametrize("product", [0.1, 0.36, 0.5, 1.5, 1.6, 5.0])
-def test_integrating_plant_under_proportional_control(dead_time, product):
+def test_integrating_plant_under_proportional_control(dead_time: float, product: float) -> None:
     k = product / dead_time  # stable for k L < pi/2; real poles for k L < 1/e
     loop = Loop(Plant([1.0], [1.0, 0.0], dead_time=dead_time), PI(k=k))
     assert same_pole(loop.rightmost_pole(), integrator_p_pole(1.0, dead_time, k))
@@ -30,14 +31,14 @@ def test_integrating_plant_under_proportional_control(dead_time, product):
 
 @pytest.mark.parametrize("dead_time", [0.05, 0.2, 1.0, 5.0, 50.0])
 @pytest.mark.parametrize("k", [0.3, 0.95, 1.05, 3.0, -0.5])
-def test_first_order_plant_under_proportional_control(dead_time, k):
+def test_first_order_plant_under_proportional_control(dead_time: float, k: float) -> None:
     loop = Loop(Plant.foptd(gain=1.0, time_constant=1.0, dead_time=dead_time), PI(k=k))
     pole = foptd_p_pole(1.0, 1.0, dead_time, k)
     assert same_pole(loop.rightmost_pole(), pole)
     assert loop.is_stable() == (pole.real < 0)
 
 
-def test_multiple_poles():
+def test_multiple_poles() -> None:
     # k/(s (s + 4)) and e^{-s-1}/s have the double poles -2 and -1, 1/(s^3 + 3 s^2 + 3 s) a triple one at -1;
     # rounding splits an n-fold pole by the n-th root of 1e-16
     assert same_pole(Loop(Plant([1.0], [1.0, 4.0, 0.0]), PI(k=4.0)).rightmost_pole(), -2.0, rel=1e-6)
@@ -48,7 +49,7 @@ def test_multiple_poles():
 
 
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_rightmost_pole_is_a_pole_and_none_lies_to_its_right(name):
+def test_rightmost_pole_is_a_pole_and_none_lies_to_its_right(name: str) -> None:
     problem = PROBLEMS[name]
     pole = complex(problem.loop.rightmost_pole())
     function = characteristic(problem.reference)
@@ -60,7 +61,7 @@ def test_rightmost_pole_is_a_pole_and_none_lies_to_its_right(name):
     assert problem.loop.is_stable() == (pole.real < 0)
 
 
-def test_pole_of_root_plant():
+def test_pole_of_root_plant() -> None:
     k, ki = ROOT_PI
     loop = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki))
     pole = polished_root(lambda s: s + (k * s + ki) * mp.exp(-mp.sqrt(s)), ROOT_POLES[0])
@@ -68,7 +69,7 @@ def test_pole_of_root_plant():
     assert loop.is_stable()
 
 
-def test_root_plant_limit_of_stability():
+def test_root_plant_limit_of_stability() -> None:
     # arg e^{-sqrt(iw)} = -sqrt(w/2) = -pi gives w = 2 pi^2, and there |P| = e^{-pi}
     limit = float(mp.exp(mp.pi))
     assert Loop(Plant.from_function(root_plant_function), PI(k=0.999 * limit)).is_stable()
@@ -76,7 +77,7 @@ def test_root_plant_limit_of_stability():
 
 
 @pytest.mark.parametrize("order", [3, 4, 8])
-def test_limit_of_stability_of_multiple_lags(order):
+def test_limit_of_stability_of_multiple_lags(order: int) -> None:
     # 1/(s+1)^n: arg = -pi at tan(pi/n), where the gain is cos(pi/n)^n
     limit = 1.0 / np.cos(np.pi / order) ** order
     plant = Plant([1.0], np.poly(-np.ones(order)))
@@ -85,34 +86,34 @@ def test_limit_of_stability_of_multiple_lags(order):
 
 
 @given(st.floats(0.01, 1.55), st.floats(1e-3, 1e3), st.floats(1e-2, 1e2))
-def test_limit_of_stability_of_integrating_plants(product, gain, dead_time):
+def test_limit_of_stability_of_integrating_plants(product: float, gain: float, dead_time: float) -> None:
     plant = Plant([gain], [1.0, 0.0], dead_time=dead_time)
     assert Loop(plant, PI(k=product / gain / dead_time)).is_stable()
     assert not Loop(plant, PI(k=(np.pi - product + 0.01) / gain / dead_time)).is_stable()
 
 
 @pytest.mark.parametrize("excess", [1e-6, 1e-3, 0.1])
-def test_unstable_plant_needs_enough_gain(excess):
+def test_unstable_plant_needs_enough_gain(excess: float) -> None:
     plant = Plant([1.0], [1.0, -1.0], dead_time=0.2)
     assert Loop(plant, PI(k=1 + excess)).is_stable()
     assert not Loop(plant, PI(k=1 - excess)).is_stable()
 
 
-def test_hidden_mode_of_an_unstable_plant_counts():
+def test_hidden_mode_of_an_unstable_plant_counts() -> None:
     # the controller's zero cancels the plant's unstable pole: the loop transfer function 0.5 e^{-s}/s looks harmless
     loop = Loop(Plant([1.0], [1.0, -1.0], dead_time=1.0), PI(k=0.5, ki=-0.5))
     assert not loop.is_stable()
 
 
 @pytest.mark.parametrize(("kd", "stable"), [(0.9, True), (0.999, True), (1.001, False)])
-def test_neutral_loop_is_unstable_when_its_jumps_grow(kd, stable):
+def test_neutral_loop_is_unstable_when_its_jumps_grow(kd: float, stable: bool) -> None:
     # jumps of u shrink by kd K / T from one dead time to the next; with k = kd, ki = 0 the loop is kd e^{-s}
     loop = Loop(Plant.foptd(gain=1.0, time_constant=1.0, dead_time=1.0), PID(k=kd, ki=0.0, kd=kd))
     assert loop.is_stable() == stable
 
 
 @pytest.mark.parametrize("name", STABLE)
-def test_time_scaling_scales_poles(name):
+def test_time_scaling_scales_poles(name: str) -> None:
     r, c = PROBLEMS[name].reference, 7.3
     den = [a * c ** (len(r.den) - 1 - i) for i, a in enumerate(r.den)]
     num = [a * c ** (len(r.num) - 1 - i) for i, a in enumerate(r.num)]

@@ -17,7 +17,7 @@ ATTAINED = [name for name in STABLE if name not in ("biproper", "dead-time", "de
 
 
 @pytest.mark.parametrize("name", ATTAINED)
-def test_peaks_against_mpmath(name):
+def test_peaks_against_mpmath(name: str) -> None:
     problem = PROBLEMS[name]
     scale = 1 / max(problem.reference.dead_time, 1.0)
     loop = problem.loop
@@ -28,7 +28,7 @@ def test_peaks_against_mpmath(name):
 
 
 @pytest.mark.parametrize("name", ["integrating", "double-integrating", "unstable-pi", "unstable-pid"])
-def test_complementary_peaks_against_mpmath(name):
+def test_complementary_peaks_against_mpmath(name: str) -> None:
     problem = PROBLEMS[name]
     mt, at = peak_modulus(lambda s: 1 - 1 / (1 + problem.reference.loop_transfer(s)), 1e-3, 1e3)
     peak = problem.loop.complementary_peak()
@@ -37,7 +37,7 @@ def test_complementary_peaks_against_mpmath(name):
 
 
 @pytest.mark.parametrize("name", ["neutral", "unstable-pid", "derivative-kick"])
-def test_neutral_peaks_against_a_dense_grid(name):
+def test_neutral_peaks_against_a_dense_grid(name: str) -> None:
     # |S| has infinitely many local maxima here; the highest of 2 million points is within 1e-7 of the supremum
     problem = PROBLEMS[name]
     w = np.linspace(1e-4, 400.0, 2_000_001)
@@ -47,14 +47,14 @@ def test_neutral_peaks_against_a_dense_grid(name):
     assert peak.value == pytest.approx(highest, rel=1e-7)
 
 
-def test_peak_in_the_limit_of_infinite_frequency():
+def test_peak_in_the_limit_of_infinite_frequency() -> None:
     # (0.5 s + 0.4)/(s + 1) e^{-0.2s}: |L| rises to 1/2, so |S| <= 1/(1 - |L|) < 2, reached in the limit
     peak = PROBLEMS["biproper"].loop.sensitivity_peak()
     assert peak.value == pytest.approx(2.0, rel=1e-12)
     assert peak.frequency == np.inf
 
 
-def test_pure_dead_time_under_integral_control():
+def test_pure_dead_time_under_integral_control() -> None:
     # L = q e^{-iw}/(iw): 1 + L vanishes at q = pi/2, w = pi/2; derivative of |1+L|^2 = 1 - 2 (q/w) sin w + (q/w)^2
     q = 0.5
     with mp.workdps(30):
@@ -66,7 +66,7 @@ def test_pure_dead_time_under_integral_control():
     assert peak.frequency == pytest.approx(float(w), rel=1e-7)
 
 
-def test_pure_dead_time_under_proportional_control():
+def test_pure_dead_time_under_proportional_control() -> None:
     # S = 1/(1 + k e^{-iw}) is largest at every odd multiple of pi: 1/(1 - k)
     loop = Loop(Plant([1.0], [1.0], dead_time=1.0), PI(k=0.3))
     assert loop.sensitivity_peak().value == pytest.approx(1 / 0.7, rel=1e-12)
@@ -76,7 +76,7 @@ def test_pure_dead_time_under_proportional_control():
 @given(st.floats(0.02, 50.0), st.floats(0.05, 20.0))
 @example(10.25, 3.90625)  # the peak is next to the corner frequency a
 @example(4.0, 4.0)  # a double closed-loop pole
-def test_second_order_loop_without_dead_time(k, a):
+def test_second_order_loop_without_dead_time(k: float, a: float) -> None:
     # L = k/(s (s + a)): d|S|^2/dx = 0 at x = w^2 = (k + sqrt(k^2 + 2 a^2 k))/2
     loop = Loop(Plant([1.0], [1.0, a, 0.0]), PI(k=k))
     x = 0.5 * (k + np.sqrt(k * k + 2 * a * a * k))
@@ -91,23 +91,23 @@ def test_second_order_loop_without_dead_time(k, a):
         assert loop.complementary_peak().frequency == pytest.approx(np.sqrt(k * (1 - 2 * zeta**2)), rel=1e-5)
 
 
-def test_first_order_loop_never_exceeds_one():
+def test_first_order_loop_never_exceeds_one() -> None:
     loop = Loop(Plant([1.0], [1.0, 0.0]), PI(k=0.8))
     assert loop.sensitivity_peak().value == pytest.approx(1.0, rel=1e-10)
     assert loop.complementary_peak().value == pytest.approx(1.0, rel=1e-12)
 
 
-def test_peak_at_steady_state():
+def test_peak_at_steady_state() -> None:
     # positive feedback: S(0) = 1/(1 - 0.6)
     peak = Loop(Plant([1.0], [1.0, 1.0], dead_time=0.3), PI(k=-0.6)).sensitivity_peak()
     assert peak.value == pytest.approx(2.5, rel=1e-12)
     assert peak.frequency == 0.0
 
 
-def test_root_plant():
+def test_root_plant() -> None:
     k, ki = ROOT_PI
 
-    def sensitivity(s):
+    def sensitivity(s: mp.mpc) -> mp.mpc:
         plant = np.exp(-np.sqrt(s)) if isinstance(s, np.ndarray) else mp.exp(-mp.sqrt(s))
         return 1 / (1 + plant * (k + ki / s))
 
@@ -118,7 +118,7 @@ def test_root_plant():
 
 
 @pytest.mark.parametrize("damping", [1e-2, 1e-4, 1e-6])
-def test_narrow_resonance_is_not_missed(damping):
+def test_narrow_resonance_is_not_missed(damping: float) -> None:
     # far below crossover the plant's resonance makes a needle in |S|^-1, its antiresonance one in |S|;
     # L = 0.1 (s^2 + 2 z s + 1)^-1 is so small elsewhere that the peak of T sits at the resonance
     loop = Loop(Plant([1.0], [1.0, 2 * damping, 1.0]), PI(k=0.1))
@@ -129,7 +129,7 @@ def test_narrow_resonance_is_not_missed(damping):
     assert peak.frequency == pytest.approx(w0 * np.sqrt(1 - 2 * zeta**2), rel=1e-9)
 
 
-def test_unstable_loop_has_no_peak():
+def test_unstable_loop_has_no_peak() -> None:
     from replicate.loops.errors import UnstableLoopError
 
     loop = PROBLEMS["unstable-loop"].loop

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from replicate.loops import PI, Loop, Plant
@@ -17,15 +18,18 @@ GAINS = [
 
 
 @pytest.mark.parametrize(("k", "ki"), GAINS)
-def test_a_peak_next_to_the_end_of_a_band_is_found(k, ki):
-    def modulus(w):
+def test_a_peak_next_to_the_end_of_a_band_is_found(k: float, ki: float) -> None:
+    def modulus(w: NDArray[np.float64]) -> NDArray[np.float64]:
         s = 1j * w
-        return np.abs(1.0 / (1.0 + (k + ki / s) * np.exp(-0.5 * s) / (1.0 + s)))
+        return np.asarray(np.abs(1.0 / (1.0 + (k + ki / s) * np.exp(-0.5 * s) / (1.0 + s))))
 
     w = np.linspace(0.01, 10.0, 100_001)
     at = int(np.argmax(modulus(w)))
     found = minimize_scalar(
-        lambda x: -modulus(x), bounds=(w[at - 1], w[at + 1]), method="bounded", options={"xatol": 1e-12}
+        lambda x: -float(modulus(np.array(x))),
+        bounds=(w[at - 1], w[at + 1]),
+        method="bounded",
+        options={"xatol": 1e-12},
     )
     peak = Loop(Plant([1.0], [1.0, 1.0], dead_time=0.5), PI(k=k, ki=ki)).sensitivity_peak()
     assert peak.value == pytest.approx(-found.fun, rel=1e-12)

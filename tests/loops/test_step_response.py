@@ -6,41 +6,54 @@ except where a comment names the reason.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import mpmath as mp
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from loops.closed_forms import pi_dead_time, root_plant, root_plant_first_wave, root_plant_pi
 from loops.problems import PROBLEMS, ROOT_PI, ROOT_POLES, root_plant_function
 from loops.references import bromwich, de_hoog
-from replicate.loops import PI, PID, ImproperLoopError, Loop, LoopError, Plant, UnstableLoopError, step_responses
+from replicate.loops import (
+    PI,
+    PID,
+    ImproperLoopError,
+    Loop,
+    LoopError,
+    Plant,
+    Signal,
+    UnstableLoopError,
+    step_responses,
+)
 
 SIGNALS = ("y", "u", "load_y", "load_u")
 
 
-def respond(loop, signal, until):
+def respond(loop: Loop, signal: str, until: float) -> Signal:
     experiment = {"setpoint": 0.0, "load": 1.0} if signal.startswith("load") else {}
     response = loop.respond(until=until, **experiment)
     return response.control if signal.endswith("u") else response.output
 
 
-def assert_close(values, expected, tolerance=1e-12):
+def assert_close(values: NDArray[np.float64], expected: Iterable[mp.mpf], tolerance: float = 1e-12) -> None:
     expected = np.array([float(value) for value in expected])
     assert np.abs(values - expected).max() <= tolerance * max(1.0, np.abs(expected).max())
 
 
 @pytest.mark.parametrize("signal", SIGNALS)
 @pytest.mark.parametrize("name", PROBLEMS)
-def test_responses(name, signal):
+def test_responses(name: str, signal: str) -> None:
     problem = PROBLEMS[name]
     response = respond(problem.loop, signal, 1.05 * max(problem.times))
     assert_close(response(np.array(problem.times)), [problem.reference(t, signal) for t in problem.times])
 
 
 @pytest.mark.parametrize("signal", SIGNALS)
-def test_root_plant(signal):
+def test_root_plant(signal: str) -> None:
     k, ki = ROOT_PI
     times = (0.3, 2.0, 30.0)
     loop = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki))
@@ -48,7 +61,7 @@ def test_root_plant(signal):
     assert_close(response(np.array(times)), [root_plant_pi(signal, k, ki, t, guesses=ROOT_POLES) for t in times])
 
 
-def test_root_plant_soon_after_the_step():
+def test_root_plant_soon_after_the_step() -> None:
     # what has gone around the loop once is e^{-2 sqrt(s)}, below erfc(1/sqrt(t)) = erfc(10): nothing
     k, ki = ROOT_PI
     y = Loop(Plant.from_function(root_plant_function), PI(k=k, ki=ki)).step(until=31.0)
@@ -57,9 +70,9 @@ def test_root_plant_soon_after_the_step():
 
 
 @pytest.mark.parametrize(("k", "ki"), [(10.0, 50.0), (20.0, 20.0)])
-def test_root_plant_near_its_limit_of_stability(k, ki):
+def test_root_plant_near_its_limit_of_stability(k: float, ki: float) -> None:
     # stable for k < e^pi = 23.1 under proportional control; the response rings
-    def closed_loop(s):
+    def closed_loop(s: mp.mpc) -> mp.mpc:
         loop = root_plant(s) * (k + ki / s)
         return loop / (1 + loop) / s
 
@@ -69,7 +82,7 @@ def test_root_plant_near_its_limit_of_stability(k, ki):
     assert_close(y(times), expected)
 
 
-def test_root_plant_with_dead_time():
+def test_root_plant_with_dead_time() -> None:
     # before 2 L nothing of the output has come back
     k, ki, dead_time = 0.8, 0.5, 1.5
     loop = Loop(Plant.from_function(root_plant_function, dead_time=dead_time), PI(k=k, ki=ki))
@@ -78,7 +91,7 @@ def test_root_plant_with_dead_time():
     assert_close(loop.step(until=2.9)(times), expected)
 
 
-def test_textbook_polynomials():
+def test_textbook_polynomials() -> None:
     # 2 e^{-s}/s under unit feedback: y = 0, 2 (t - 1), 2 (t - 1) - 2 (t - 2)^2 on [0, 1], [1, 2], [2, 3]
     y = Loop(Plant([2.0], [1.0, 0.0], dead_time=1.0), PI(k=1.0)).step(until=3.0)
     t = np.linspace(0.0, 3.0, 61)
@@ -86,7 +99,7 @@ def test_textbook_polynomials():
     assert np.abs(y(t) - expected).max() < 1e-14
 
 
-def test_jumps_take_the_value_from_the_right():
+def test_jumps_take_the_value_from_the_right() -> None:
     k, ki = 0.2, 0.4
     problem = PROBLEMS["dead-time"]
     y = problem.loop.step(until=8.0)
@@ -98,7 +111,7 @@ def test_jumps_take_the_value_from_the_right():
 
 @pytest.mark.parametrize("signal", ["y", "u"])
 @pytest.mark.parametrize("name", ["biproper", "neutral", "derivative-kick", "unstable-pid", "dead-time"])
-def test_both_sides_of_every_jump(name, signal):
+def test_both_sides_of_every_jump(name: str, signal: str) -> None:
     problem = PROBLEMS[name]
     response = respond(problem.loop, signal, 5.1 * problem.reference.dead_time)
     # the dead time 0.2 is not a binary fraction: n L is rounded, but 1e-9 beside it there is no doubt
@@ -108,7 +121,7 @@ def test_both_sides_of_every_jump(name, signal):
         assert_close(response(times), [problem.reference(x, signal) for x in times])
 
 
-def test_long_horizon_keeps_its_accuracy():
+def test_long_horizon_keeps_its_accuracy() -> None:
     # a slowly decaying oscillation close to the limit of stability, many dead times after the step
     problem = PROBLEMS["foptd-0.2"]
     k = 7.0
@@ -118,37 +131,37 @@ def test_long_horizon_keeps_its_accuracy():
     assert_close(loop.step(until=12.0)(np.array(times)), [reference(t) for t in times], 1e-11)
 
 
-def test_ramp_of_an_unstable_loop_is_computed_when_asked_for():
+def test_ramp_of_an_unstable_loop_is_computed_when_asked_for() -> None:
     loop = PROBLEMS["unstable-loop"].loop
     assert loop.step(until=5.0)(np.array(2.5)) == pytest.approx(2.5, rel=1e-13)
     with pytest.raises(UnstableLoopError):
         loop.step()
 
 
-def test_default_horizon_reaches_rest():
+def test_default_horizon_reaches_rest() -> None:
     for name in ("foptd-1", "foptd-50", "integrating", "neutral", "oscillating"):
         y = PROBLEMS[name].loop.step()
         assert abs(y(y.horizon) - 1.0) < 1e-11
 
 
-def test_beyond_the_horizon_is_an_error():
+def test_beyond_the_horizon_is_an_error() -> None:
     y = PROBLEMS["foptd-1"].loop.step(until=5.0)
     with pytest.raises(LoopError, match="horizon"):
         y(5.1)
 
 
-def test_before_the_step_everything_is_at_rest():
+def test_before_the_step_everything_is_at_rest() -> None:
     assert PROBLEMS["dead-time"].loop.step(until=2.0)(np.array([-1.0, -1e-9, 0.0, 0.999])).tolist() == [0, 0, 0, 0]
 
 
-def test_pure_differentiators_are_refused():
+def test_pure_differentiators_are_refused() -> None:
     with pytest.raises(ImproperLoopError):
         Loop(Plant([1.0, 1.0], [1.0, 2.0], dead_time=1.0), PID(k=1.0, ki=0.1, kd=0.1))
     with pytest.raises(LoopError):
         Plant([1.0, 0.0, 0.0], [1.0, 1.0])
 
 
-def test_sweep_equals_single_loops():
+def test_sweep_equals_single_loops() -> None:
     problem = PROBLEMS["foptd-0.2"]
     controllers = [PI(k=k, ki=ki, b=b) for k, ki, b in ((2.5, 2.5, 0.5), (1.0, 0.3, 1.0), (0.0, 0.2, 1.0))]
     swept = step_responses(problem.plant, controllers, 4.0)
@@ -157,7 +170,7 @@ def test_sweep_equals_single_loops():
         assert np.abs(y(t) - Loop(problem.plant, controller).step(until=4.0)(t)).max() < 1e-13
 
 
-def test_set_point_and_later_load_step_superpose():
+def test_set_point_and_later_load_step_superpose() -> None:
     problem = PROBLEMS["foptd-1"]
     both = problem.loop.respond(setpoint=2.0, load=-0.5, load_at=7.25, until=15.0)
     t = np.array([3.3, 7.9, 8.4, 13.8])
@@ -173,7 +186,7 @@ plants = st.sampled_from(["foptd-0.2", "foptd-1", "integrating", "lag-8-dead-tim
 gains = st.floats(0.1, 1.0)
 
 
-def changed(name, *, scale=1.0, gain=1.0, **gains):
+def changed(name: str, *, scale: float = 1.0, gain: float = 1.0, **gains: float) -> Loop:
     """The problem's loop, time stretched by ``scale``, plant gain by ``gain``, with other controller gains."""
     r = PROBLEMS[name].reference
     c = {"k": r.k, "ki": r.ki, "kd": r.kd, "b": r.b} | gains
@@ -195,7 +208,7 @@ def changed(name, *, scale=1.0, gain=1.0, **gains):
 
 
 @given(plants, st.floats(-1.0, 2.0))
-def test_linear_in_the_set_point_weight(name, b):
+def test_linear_in_the_set_point_weight(name: str, b: float) -> None:
     until = 1.05 * max(PROBLEMS[name].times)
     t = np.linspace(0.0, until, 37)
     zero, one, y = (changed(name, b=weight).step(until=until)(t) for weight in (0.0, 1.0, b))
@@ -203,7 +216,7 @@ def test_linear_in_the_set_point_weight(name, b):
 
 
 @given(plants, st.floats(0.01, 100.0))
-def test_time_scaling(name, scale):
+def test_time_scaling(name: str, scale: float) -> None:
     until = 1.05 * max(PROBLEMS[name].times)
     # not at the ends of intervals, where jumps of u fall on one or the other side by rounding
     t = (np.arange(29) + 0.437) / 29.5 * until
@@ -216,7 +229,7 @@ def test_time_scaling(name, scale):
 
 
 @given(plants, st.floats(0.01, 100.0))
-def test_gain_scaling(name, gain):
+def test_gain_scaling(name: str, gain: float) -> None:
     until = 1.05 * max(PROBLEMS[name].times)
     t = (np.arange(29) + 0.437) / 29.5 * until
     for signal, factor in (("y", 1.0), ("u", 1 / gain), ("load_y", gain), ("load_u", 1.0)):
@@ -226,7 +239,9 @@ def test_gain_scaling(name, gain):
 
 
 @given(st.floats(0.05, 5.0), st.floats(0.1, 0.9), st.floats(0.05, 0.9), st.floats(0.1, 4.9))
-def test_random_first_order_loops_against_the_series(dead_time, k_share, ki_share, interval):
+def test_random_first_order_loops_against_the_series(
+    dead_time: float, k_share: float, ki_share: float, interval: float
+) -> None:
     # k and ki well inside the stable region: k < 1 + T/L and ki < k/T
     k = k_share * (1 + 1 / dead_time)
     ki = ki_share * k / (1 + dead_time)

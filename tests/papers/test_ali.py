@@ -1,15 +1,21 @@
 """Ali and Majhi against sympy, mpmath, python-control and closed forms, which share no code with it."""
 
+from __future__ import annotations
+
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import Any, Literal
 
 import control
 import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from numpy.typing import NDArray
 
+from replicate.exhibits import Table
 from replicate.loops import Loop
 from replicate.papers.ali import iste, paper, tuning
 from replicate.papers.ali.equations import Point, equation_5, equation_9
@@ -32,25 +38,25 @@ ROWS = [Fraction(k, 10) for k in range(1, 11)]
 
 
 @pytest.fixture(scope="module")
-def exhibits():
-    return paper.load().exhibits
+def exhibits() -> dict[str, Table]:
+    return {id: exhibit for id, exhibit in paper.load().exhibits.items() if isinstance(exhibit, Table)}
 
 
 # ------------------------------------------------------------------------------------------- derivation, (3) to (10)
 
 
-def design_loop():
+def design_loop() -> sp.Expr:
     """(3) from its parts: series controller without filter, plant, 1/1 Padé delay, Td = theta/2."""
     controller = G * (1 + 1 / (S * TI)) * (1 + S * THETA / 2)
     return controller / (T * S - 1) * (1 - THETA * S / 2) / (1 + THETA * S / 2)
 
 
-def squared_condition():
+def squared_condition() -> sp.Expr:
     """y^2 |numerator of S|^2 = |denominator of S|^2 as a polynomial in W = w^2, from the loop itself."""
     w = sp.symbols("w", positive=True)
     numerator, denominator = sp.fraction(sp.together(1 / (1 + sp.cancel(design_loop()))))
 
-    def squared(expression):
+    def squared(expression: sp.Expr) -> sp.Expr:
         value = sp.expand(expression.subs(S, sp.I * w))
         return sp.expand(sp.re(value) ** 2 + sp.im(value) ** 2).subs(w, sp.sqrt(W2))
 
@@ -58,42 +64,39 @@ def squared_condition():
     return sp.expand(sp.cancel(polynomial / (W2 if polynomial.subs(W2, 0) == 0 else 1)))
 
 
-def as_function_of_symbols(function):
-    """Evaluate one of the package's formulas with symbols in place of fractions."""
-    return function(Point(T, THETA, G, TI, Y, W2))
+#: The package's formulas take it like a point of fractions.
+SYMBOLS = Point(T, THETA, G, TI, Y, W2)
 
 
-def test_3_cancels_the_pade_pole():
+def test_3_cancels_the_pade_pole() -> None:
     printed = G * (1 - THETA * S / 2) * (1 + S * TI) / (S * TI * (T * S - 1))
     assert sp.simplify(design_loop() - printed) == 0
 
 
-def test_5_holds_with_the_bracket_closed_two_terms_later_and_only_so():
+def test_5_holds_with_the_bracket_closed_two_terms_later_and_only_so() -> None:
     condition = squared_condition()
-    restored, scanned = (
-        sp.expand(as_function_of_symbols(lambda p, r=r: equation_5(p, p.w2, restored=r))) for r in (True, False)
-    )
+    restored, scanned = (sp.expand(equation_5(SYMBOLS, W2, restored=r)) for r in (True, False))
     factor = sp.simplify(condition / restored)
     assert factor.free_symbols <= {T, THETA, G, TI}  # (5) up to a constant factor
     assert sp.simplify(restored - scanned) != 0
 
 
-def test_9_times_9_with_the_other_sign_of_q_is_the_discriminant_of_5():
-    quadratic = sp.Poly(as_function_of_symbols(lambda p: equation_5(p, p.w2)), W2)
-    nines = [as_function_of_symbols(lambda p, q=q: equation_9(p, q)) for q in (Q, -Q)]
+def test_9_times_9_with_the_other_sign_of_q_is_the_discriminant_of_5() -> None:
+    quadratic = sp.Poly(equation_5(SYMBOLS, W2), W2)
+    nines = [equation_9(SYMBOLS, q) for q in (Q, -Q)]
     product = sp.expand(nines[0] * nines[1]).subs(Q**2, B**2 - Y**2 * T**2)  # (7)
     assert sp.simplify(quadratic.discriminant() - product) == 0
 
 
-def test_repeated_root_of_5_is_a_frequency_only_for_negative_q():
+def test_repeated_root_of_5_is_a_frequency_only_for_negative_q() -> None:
     # (5) = (Ti q w^2 + KKp)^2 + w^2 (9): where (9) holds, the root is w^2 = -KKp/(Ti q).
-    five = as_function_of_symbols(lambda p: equation_5(p, p.w2))
-    nine = as_function_of_symbols(lambda p: equation_9(p, Q))
+    five = equation_5(SYMBOLS, W2)
+    nine = equation_9(SYMBOLS, Q)
     difference = sp.expand(five - (TI * Q * W2 + G) ** 2 - W2 * nine)
     assert sp.simplify(difference.subs(Y, sp.sqrt(B**2 - Q**2) / T)) == 0
 
 
-def test_10_is_the_routh_condition_for_large_enough_integral_time():
+def test_10_is_the_routh_condition_for_large_enough_integral_time() -> None:
     polynomial = sp.Poly(sp.numer(sp.together(1 + sp.cancel(design_loop()))), S)
     second, first, constant = polynomial.all_coeffs()
     ratio = second / constant  # one sign for all coefficients
@@ -101,7 +104,7 @@ def test_10_is_the_routh_condition_for_large_enough_integral_time():
     assert sp.simplify(first / constant - (G * (TI - THETA / 2) - TI) / G) == 0  # KKp > Ti/(Ti - theta/2)
 
 
-def test_exhibit_counts_what_fails(exhibits):
+def test_exhibit_counts_what_fails(exhibits: dict[str, Table]) -> None:
     readings = exhibits["eq-3-10"].readings
     as_written, restored = (readings[id].compute()["failures"].to_dict() for id in ("as-written", "restored"))
     assert [row for row, failures in as_written.items() if failures] == ["5", "10"]
@@ -111,7 +114,7 @@ def test_exhibit_counts_what_fails(exhibits):
 # ------------------------------------------------------------------------------------------------------------- search
 
 
-def reference_search(x):
+def reference_search(x: Fraction) -> tuple[Fraction, mp.mpf, mp.mpf, mp.mpf]:
     """Ms*, |q| and the larger root of (9) for both signs of q, with 40 digits and the tie decided by sympy."""
     with mp.workdps(40):
         theta = sp.Rational(x.numerator, x.denominator)
@@ -136,7 +139,7 @@ def reference_search(x):
 
 
 @pytest.mark.parametrize("x", ROWS, ids=str)
-def test_search_and_both_roots(x):
+def test_search_and_both_roots(x: Fraction) -> None:
     specified, q, printed, tangency = reference_search(x)
     assert tuning.specified_sensitivity(x) == specified
     assert tuning.q(x, specified) == pytest.approx(float(q), rel=1e-13)
@@ -144,7 +147,7 @@ def test_search_and_both_roots(x):
     assert tuning.integral_time(x, "tangency") == pytest.approx(float(tangency), rel=1e-13)
 
 
-def test_row_0_5_is_a_tie_decided_exactly():
+def test_row_0_5_is_a_tie_decided_exactly() -> None:
     x = Fraction(1, 2)
     assert tuning.specified_sensitivity(x) == 2
     assert tuning.q(x, Fraction(2)) == 0.0
@@ -155,7 +158,7 @@ def test_row_0_5_is_a_tie_decided_exactly():
     assert tuning.specified_sensitivity(x + tiny) == Fraction(21, 10)
 
 
-def test_specifications_out_of_reach_are_refused():
+def test_specifications_out_of_reach_are_refused() -> None:
     with pytest.raises(ValueError, match="between 0 and 2"):
         tuning.specified_sensitivity(Fraction(2))
     with pytest.raises(ValueError, match="imaginary"):
@@ -165,7 +168,7 @@ def test_specifications_out_of_reach_are_refused():
 # -------------------------------------------------------------------------------------------------- structures and Ms
 
 
-def transfer(structure, k, s):
+def transfer(structure: str, k: Settings, s: Any) -> Any:
     """The controller's textbook formula, for mpmath numbers as for floats."""
     lag = 1 + s * ALPHA * k.Td
     return {
@@ -177,7 +180,7 @@ def transfer(structure, k, s):
 
 
 @pytest.mark.parametrize("structure", STRUCTURES)
-def test_structures_are_their_textbook_formulas(structure):
+def test_structures_are_their_textbook_formulas(structure: str) -> None:
     settings = Settings(2.018, 11.15, 0.3427)
     pid = STRUCTURES[structure](settings)
     for s in (0.3 + 2.0j, 5.0j, 40.0 + 1.0j):
@@ -190,13 +193,13 @@ def test_structures_are_their_textbook_formulas(structure):
 
 @pytest.mark.parametrize("row", ["0.1", "0.5", "0.9"])
 @pytest.mark.parametrize("reading", ["as-written", "filter-on-d"])
-def test_exact_sensitivity_peaks(exhibits, row, reading):
+def test_exact_sensitivity_peaks(exhibits: dict[str, Table], row: str, reading: str) -> None:
     x = Fraction(row)
     settings = Settings(math.sqrt(2 / x), tuning.integral_time(x), float(x / 2))
     structure = "series" if reading == "as-written" else "d-filter"
     with mp.workdps(30):
 
-        def distance2(w):
+        def distance2(w: mp.mpf) -> mp.mpf:
             s = mp.mpc(0, w)
             value = 1 + transfer(structure, settings, s) * mp.exp(-s * mp.mpf(x.numerator) / x.denominator) / (s - 1)
             return abs(value) ** 2
@@ -209,7 +212,7 @@ def test_exact_sensitivity_peaks(exhibits, row, reading):
     assert computed == pytest.approx(expected, rel=1e-11)
 
 
-def test_pade_peak_agrees_with_python_control_on_a_grid():
+def test_pade_peak_agrees_with_python_control_on_a_grid() -> None:
     settings, theta = Settings(1.52, 7.68, 0.35), 0.7
     s = control.tf("s")
     lag = 1 + ALPHA * settings.Td * s
@@ -220,7 +223,7 @@ def test_pade_peak_agrees_with_python_control_on_a_grid():
     assert pade_sensitivity_peak(theta, d_filter(settings), 3) == pytest.approx(expected, rel=1e-9)
 
 
-def test_norm_estimate_is_a_lower_bound_within_its_tolerance():
+def test_norm_estimate_is_a_lower_bound_within_its_tolerance() -> None:
     for theta in (0.1, 0.3, 0.6, 0.9):
         x = Fraction(round(10 * theta), 10)
         controller = d_filter(Settings(math.sqrt(2 / x), tuning.integral_time(x), theta / 2))
@@ -230,13 +233,13 @@ def test_norm_estimate_is_a_lower_bound_within_its_tolerance():
             assert estimate <= peak * (1 + 1e-9) <= estimate * (1 + tolerance) * (1 + 1e-9)
 
 
-def test_norm_estimate_of_a_resonance_is_its_closed_form():
+def test_norm_estimate_of_a_resonance_is_its_closed_form() -> None:
     for zeta in (0.05, 0.3, 0.6):
         estimate = norm_estimate(np.array([1.0]), np.array([1.0, 2 * zeta, 1.0]))
         assert estimate == pytest.approx(1 / (2 * zeta * math.sqrt(1 - zeta**2)), rel=1e-12)
 
 
-def test_reconstruction_meets_every_printed_sensitivity_two_of_them_by_truncation(exhibits):
+def test_reconstruction_meets_every_printed_sensitivity_two_of_them_by_truncation(exhibits: dict[str, Table]) -> None:
     truncated = []
     for id in ("table-1", "table-2"):
         computed = exhibits[id].readings["authors"].compute()["Ms"].to_dict()
@@ -251,7 +254,9 @@ def test_reconstruction_meets_every_printed_sensitivity_two_of_them_by_truncatio
 
 
 @pytest.mark.parametrize("x", ROWS, ids=str)
-def test_design_loop_meets_the_specification_only_with_the_other_sign_of_q(exhibits, x):
+def test_design_loop_meets_the_specification_only_with_the_other_sign_of_q(
+    exhibits: dict[str, Table], x: Fraction
+) -> None:
     row = exhibits["tangency"].readings["as-written"].compute().loc[str(float(x))]
     theta, gain = float(x), math.sqrt(2 / x)
     w = np.geomspace(1e-2, 1e5, 40001)
@@ -266,7 +271,7 @@ def test_design_loop_meets_the_specification_only_with_the_other_sign_of_q(exhib
     assert row["Ms"] <= row["Ms_tangency"]
 
 
-def test_cubic_is_the_least_squares_fit_to_the_printed_data(exhibits):
+def test_cubic_is_the_least_squares_fit_to_the_printed_data(exhibits: dict[str, Table]) -> None:
     texts = {**paper.printed_cells("table-2"), **paper.printed_cells("table-1")}
     data = {Fraction(row): Fraction(text) for (row, column), text in texts.items() if column == "Ti"}
     assert len(data) == 10
@@ -281,13 +286,14 @@ def test_cubic_is_the_least_squares_fit_to_the_printed_data(exhibits):
         assert f"{float(value):.{len(text.split('.')[1])}f}" == text
 
 
-def characteristic(structure, settings, theta):
+def characteristic(structure: str, settings: Settings, theta: mp.mpf) -> Callable[[mp.mpc], mp.mpc]:
     return lambda s: 1 + transfer(structure, settings, s) * mp.exp(-s * theta) / (s - 1)
 
 
 @pytest.mark.parametrize("id", ["table-1-0.1", "table-1-0.6", "table-1-0.9", "table-2-1.0", "eq-11-0.5"])
-def test_rightmost_poles_and_gain_intervals(exhibits, id):
-    row = exhibits["stability"].readings["as-written"].compute().loc[id]
+def test_rightmost_poles_and_gain_intervals(exhibits: dict[str, Table], id: str) -> None:
+    frame = exhibits["stability"].readings["as-written"].compute()
+    row = {str(column): float(frame[column][id]) for column in frame.columns}
     x = Fraction(id.rsplit("-", 1)[1])
     theta = float(x)
     a3, a2, a1, a0 = (float(text) for text in paper.printed_cells("eq-11").values())
@@ -306,7 +312,7 @@ def test_rightmost_poles_and_gain_intervals(exhibits, id):
         assert (encirclements(Settings(gain, ti, theta / 2), theta) == 1) is stable
 
 
-def encirclements(settings, theta):
+def encirclements(settings: Settings, theta: float) -> int:
     """Counter-clockwise turns of 1 + L along the imaginary axis, indented to the right of the integrator's pole."""
     w = np.geomspace(1e-5, 1e4, 400001)
     s = 1j * w
@@ -321,15 +327,15 @@ def encirclements(settings, theta):
 # ----------------------------------------------------------------------------------------------------------- examples
 
 
-def delayed_terms(structure, settings, theta, load, times):
+def delayed_terms(structure: str, settings: Settings, theta: float, load: bool, times: Sequence[float]) -> list[float]:
     """The output as a finite sum over round trips through the dead time, each term a rational transform.
 
     y = sum over n of (-1)^n (G0 C)^(n+1) e^(-(n+1) theta s)/s, for the load (-1)^n G0 (G0 C)^n e^(-(n+1) theta s)/s.
     Up to time t the terms with (n + 1) theta < t count, and each is inverted without dead time (Talbot's contour).
     """
 
-    def term(n, t):
-        def transform(s):
+    def term(n: int, t: mp.mpf) -> mp.mpf:
+        def transform(s: mp.mpc) -> mp.mpc:
             round_trip = transfer(structure, settings, s) / (s - 1)
             return round_trip**n * (1 / (s - 1) if load else round_trip) / s
 
@@ -351,14 +357,16 @@ def delayed_terms(structure, settings, theta, load, times):
         (0.2, "ideal", example_2()["visioli-load"], (0.5, 2.3)),
     ],
 )
-def test_responses_agree_with_the_sum_over_round_trips(theta, structure, settings, times):
+def test_responses_agree_with_the_sum_over_round_trips(
+    theta: float, structure: str, settings: Settings, times: Sequence[float]
+) -> None:
     loop = Loop(plant(theta), STRUCTURES[structure](settings))
     for load, signal in ((False, loop.step(until=max(times))), (True, loop.load_step(until=max(times)))):
         expected = delayed_terms(structure, settings, theta, load, times)
         assert signal(np.array(times)) == pytest.approx(expected, rel=1e-11)
 
 
-def test_first_dead_time_of_the_control_signal_is_its_closed_form(exhibits):
+def test_first_dead_time_of_the_control_signal_is_its_closed_form(exhibits: dict[str, Table]) -> None:
     # Until the output moves, u is the controller's own step response; (2) starts at Kp/alpha.
     settings, theta = example_1()["padma-sree"], 0.7
     u = Loop(plant(theta), series(settings)).respond(until=2 * theta).control
@@ -372,7 +380,7 @@ def test_first_dead_time_of_the_control_signal_is_its_closed_form(exhibits):
     assert row["u0"] == pytest.approx(settings.Kp / ALPHA, rel=1e-12)
 
 
-def test_loads_are_cancelled_with_ie_equal_to_ti_over_kp(exhibits):
+def test_loads_are_cancelled_with_ie_equal_to_ti_over_kp(exhibits: dict[str, Table]) -> None:
     # A load response that does not change sign has IAE = IE = Ti/Kp; one that does has more.
     for id, row in (("example-1", "proposed"), ("example-2", "proposed")):
         settings = (example_1() if id == "example-1" else example_2())[row]
@@ -380,7 +388,7 @@ def test_loads_are_cancelled_with_ie_equal_to_ti_over_kp(exhibits):
         assert settings.Ti / settings.Kp <= found["load_iae"] <= 1.1 * settings.Ti / settings.Kp
 
 
-def test_visioli_load_setting_is_unstable_in_2_and_stable_in_parallel_form(exhibits):
+def test_visioli_load_setting_is_unstable_in_2_and_stable_in_parallel_form(exhibits: dict[str, Table]) -> None:
     for reading, sign in (("as-written", 1), ("filter-on-d", 1), ("ideal", -1)):
         row = exhibits["example-2"].readings[reading].compute()["visioli-load"]
         assert math.copysign(1, row["pole_re"]) == sign
@@ -394,11 +402,11 @@ def test_visioli_load_setting_is_unstable_in_2_and_stable_in_parallel_form(exhib
 
 
 @pytest.mark.parametrize(("form", "kind"), [("series", "setpoint"), ("series", "load"), ("parallel", "load")])
-def test_iste_by_parseval(form, kind):
+def test_iste_by_parseval(form: str, kind: Literal["setpoint", "load"]) -> None:
     # the transform of t e(t) is -dE/ds, so the ISTE is the integral of |dE/dw|^2 over all w, over 2 pi
     settings, theta = Settings(4.0, 0.9, 0.11), 0.2
 
-    def error(w):
+    def error(w: NDArray[np.float64]) -> NDArray[np.complex128]:
         s = 1j * w
         delay = np.exp(-theta * s)
         if form == "series":
@@ -406,7 +414,7 @@ def test_iste_by_parseval(form, kind):
         else:
             controller = 1 + 1 / (s * settings.Ti) + s * settings.Td
         loop = settings.Kp * controller * delay / (s - 1)
-        return (1 if kind == "setpoint" else delay / (s - 1)) / s / (1 + loop)
+        return np.asarray((1 if kind == "setpoint" else delay / (s - 1)) / s / (1 + loop))
 
     w, step = np.linspace(1e-3, 400.0, 400_001), 1e-5
     slope = (error(w + step) - error(w - step)) / (2 * step)
@@ -415,7 +423,7 @@ def test_iste_by_parseval(form, kind):
 
 
 @pytest.mark.parametrize("kind", ["setpoint", "load"])
-def test_settings_of_smallest_iste_cannot_be_bettered_nearby(kind):
+def test_settings_of_smallest_iste_cannot_be_bettered_nearby(kind: Literal["setpoint", "load"]) -> None:
     found = iste.best("parallel", kind)
     lowest = iste.iste(Loop(plant(0.2), iste.parallel(found)), kind)
     for name in ("Kp", "Ti", "Td"):
@@ -424,7 +432,7 @@ def test_settings_of_smallest_iste_cannot_be_bettered_nearby(kind):
             assert iste.iste(Loop(plant(0.2), iste.parallel(moved)), kind) > lowest
 
 
-def test_total_variation_counts_moves_and_jumps():
+def test_total_variation_counts_moves_and_jumps() -> None:
     # An undamped loop's sine: k = 1 around 1/(s^2 + 1) has u = cos(sqrt(2) t)/2 + 1/2 after a unit step.
     from replicate.loops import PI, Plant
 

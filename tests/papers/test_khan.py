@@ -48,7 +48,7 @@ def exact_p_control(ph: float, kh: float, t: float) -> float:
 
 
 @pytest.mark.parametrize(("ph", "kh"), [(0.0, 0.9), (0.5, 1.2), (3.0, 3.5), (10.0, 8.0)])
-def test_overshoot_is_that_of_the_closed_form(ph, kh):
+def test_overshoot_is_that_of_the_closed_form(ph: float, kh: float) -> None:
     found = sweep.sweep(ph, np.array([kh])).overshoot[0]
     final = kh / (kh + ph)
     with mp.workdps(30):
@@ -63,30 +63,30 @@ def test_overshoot_is_that_of_the_closed_form(ph, kh):
 
 
 @pytest.mark.parametrize("ph", [0.0, 0.3, 1.0, 4.0, 10.0])
-def test_rightmost_pole_reaches_the_axis_at_the_stability_limit(ph):
+def test_rightmost_pole_reaches_the_axis_at_the_stability_limit(ph: float) -> None:
     limit = sweep.stability_limit(ph)
     pole = -ph + complex(lambertw(-limit * np.exp(ph), 0))
     assert abs(pole.real) < 1e-9
 
 
 @pytest.mark.parametrize("ph", [0.0, 0.5, 2.0])
-def test_breakpoint_is_the_branch_point_of_lambert_w(ph):
+def test_breakpoint_is_the_branch_point_of_lambert_w(ph: float) -> None:
     assert break_point.double_pole(ph) == pytest.approx(float(mp.e ** (-1 - ph)), rel=1e-7)
 
 
-def test_printed_coefficients_of_example_2_1():
+def test_printed_coefficients_of_example_2_1() -> None:
     # the paper's own intermediate values, from p = 1.667, h = 1.82
     a1, b1 = fits.case_4_parts(1.667 * 1.82)
     assert (round(a1, 4), round(b1, 3)) == (-3.7945, 30.843)
 
 
-def test_cases_cover_what_they_say():
+def test_cases_cover_what_they_say() -> None:
     assert [fits.case_of(0.5, 0.7), fits.case_of(0.5, 0.71), fits.case_of(0.5, 1.6)] == ["I", "II", None]
     assert [fits.case_of(3.0, 1.0), fits.case_of(3.01, 1.0), fits.case_of(10.1, 1.0)] == ["III", "IV", None]
     assert fits.overshoot_fit(0.0, 0.2) == 0.0  # M is complex there
 
 
-def test_fit_by_hand():
+def test_fit_by_hand() -> None:
     # case III at ph = 1, Kh = 1, written out from the page
     a = -0.5967 + 0.07306 - 59.467 * np.exp(-1 / 1.0871)
     b = 22.9 - 1.346 + 73.31 * np.exp(-1 / 1.67)
@@ -95,7 +95,7 @@ def test_fit_by_hand():
     assert fits.overshoot_fit(1.0, 1.0) == pytest.approx(a + b + c * np.exp(d), rel=1e-14)
 
 
-def test_other_cases_by_hand():
+def test_other_cases_by_hand() -> None:
     # one point of each, written out from the page
     case_1 = (
         -0.5 + (38.943 + 78.182 * np.exp(-0.25 / 0.60834)) * (0.6 - 0.00938 - 0.3706 * np.exp(-0.25 / 1.10974)) ** 1.5
@@ -116,7 +116,7 @@ def test_other_cases_by_hand():
 
 
 @pytest.mark.parametrize("zeta", [0.05, 0.3, 0.6, 0.9, 0.999])
-def test_gain_for_a_damping_ratio_is_that_of_lambert_w(zeta):
+def test_gain_for_a_damping_ratio_is_that_of_lambert_w(zeta: float) -> None:
     pole = complex(lambertw(-bryant.gain_for_damping(zeta), 0))
     assert -pole.real / abs(pole) == pytest.approx(zeta, rel=1e-9)
     # the Pade model's characteristic polynomial, by numpy
@@ -125,18 +125,18 @@ def test_gain_for_a_damping_ratio_is_that_of_lambert_w(zeta):
     assert -root.real / abs(root) == pytest.approx(zeta, rel=1e-9)
 
 
-def test_appendix_fits_follow_the_optimum():
+def test_appendix_fits_follow_the_optimum() -> None:
     # case II and J_opt at points between those of the fit, case I against numpy's own straight line
     a, b, c = (appendix_coefficients.equal_steps()["value"][f"KP_II_{letter}"] for letter in "abc")
-    for p in (1.0, 3.3, 14.1):
-        assert a + b * p + c * np.sqrt(p) == pytest.approx(appendix.optimum(p)[0], rel=0.02)
+    for ph in (1.0, 3.3, 14.1):
+        assert a + b * ph + c * np.sqrt(ph) == pytest.approx(appendix.optimum(ph)[0], rel=0.02)
     p = np.linspace(0.01, 0.2, appendix_coefficients.POINTS)
     line = np.polynomial.Polynomial.fit(p, [appendix.optimum(x)[1] for x in p.tolist()], 1).convert().coef
     found = [appendix_coefficients.equal_steps()["value"][f"KI_I_{letter}"] for letter in "ab"]
     assert found == pytest.approx(line, rel=1e-4)
 
 
-def test_restored_7a_meets_7b():
+def test_restored_7a_meets_7b() -> None:
     left = processes.case_gains("7a", 0.2, 1.0, processes.RESTORED)
     right = processes.case_gains("7b", 0.2, 1.0)
     assert np.allclose(left, right, rtol=1e-3)
@@ -149,14 +149,14 @@ def test_restored_7a_meets_7b():
     ("Bryant", 0.368 / 0.5, 2 * 0.368 / 0.5),
     ("ZN", 0.9 / 0.5, 0.9 / 0.5 / 1.5),
 ])  # fmt: skip
-def test_rules_in_parallel_form(rule, kp, ki):
+def test_rules_in_parallel_form(rule: str, kp: float, ki: float) -> None:
     # p = 2, h = 0.5: K = tau = 1/2
     assert processes.gains(rule, 2.0, 0.5) == pytest.approx((kp, ki))
 
 
 @pytest.mark.parametrize(("p", "kp", "ki"), [(1.0, 0.8, 0.5), (5.0, 2.0, 2.5)])
-def test_corrected_ise_is_parsevals_integral(p, kp, ki):
-    def integrand(w: float) -> float:
+def test_corrected_ise_is_parsevals_integral(p: float, kp: float, ki: float) -> None:
+    def integrand(w: mp.mpf) -> mp.mpf:
         s = mp.mpc(0, w)
         loop = (kp + ki / s) * mp.exp(-s) / (s + p)
         return abs(1 / (1 + loop) / s) ** 2
@@ -169,14 +169,14 @@ def test_corrected_ise_is_parsevals_integral(p, kp, ki):
     assert appendix.closed_form(p, kp, ki, sign=1.0) > 1.3 * float(value)
 
 
-def test_the_optimum_is_stationary():
+def test_the_optimum_is_stationary() -> None:
     kp, ki, best = appendix.optimum(2.0)
     for dk, di in ((1e-4, 0.0), (-1e-4, 0.0), (0.0, 1e-4), (0.0, -1e-4)):
         assert appendix.closed_form(2.0, kp + dk, ki + di) > best
 
 
 @pytest.mark.parametrize(("ph", "kh"), [(0.0, 1.2), (0.3, 0.9), (1.0, 0.5), (4.0, 0.6), (10.0, 5.0)])
-def test_first_peak_in_closed_form(ph, kh):
+def test_first_peak_in_closed_form(ph: float, kh: float) -> None:
     # the paper's own definition on the closed-form response: where its slope first vanishes, found by bisection
     with mp.workdps(30):
 
@@ -195,7 +195,7 @@ def test_first_peak_in_closed_form(ph, kh):
 
 
 @pytest.mark.parametrize(("ph", "kh"), [(0.0, 1.2), (0.5, 0.8), (2.5, 0.05), (10.0, 5.0)])
-def test_rise_time_in_closed_form(ph, kh):
+def test_rise_time_in_closed_form(ph: float, kh: float) -> None:
     final = kh / (kh + ph)
 
     def reach(level: float) -> float:
@@ -211,14 +211,14 @@ def test_rise_time_in_closed_form(ph, kh):
     assert sweep.sweep(ph, np.array([kh])).rise_time[0] == pytest.approx(expected, rel=1e-10)
 
 
-def test_closed_forms_say_where_they_end():
+def test_closed_forms_say_where_they_end() -> None:
     # just below Kh = e^-ph the peak comes after the second dead time; 90 % is then not reached before the feedback
     assert not closed_form.has_first_peak(1.0, 0.99 * np.exp(-1.0))
     assert closed_form.has_rise_time(np.log(10.0) + 1e-9, 1e-12)
     assert not closed_form.has_rise_time(np.log(10.0) - 0.01, 1e-12)
 
 
-def test_batches_agree_with_single_responses():
+def test_batches_agree_with_single_responses() -> None:
     # Signal finds peaks and crossings one response at a time, by the colleague matrix
     for ph, kh in ((0.0, 0.45), (0.7, 1.9), (3.0, 3.8), (7.0, 7.45)):
         y = Loop(Plant([1.0], [1.0, ph], dead_time=1.0), PI(kh)).step(until=60.0)
@@ -228,7 +228,7 @@ def test_batches_agree_with_single_responses():
         assert found.first_peak[1] == pytest.approx(100.0 * (float(y.extrema()[0]) / y.final - 1.0), rel=1e-11)
 
 
-def test_dense_grid_is_what_the_quality_tables_say():
+def test_dense_grid_is_what_the_quality_tables_say() -> None:
     loops = sweep.dense()
     assert loops.ph.size >= 10_000
     assert (loops.kh < np.hypot(loops.ph, np.pi)).all()  # Kh^2 = ph^2 + w^2 with w < pi at the limit
@@ -237,12 +237,12 @@ def test_dense_grid_is_what_the_quality_tables_say():
     assert loops.ph[higher].min() >= 2.5
 
 
-def test_unstable_gains_are_refused_by_name():
+def test_unstable_gains_are_refused_by_name() -> None:
     with pytest.raises(ValueError, match=r"ph = 1: stable gains are 0 < Kh < 2\.26183, not 1 to 3"):
         sweep.sweep(1.0, np.array([1.0, 3.0]))
 
 
-def test_smooth_formula_against_the_exact_overshoot():
+def test_smooth_formula_against_the_exact_overshoot() -> None:
     # published coefficients, at loops between those of the grid it is fitted to
     coefficients = refit.smooth_coefficients()
     for ph in (0.0, 0.0125, 0.33, 0.777, 1.61, 2.93, 6.1, 9.9):
@@ -252,14 +252,14 @@ def test_smooth_formula_against_the_exact_overshoot():
         assert (values >= 0.0).all()
 
 
-def test_refits_are_better_than_the_print_in_what_they_minimise():
+def test_refits_are_better_than_the_print_in_what_they_minimise() -> None:
     for case, (start, found, old, new) in refit.refitted().items():
         assert start.shape == found.shape
         assert new["rms"] <= old["rms"], case
 
 
 @pytest.mark.parametrize(("case", "step"), [("case-3", 1e-6), ("rise-time", 1e-6)])
-def test_jacobian_of_the_refit_against_differences(case, step):
+def test_jacobian_of_the_refit_against_differences(case: str, step: float) -> None:
     loops = sweep.sweep(1.3, np.linspace(0.3, 0.9, 7) * sweep.stability_limit(1.3))
     printed = fits.printed_coefficients()
     evaluate = {"case-3": refit._clipped, "rise-time": None}[case]
@@ -277,7 +277,7 @@ def test_jacobian_of_the_refit_against_differences(case, step):
         assert found[:, index] == pytest.approx(expected, rel=1e-5, abs=1e-7), index
 
 
-def test_only_three_shifted_decimal_points_meet_7b():
+def test_only_three_shifted_decimal_points_meet_7b() -> None:
     # by hand: (7a) at ph = 0.2, h = 1 against (7b)
     kp = 0.404 + 0.256 * 0.2 - 0.1275 * np.sqrt(0.2)
     ki = 0.0808 + 0.719 * 0.2 - 0.324 * np.sqrt(0.2)
@@ -290,13 +290,13 @@ def test_only_three_shifted_decimal_points_meet_7b():
     assert a * 0.04 + b * 0.2 + c == pytest.approx(ki, rel=6e-4)
 
 
-def test_summary_quotes_the_restored_coefficients():
+def test_summary_quotes_the_restored_coefficients() -> None:
     quoted = re.findall(r"-?0\.\d+", khan.summary.replace("- 0", "-0"))
     restored = coefficients_7.implied()["value"]
     assert [float(text) for text in quoted] == [restored[f"7a_{gain}_{x}"] for gain in ("KP", "KI") for x in "abc"]
 
 
-def test_tables_against_a_frequency_grid_and_an_ode_solver():
+def test_tables_against_a_frequency_grid_and_an_ode_solver() -> None:
     # the ITAE row at ph = 1: K_P, K_I from the rule by hand, M_s on a fine grid, overshoot by RK45 with a history
     kp, ki = 0.586, 0.586 * (1.03 - 0.165)
     w = np.linspace(1e-3, 20.0, 400_001)
@@ -319,7 +319,7 @@ def test_tables_against_a_frequency_grid_and_an_ode_solver():
     assert closed.step().settling_time() == pytest.approx(outside, abs=5e-3)
 
 
-def test_a_hundredth_of_the_band_moves_the_slow_settling_times_by_more_than_they_are_off():
+def test_a_hundredth_of_the_band_moves_the_slow_settling_times_by_more_than_they_are_off() -> None:
     # Ziegler-Nichols at ph = 10: the tail is one exponential, whose rate is a real root of the characteristic equation
     kp, ki = 0.09, 0.09 / 30.0
     rate = brentq(lambda a: -a * (1.0 - a) + (-kp * a + ki) * np.exp(10.0 * a), 1e-4, 1e-2)
@@ -330,7 +330,7 @@ def test_a_hundredth_of_the_band_moves_the_slow_settling_times_by_more_than_they
 
 
 @pytest.mark.parametrize(("table", "rows", "columns"), [("table-1", 5, 4), ("table-2", 7, 8)])
-def test_printed_tables_are_complete(table, rows, columns):
+def test_printed_tables_are_complete(table: str, rows: int, columns: int) -> None:
     with (FOLDER / "printed" / f"{table}.csv").open() as stream:
         lines = list(csv.reader(stream))
     assert len(lines) == rows + 1

@@ -1,15 +1,23 @@
 """Krajewski, Lepschy, Viaro: the charts by perturbing the loops on them, the numbers in mpmath."""
 
+from __future__ import annotations
+
 import cmath
 import math
+from collections.abc import Iterator
 from functools import cache
+from typing import cast
 
 import mpmath as mp
 import numpy as np
+import pandas as pd
 import pytest
 from loops.references import ReferenceLoop
+from matplotlib.bezier import BezierSegment
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from replicate.exhibits import Figure, Table
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski import paper
 from replicate.papers.krajewski.chart_values import TAUS
@@ -43,27 +51,27 @@ from replicate.run.drawing import capture
 RANDOM = np.random.default_rng(69)
 
 
-def pole(a, b, tau, gain=1.0, extra_dead_time=0.0):
+def pole(a: float, b: float, tau: float, gain: float = 1.0, extra_dead_time: float = 0.0) -> complex:
     """The rightmost pole of the loop (6) with more gain or more dead time, found without any frequency response."""
     plant = Plant([gain], [1.0, 1.0], dead_time=tau + extra_dead_time)
     return Loop(plant, PI(k=b, ki=a)).rightmost_pole()
 
 
-def response(a, b, tau, w):
+def response(a: float, b: float, tau: float, w: float) -> complex:
     """G(jω) as (6) defines it, in Python's own complex numbers."""
     s = 1j * w
     return (a + b * s) / s * cmath.exp(-tau * s) / (1 + s)
 
 
 @pytest.fixture(scope="module")
-def exhibits():
-    return paper.load().exhibits
+def exhibits() -> dict[str, Table]:
+    return {id: exhibit for id, exhibit in paper.load().exhibits.items() if isinstance(exhibit, Table)}
 
 
 # ------------------------------------------------------------------------------------- the charts, perturbed
 
 
-def interior(count):
+def interior(count: int) -> Iterator[tuple[float, float, float]]:
     """Random points strictly inside the stability region: each inside a random curve of phase margin."""
     for _ in range(count):
         tau, margin = RANDOM.uniform(0.1, 1.0), RANDOM.uniform(20.0, 130.0)
@@ -71,14 +79,14 @@ def interior(count):
         yield float(a), float(b), tau
 
 
-def test_phase_margin_and_crossover_by_a_longer_dead_time():
+def test_phase_margin_and_crossover_by_a_longer_dead_time() -> None:
     for a, b, tau in interior(25):
         w, margin = float(crossover(a, b)), math.radians(float(phase_margin(a, b, tau)))
         at_limit = pole(a, b, tau, extra_dead_time=margin / w)
         assert abs(at_limit - 1j * w) < 1e-9 * max(1.0, w)
 
 
-def test_gain_margin_and_phase_crossover_by_a_higher_gain():
+def test_gain_margin_and_phase_crossover_by_a_higher_gain() -> None:
     for a, b, tau in interior(25):
         g, w = gain_ratio(a, b, tau), phase_crossover(a, b, tau)
         at_limit = pole(a, b, tau, gain=1.0 / g)
@@ -86,19 +94,21 @@ def test_gain_margin_and_phase_crossover_by_a_higher_gain():
 
 
 @cache
-def captured(id):
-    return capture("krajewski", paper.load().exhibits[id]).curves
+def captured(id: str) -> pd.DataFrame:
+    figure = paper.load().exhibits[id]
+    assert isinstance(figure, Figure)
+    return capture("krajewski", figure).curves
 
 
-def drawn(id, name):
+def drawn(id: str, name: str) -> Iterator[tuple[str, NDArray[np.float64]]]:
     """Points of the curves of one name, as read back from the drawn figure, by panel."""
     curves = captured(id)
     for panel, part in curves[curves["curve"] == name].groupby("panel", sort=False):
-        yield panel, part[["x", "y"]].dropna().to_numpy()
+        yield str(panel), part[["x", "y"]].dropna().to_numpy()
 
 
 @pytest.mark.parametrize("margin", [60, 75])
-def test_drawn_curves_of_phase_margin(margin):
+def test_drawn_curves_of_phase_margin(margin: int) -> None:
     panels = list(drawn("fig-6", f"phase margin {margin}"))
     assert [panel for panel, _ in panels] == [f"τ = {tau:g}" for tau in TAUS]
     for (_, points), tau in zip(panels, TAUS, strict=True):
@@ -109,21 +119,21 @@ def test_drawn_curves_of_phase_margin(margin):
 
 
 @pytest.mark.parametrize("g", [0.5, 0.7])
-def test_drawn_curves_of_gain_margin(g):
+def test_drawn_curves_of_gain_margin(g: float) -> None:
     for (_, points), tau in zip(drawn("fig-7", f"g = {g:g}"), TAUS, strict=True):
         for a, b in points[RANDOM.integers(len(points) // 10, len(points) - len(points) // 10, 2)]:
             assert abs(pole(a, b, tau, gain=1.0 / g).real) < 2e-5
 
 
-def test_drawn_lines_of_phase_crossover():
+def test_drawn_lines_of_phase_crossover() -> None:
     panels = list(drawn("fig-7", "phase crossover 2"))
     assert len(panels) == 10
     for (_, points), tau in zip(panels, TAUS, strict=True):
         tip = points[-1]  # on the stability boundary: the loop itself oscillates at ω = 2
-        assert pole(*tip, tau) == pytest.approx(2j, abs=1e-6)
+        assert pole(float(tip[0]), float(tip[1]), tau) == pytest.approx(2j, abs=1e-6)
 
 
-def test_drawn_region_of_figure_8():
+def test_drawn_region_of_figure_8() -> None:
     ((_, border),) = drawn("fig-8", "admissible region")
     for a, b in border[(border[:, 0] > 0.02)][::9]:
         w = brentq(lambda w, a=a, b=b: abs(response(a, b, 0.5, w)) - 1.0, 1e-6, 50.0)
@@ -132,10 +142,12 @@ def test_drawn_region_of_figure_8():
         assert max(by_dead_time, by_gain) == pytest.approx(0.0, abs=1e-4)  # one bound is reached, none is broken
 
 
-def test_bezier_curves_follow_the_loci_between_their_points():
+def test_bezier_curves_follow_the_loci_between_their_points() -> None:
     for tau, margin in ((0.1, 60.0), (1.0, 15.0)):
         path = bezier_path([constant_phase_margin(tau, margin)])
-        for segment, code in path.iter_bezier():
+        # matplotlib's own annotation forgets the code
+        pieces = cast("Iterator[tuple[BezierSegment, int]]", path.iter_bezier())
+        for segment, code in pieces:
             if code == path.CURVE4:
                 a, b = segment(RANDOM.uniform(0.0, 1.0))
                 if a > 1e-3:
@@ -144,7 +156,7 @@ def test_bezier_curves_follow_the_loci_between_their_points():
 
 @pytest.mark.parametrize("tau", [0.02, 0.1, 0.35, 1.0, 5.0])
 @pytest.mark.parametrize("ms", [1.2, 2.0])
-def test_sensitivity_curves_on_a_dense_grid(tau, ms):
+def test_sensitivity_curves_on_a_dense_grid(tau: float, ms: float) -> None:
     points = [p for piece in sensitivity_points(tau, ms) for p in piece[1:-1:41]]
     points += [p for locus in constant_sensitivity(tau, ms) for p in locus.curve(RANDOM.uniform(0.05, 0.95, 4))[0]]
     for a, b in points:
@@ -155,17 +167,17 @@ def test_sensitivity_curves_on_a_dense_grid(tau, ms):
         assert pole(a, b, tau).real < 0.0
 
 
-def test_combined_chart_draws_every_family_for_any_tau():
+def test_combined_chart_draws_every_family_for_any_tau() -> None:
     for tau in (0.05, 0.35, 3.0):
         axes = combined_chart(tau).axes[0]
-        names = {patch.get_label() for patch in axes.patches}
+        names = {str(patch.get_label()) for patch in axes.patches}
         assert {"phase margin 60", "g = 0.5", "Ms = 1.4", "stability boundary"} <= names
         assert sum(name.startswith("crossover") for name in names) >= 5
     with pytest.raises(ValueError, match=r"tau must be between .* not 0"):
         combined_chart(0.0)
 
 
-def test_loci_end_where_the_branch_ends():
+def test_loci_end_where_the_branch_ends() -> None:
     for tau in (0.1, 0.5, 1.0):
         (start, end) = constant_phase_margin(tau, 60.0).points(2)
         assert start == pytest.approx([0.0, -0.5], abs=1e-15)
@@ -178,7 +190,7 @@ def test_loci_end_where_the_branch_ends():
 # ---------------------------------------------------------------------------------------------- the numbers
 
 
-def test_upper_ends_and_table_1_in_mpmath(exhibits):
+def test_upper_ends_and_table_1_in_mpmath(exhibits: dict[str, Table]) -> None:
     frame = exhibits["table-1"].readings["as-written"].compute()
     with mp.workdps(30):
         for margin in MARGINS:
@@ -197,7 +209,7 @@ def test_upper_ends_and_table_1_in_mpmath(exhibits):
             assert frame.loc["nu", margin] == pytest.approx(float(mean_y - mu * mean_x), rel=1e-12)
 
 
-def test_weighted_fits_change_sign_twice_and_the_printed_column_does_not():
+def test_weighted_fits_change_sign_twice_and_the_printed_column_does_not() -> None:
     x = 10.0 / np.arange(1, 11)
     for margin in MARGINS:
         for _ in range(20):
@@ -210,15 +222,15 @@ def test_weighted_fits_change_sign_twice_and_the_printed_column_does_not():
 
 
 @pytest.mark.parametrize("figure", ["fig-8", "fig-11"])
-def test_corners_in_mpmath(exhibits, figure):
+def test_corners_in_mpmath(exhibits: dict[str, Table], figure: str) -> None:
     frame = exhibits[f"{figure}-values"].readings["exact-point"].compute()
     starts = {"upper": (1.0, 0.9, 0.96, 2.6), "lower": (0.2, -0.2, 0.2, 0.6), "a": (1.0, 0.9, 0.96, 2.6)}
 
-    def g(a, b, w):
+    def g(a: mp.mpf, b: mp.mpf, w: mp.mpf) -> mp.mpc:
         s = 1j * w
         return (a + b * s) / s * mp.exp(-s / 2) / (1 + s)
 
-    def equations(a, b, wa, wb):
+    def equations(a: mp.mpf, b: mp.mpf, wa: mp.mpf, wb: mp.mpf) -> list[mp.mpf]:
         first = g(a, b, wa) + mp.expj(mp.pi / 3)  # (9) with 60 degrees
         second = g(a, b, wb) + mp.mpf(3) / 10  # (27)
         return [mp.re(first), mp.im(first), mp.re(second), mp.im(second)]
@@ -226,38 +238,38 @@ def test_corners_in_mpmath(exhibits, figure):
     with mp.workdps(30):
         for row in ("upper", "lower") if figure == "fig-8" else ("a",):
             a, b, wa, _ = mp.findroot(equations, starts[row])
-            found = frame.loc[row, ["a", "b", "omega_A"]].to_list()
+            found = [frame[column][row] for column in ("a", "b", "omega_A")]
             assert found == pytest.approx([float(a), float(b), float(wa)], rel=1e-11)
     assert len(corners(0.5, 60.0, 0.1)) == 0
 
 
-def test_points_of_figures_9_and_10(exhibits):
+def test_points_of_figures_9_and_10(exhibits: dict[str, Table]) -> None:
     # Rotating (9) by the lag: (a + jωb) = jω(1 + jω) exp(j(τω + m - π)).
     for figure, w, margins in (("fig-9", 2.0, (45.0,)), ("fig-10", 1.5, (45.0, 60.0, 75.0))):
         frame = exhibits[f"{figure}-values"].readings["as-written"].compute()
         for row, margin in zip("abc", margins, strict=False):
             z = 1j * w * (1 + 1j * w) * cmath.exp(1j * (0.5 * w + math.radians(margin) - math.pi))
-            assert frame.loc[row, ["a", "b"]].to_list() == pytest.approx([z.real, z.imag / w], rel=1e-12)
+            assert [frame["a"][row], frame["b"][row]] == pytest.approx([z.real, z.imag / w], rel=1e-12)
 
 
 @pytest.mark.parametrize("figure", ["fig-9", "fig-10", "fig-11", "fig-12"])
-def test_step_metrics_against_the_dead_time_series(exhibits, figure):
+def test_step_metrics_against_the_dead_time_series(exhibits: dict[str, Table], figure: str) -> None:
     frame = exhibits[f"{figure}-values"].readings["as-written"].compute()
     for row, named in named_points(figure).items():
         reference = ReferenceLoop(num=(1.0,), den=(1.0, 1.0), dead_time=0.5, k=named.b, ki=named.a)
-        half = frame.loc[row, "delay_time"]
+        half = frame["delay_time"][row]
         assert float(reference(half)) == pytest.approx(0.5, abs=1e-10)
-        settled = frame.loc[row, "settling_time"]
+        settled = frame["settling_time"][row]
         if settled < 20.0:  # the series has a term for every dead time
             assert abs(float(reference(settled)) - 1.0) == pytest.approx(0.02, abs=1e-9)
-        overshoot = frame.loc[row, "overshoot"]
+        overshoot = frame["overshoot"][row]
         if overshoot > 1e-3:
             top = step_response(named.a, named.b).peak().time
             assert float(reference(top)) == pytest.approx(1.0 + overshoot, abs=1e-9)
             assert max(float(reference(t)) for t in (top - 0.1, top - 0.01, top + 0.01, top + 0.1)) < 1.0 + overshoot
 
 
-def test_modes_are_poles_with_the_residues_of_a_small_circle():
+def test_modes_are_poles_with_the_residues_of_a_small_circle() -> None:
     for figure, row in (("fig-9", "a"), ("fig-10", "b"), ("fig-12", "c")):
         named = named_points(figure)[row]
         for p, residue in modes(named.a, named.b, 3):
@@ -267,7 +279,7 @@ def test_modes_are_poles_with_the_residues_of_a_small_circle():
             assert residue == pytest.approx((2 if p.imag else 1) * integral, abs=1e-10)
 
 
-def test_figure_1_counts_agree(exhibits):
+def test_figure_1_counts_agree(exhibits: dict[str, Table]) -> None:
     frame = exhibits["fig-1-values"].readings["as-written"].compute()
     assert (frame["encirclements"] == frame["unstable_poles"]).all()
     assert set(frame["initial_quadrant"]) == {1, 2, 3, 4}
@@ -283,7 +295,7 @@ def test_figure_1_counts_agree(exhibits):
 # ---------------------------------------------------------------------------------- design and robustness
 
 
-def test_the_design_meets_its_specifications():
+def test_the_design_meets_its_specifications() -> None:
     for _ in range(20):
         K, T, tau = RANDOM.uniform(0.2, 5.0), RANDOM.uniform(0.1, 50.0), RANDOM.uniform(0.1, 1.0)
         plant = Plant.foptd(K, T, tau * T)
@@ -299,7 +311,7 @@ def test_the_design_meets_its_specifications():
         assert found.largest_phase_margin > margin
 
 
-def test_incompatible_specifications_are_told_and_what_would_do():
+def test_incompatible_specifications_are_told_and_what_would_do() -> None:
     plant = Plant.foptd(2.0, 10.0, 5.0)
     found = design(plant, 75.0, 0.2)
     assert not found.compatible
@@ -318,7 +330,7 @@ def test_incompatible_specifications_are_told_and_what_would_do():
         design(plant, 180.0, 0.1)
 
 
-def test_margins_over_the_box_from_the_changed_loops():
+def test_margins_over_the_box_from_the_changed_loops() -> None:
     names = list(VERTICES)
     for index in RANDOM.integers(len(designs()), size=6):
         a, b, tau = designs()[index]
@@ -326,7 +338,9 @@ def test_margins_over_the_box_from_the_changed_loops():
         for name in ("KM-LM-Tm", "KM-LM-TM", "Km-Lm-TM"):
             K, L, T = (1.2 if letter == "M" else 0.8 for letter in (name[1], name[4], name[7]))
 
-            def loop_at(w, K=K, L=L, T=T, a=a, b=b, tau=tau):
+            def loop_at(
+                w: float, K: float = K, L: float = L, T: float = T, a: float = a, b: float = b, tau: float = tau
+            ) -> complex:
                 s = 1j * w
                 return (b + a / s) * K * cmath.exp(-tau * L * s) / (1 + T * s)
 
@@ -336,7 +350,7 @@ def test_margins_over_the_box_from_the_changed_loops():
             assert float(found.crossover[names.index(name)]) == pytest.approx(w, rel=1e-9)
 
 
-def test_which_time_constant_is_worse_on_the_bisector():
+def test_which_time_constant_is_worse_on_the_bisector() -> None:
     # For b = a and small deviations the shorter T is worse exactly if τω² > 1.
     for tau in (0.2, 0.5, 1.0):
         for square in (0.9, 1.1):
@@ -346,7 +360,7 @@ def test_which_time_constant_is_worse_on_the_bisector():
             assert (shorter < longer) == (square > 1.0)
 
 
-def test_no_point_of_the_box_is_worse_than_the_worst_in_the_box():
+def test_no_point_of_the_box_is_worse_than_the_worst_in_the_box() -> None:
     for index in RANDOM.integers(len(designs()), size=4):
         a, b, tau = designs()[index]
         worst = worst_in_box((a, b, tau), 30)
@@ -356,7 +370,7 @@ def test_no_point_of_the_box_is_worse_than_the_worst_in_the_box():
         assert worst <= float(at_vertices((a, b, tau), 30).phase_margin.min()) + 1e-9
 
 
-def test_small_crossovers_do_not_lose_digits():
+def test_small_crossovers_do_not_lose_digits() -> None:
     # a -> 0 with |b| < 1: ω ≈ a/√(1 - b²), where the quadratic formula would cancel.
     with mp.workdps(40):
         a, b = mp.mpf("1e-9"), mp.mpf("0.5")

@@ -3,16 +3,22 @@
 `design_pi` itself is tested in ``tests/loops/test_design_pi.py``.
 """
 
+from __future__ import annotations
+
 import csv
 import importlib
 import math
+from collections.abc import Callable
+from fractions import Fraction
 
 import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from numpy.typing import NDArray
 from scipy.integrate import quad, solve_ivp
 
+from replicate.exhibits import Table
 from replicate.loops import Circle
 from replicate.papers.panagopoulos import paper, part_1
 from replicate.papers.panagopoulos.part_1 import corner, errata, settling, simple_models, table_4
@@ -23,7 +29,7 @@ from replicate.papers.panagopoulos.part_1.phase import frequencies_of_lag, roots
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
 # the plants as the paper prints them, for mpmath and numpy numbers
-FORMULAS = {
+FORMULAS: dict[str, Callable[[mp.mpc], mp.mpc]] = {
     "G1": lambda s: 1 / (s + 1) ** 3,
     "G2": lambda s: 1 / ((s + 1) * (1 + 0.2 * s) * (1 + 0.04 * s) * (1 + 0.008 * s)),
     "G3": lambda s: mp.exp(-15 * s) / (s + 1) ** 3,
@@ -42,13 +48,13 @@ FORMULAS = {
 
 
 @pytest.fixture(scope="module")
-def exhibits():
+def exhibits() -> dict[str, Table]:
     for module in part_1.MODULES:
         importlib.import_module(f"{part_1.__name__}.{module}")
-    return paper.exhibits
+    return {id: exhibit for id, exhibit in paper.exhibits.items() if isinstance(exhibit, Table)}
 
 
-def printed(exhibit):
+def printed(exhibit: str) -> dict[tuple[str, str], str]:
     text = (paper.folder() / "printed" / f"{exhibit}.csv").read_text(encoding="utf-8")
     return {(row["row"], column): row[column] for row in csv.DictReader(text.splitlines()) for column in row}
 
@@ -57,7 +63,7 @@ def printed(exhibit):
 
 
 @pytest.mark.parametrize("name", FORMULAS)
-def test_the_plants_are_those_of_the_paper(name):
+def test_the_plants_are_those_of_the_paper(name: str) -> None:
     for s in (0.3 + 0.7j, 2j, 0.01j, 1.5 - 4j):
         assert complex(PLANTS[name](s)) == pytest.approx(complex(FORMULAS[name](mp.mpc(s))), rel=1e-13)
 
@@ -65,10 +71,12 @@ def test_the_plants_are_those_of_the_paper(name):
 # ------------------------------------------------------------------------------------------------------ designs
 
 
-def envelope_conditions(g, center, radius):
+def envelope_conditions(
+    g: Callable[[mp.mpc], mp.mpc], center: float, radius: mp.mpf
+) -> Callable[[mp.mpf, mp.mpf, mp.mpf], tuple[mp.mpf, mp.mpf, mp.mpf]]:
     """(14): f = R^2, df/dw = 0, df/dk = 0, by numerical differentiation at 30 digits."""
 
-    def f(k, ki, w):
+    def f(k: mp.mpf, ki: mp.mpf, w: mp.mpf) -> mp.mpf:
         return abs(center + (k - 1j * ki / w) * g(1j * w)) ** 2
 
     return lambda k, ki, w: (
@@ -79,7 +87,7 @@ def envelope_conditions(g, center, radius):
 
 
 @pytest.mark.parametrize("name", ["G1", "G2", "G3", "G4", "G5", "G6", "G7", "G8", "G9", "G10", "G11", "G13", "G14 a=4"])
-def test_a_smooth_design_satisfies_the_three_equations(name):
+def test_a_smooth_design_satisfies_the_three_equations(name: str) -> None:
     found = design(name, 2.0)
     with mp.workdps(30):
         start = [mp.mpf(x) for x in (found.k, found.ki, found.frequency)]
@@ -87,7 +95,7 @@ def test_a_smooth_design_satisfies_the_three_equations(name):
     assert [found.k, found.ki, found.frequency] == pytest.approx([float(x) for x in root], rel=1e-9)
 
 
-def test_the_integrating_plant_has_a_closed_form():
+def test_the_integrating_plant_has_a_closed_form() -> None:
     # G4: k and ki of (17) at w0 with tan(phi) known; w0^2 = 1/6 for Ms = 2 and 1/12 for Ms = 1.4
     for ms, w_squared in ((2.0, 1 / 6), (1.4, 1 / 12)):
         found = design("G4", ms)
@@ -98,7 +106,7 @@ def test_the_integrating_plant_has_a_closed_form():
         assert found.ki == pytest.approx(-w / r * (math.sin(phi) + 1 / ms), rel=1e-11)
 
 
-def test_setpoint_weights_make_the_gain_one_at_their_frequency():
+def test_setpoint_weights_make_the_gain_one_at_their_frequency() -> None:
     for name in ("G1", "G2", "G4"):
         found = design(name, 2.0)
         peak = complementary_peak(name, 2.0)
@@ -108,7 +116,7 @@ def test_setpoint_weights_make_the_gain_one_at_their_frequency():
             assert prefilter * peak.value == pytest.approx(1.0, abs=1e-12)  # (24) with |T| = Mp
 
 
-def test_the_printed_frequencies_are_the_largest_sensitivities_on_a_grid():
+def test_the_printed_frequencies_are_the_largest_sensitivities_on_a_grid() -> None:
     numbers = printed("I-table-1")
     ranges = {"G1": (-2, 1), "G2": (-1, 2), "G4": (-3, 0), "G5": (-2, 1), "G6": (-1, 2)}
     for name, ends in ranges.items():
@@ -127,7 +135,7 @@ def test_the_printed_frequencies_are_the_largest_sensitivities_on_a_grid():
 # -------------------------------------------------------------------------------------------------------- phase
 
 
-def test_frequencies_of_lag_have_closed_forms():
+def test_frequencies_of_lag_have_closed_forms() -> None:
     assert frequencies_of_lag(PLANTS["G1"], 180.0) == pytest.approx((math.sqrt(3.0),), rel=1e-12)
     assert frequencies_of_lag(PLANTS["G7"], 90.0) == pytest.approx((math.pi / 2,), rel=1e-12)
     assert frequencies_of_lag(PLANTS["G8"], 90.0) == (0.0,)
@@ -143,14 +151,15 @@ def test_frequencies_of_lag_have_closed_forms():
     assert frequencies_of_lag(PLANTS["G13"], 180.0) == pytest.approx(tuple(roots), rel=1e-10)
 
 
-def test_h_vanishes_at_its_roots():
+def test_h_vanishes_at_its_roots() -> None:
     with mp.workdps(30):
         g = FORMULAS["G3"]
         for w in roots_of_h(PLANTS["G3"], Circle.of(2.0)):
             # h (18) from r and phi by numerical differentiation
             r, phase = mp.mpf(abs(g(1j * w))), mp.arg(g(1j * mp.mpf(w)))
             log_slope = mp.diff(lambda x: mp.log(abs(g(1j * x))), w)
-            phase_slope = mp.diff(lambda x, p=phase: mp.arg(g(1j * x) * mp.exp(-1j * p)), w)
+            turned_back = mp.exp(-1j * phase)  # so that the argument does not jump at w
+            phase_slope = mp.diff(lambda x, turn=turned_back: mp.arg(g(1j * x) * turn), w)
             half = mp.mpf("0.5")
             h = (half + mp.sin(phase)) * (log_slope - 1 / mp.mpf(w)) - phase_slope * mp.cos(phase)
             assert abs(h) < 1e-9
@@ -160,7 +169,7 @@ def test_h_vanishes_at_its_roots():
 # ------------------------------------------------------------------------------------------------------- errata
 
 
-def test_equation_7_by_geometry():
+def test_equation_7_by_geometry() -> None:
     ms, mpx = sp.symbols("Ms Mp", positive=True)
     center, radius = errata.corrected_circle(ms, mpx)
     assert sp.simplify(center + radius - mpx / (mpx - 1)) == 0  # far end of the Mp circle
@@ -170,27 +179,30 @@ def test_equation_7_by_geometry():
     assert sp.simplify(same - radius) == 0
 
 
-def test_the_two_circles_are_where_the_sensitivities_have_their_bounds():
-    for bound, circle in ((1.4, errata.sensitivity_circle), (1.5, errata.complementary_circle)):
-        center, radius = circle(bound)
+def test_the_two_circles_are_where_the_sensitivities_have_their_bounds() -> None:
+    for bound, circle in (
+        (Fraction(7, 5), errata.sensitivity_circle),
+        (Fraction(3, 2), errata.complementary_circle),
+    ):
+        center, radius = (float(part) for part in circle(bound))
         for angle in (0.3, 1.7, 4.0):
             value = -center + radius * np.exp(1j * angle)
             magnitude = abs(1 / (1 + value)) if circle is errata.sensitivity_circle else abs(value / (1 + value))
-            assert magnitude == pytest.approx(bound, rel=1e-12)
+            assert magnitude == pytest.approx(float(bound), rel=1e-12)
 
 
 # ---------------------------------------------------------------------------------------------------- example 5
 
 
-def resonant(a, s):
+def resonant(a: mp.mpf, s: mp.mpc) -> mp.mpc:
     return 9 / ((s + 1) * (s**2 + a * s + 9))
 
 
-def test_the_corner_limit_is_where_the_smooth_optimum_touches_twice():
+def test_the_corner_limit_is_where_the_smooth_optimum_touches_twice() -> None:
     ms = 2.0
 
-    def conditions(a, k, ki, w, w2):
-        def f(x, gain=k):
+    def conditions(a: mp.mpf, k: mp.mpf, ki: mp.mpf, w: mp.mpf, w2: mp.mpf) -> tuple[mp.mpf, ...]:
+        def f(x: mp.mpf, gain: mp.mpf = k) -> mp.mpf:
             return abs(1 + (gain - 1j * ki / x) * resonant(a, 1j * x)) ** 2
 
         return (
@@ -207,7 +219,7 @@ def test_the_corner_limit_is_where_the_smooth_optimum_touches_twice():
     assert corner.corner_limit(ms) == pytest.approx(float(root[0]), rel=1e-9)
 
 
-def test_the_slope_limit_is_where_the_steepest_slope_is_one():
+def test_the_slope_limit_is_where_the_steepest_slope_is_one() -> None:
     a, x = sp.symbols("a x", positive=True)  # x = w^2
     magnitude = 81 / ((1 + x) * ((9 - x) ** 2 + a**2 * x))  # |G|^2
     slope = x * sp.diff(sp.log(magnitude), x)  # d log|G| / d log w
@@ -217,9 +229,9 @@ def test_the_slope_limit_is_where_the_steepest_slope_is_one():
     assert corner.slope_limit() == pytest.approx(float(root[0]), rel=1e-10)
 
 
-def test_the_curvature_limit_is_where_the_second_derivative_vanishes():
-    def conditions(a, k, ki, w):
-        def f(x, gain=k):
+def test_the_curvature_limit_is_where_the_second_derivative_vanishes() -> None:
+    def conditions(a: mp.mpf, k: mp.mpf, ki: mp.mpf, w: mp.mpf) -> tuple[mp.mpf, ...]:
+        def f(x: mp.mpf, gain: mp.mpf = k) -> mp.mpf:
             return abs(1 + (gain - 1j * ki / x) * resonant(a, 1j * x)) ** 2
 
         return f(w) - mp.mpf("0.25"), mp.diff(f, w), mp.diff(lambda gain: f(w, gain), k), mp.diff(f, w, 2)
@@ -234,13 +246,13 @@ def test_the_curvature_limit_is_where_the_second_derivative_vanishes():
 
 
 @pytest.mark.parametrize("name", ["G1", "G6"])
-def test_load_responses_against_an_ode_solver(name):
+def test_load_responses_against_an_ode_solver(name: str) -> None:
     found = design(name, 2.0)
     plant = PLANTS[name]
     a, b, c, d = plant.state_space()
     n = len(b)
 
-    def slope(_, x):
+    def slope(_: float, x: NDArray[np.float64]) -> NDArray[np.float64]:
         y = c @ x[:n]
         u = -found.k * y + x[n] + 1.0
         return np.concatenate([a @ x[:n] + b * u, [-found.ki * y], [abs(y)]])
@@ -251,23 +263,24 @@ def test_load_responses_against_an_ode_solver(name):
     )
     response = load_response(name, 2.0)
     assert d == 0.0
+    assert solution.t_events is not None
     assert settling.one_sided(response) == pytest.approx(solution.t_events[0][-1], rel=1e-8)
     assert response.iae() == pytest.approx(solution.y[-1, -1], rel=1e-7)
     assert response.ie() == pytest.approx(1.0 / found.ki, rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["m=2", "m=20"])
-def test_noise_variance(name):
+def test_noise_variance(name: str) -> None:
     case = table_4.filtered(table_4.FACTORS[name])
     k, ki, tf, a = case.found.k, case.found.ki, case.filter_time, table_4.NOISE_CORNER
 
-    def density(w, with_loop):
+    def density(w: float, with_loop: bool) -> float:
         s = 1j * w
         value = (k * s + ki) / ((s + a) * (1 + s * tf))
         loop_gain = (k + ki / s) * np.exp(-s) / (1 + s * tf)
         return abs(value / (1 + loop_gain if with_loop else 1)) ** 2
 
-    def variance(with_loop):
+    def variance(with_loop: bool) -> float:
         panels = np.arange(0.0, 2000.0, 5.0)
         inner = sum(quad(density, x, x + 5.0, args=(with_loop,), epsabs=0, epsrel=1e-11)[0] for x in panels)
         # beyond 2000 |S| is 1 up to oscillations of size k/(tf w), which average out
@@ -281,7 +294,7 @@ def test_noise_variance(name):
 # ------------------------------------------------------------------------------------------------- comparison
 
 
-def test_simple_models_have_closed_forms():
+def test_simple_models_have_closed_forms() -> None:
     # step response of 1/(s+1)^3: y = 1 - e^{-t}(1 + t + t^2/2)
     with mp.workdps(30):
         area = mp.quad(lambda t: 1 - mp.exp(-t) * (1 + t + t**2 / 2), [0, 3])
@@ -304,7 +317,7 @@ def test_simple_models_have_closed_forms():
     assert tangent.dead_time == pytest.approx(2.0 - (1 - 5 * math.exp(-2.0)) * math.exp(2.0) / 2.0, rel=1e-9)
 
 
-def test_ultimate_points():
+def test_ultimate_points() -> None:
     gain, period = simple_models.ultimate_point("G1")
     assert gain == pytest.approx(8.0, rel=1e-12)
     assert period == pytest.approx(2 * math.pi / math.sqrt(3.0), rel=1e-12)
@@ -318,15 +331,15 @@ def test_ultimate_points():
 # ---------------------------------------------------------------------------------------------------- inventory
 
 
-def test_keys_and_inventory(exhibits):
+def test_keys_and_inventory(exhibits: dict[str, Table]) -> None:
     for id in part_1.NUMBERED:
-        assert id in exhibits
+        assert id in paper.exhibits
     assert exhibits["I-table-1"].rows == tuple(f"{p} Ms={ms}" for p in SIX for ms in ("1.4", "1.6", "1.8", "2.0"))
     assert exhibits["I-table-4"].rows == ("m=2", "m=5", "m=10", "m=20", "m=inf")
     assert exhibits["I-table-5"].rows[:3] == ("G1 ZN", "G1 Lambda", "G1 New")
 
 
-def test_every_design_keeps_its_bound_between_the_tangencies():
+def test_every_design_keeps_its_bound_between_the_tangencies() -> None:
     w = np.geomspace(1e-3, 1e3, 40001)
     for name in SIX:
         for ms in (1.4, 2.0):

@@ -67,7 +67,7 @@ def test_absolute_error_by_partial_fractions() -> None:
         return (np.exp(np.outer(t, poles)) @ weights).real
 
     t = np.linspace(0.0, 250.0, 400001)
-    exact = float(example.numbers().loc["kd=3", "IAE"])
+    exact = float(example.numbers()["IAE"]["kd=3"])
     assert exact == pytest.approx(integrate.simpson(np.abs(y(t)), x=t), rel=1e-7)
 
 
@@ -205,5 +205,5 @@ def test_what_the_digits_leave_open() -> None:
     for k, ti, td in rng.uniform([0.9815, 3.135, 1.725], [0.9825, 3.145, 1.735], (40, 3)):
         s = 1j * np.geomspace(0.05, 1.0, 4001)
         value = k * (1 + 1 / (ti * s) + td * s) / (s + 1) ** 7
-        assert frame.loc["G7 Ms=2.0 Mp", "low"] - 1e-6 <= np.max(np.abs(value / (1 + value)))
-        assert np.max(np.abs(value / (1 + value))) <= frame.loc["G7 Ms=2.0 Mp", "high"] + 1e-6
+        assert frame["low"]["G7 Ms=2.0 Mp"] - 1e-6 <= np.max(np.abs(value / (1 + value)))
+        assert np.max(np.abs(value / (1 + value))) <= frame["high"]["G7 Ms=2.0 Mp"] + 1e-6

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mpmath as mp
 import numpy as np
 import pytest
 import scipy.integrate
 import scipy.optimize
 import scipy.signal
+from numpy.typing import NDArray
 
 from replicate.papers.panagopoulos.parts_3_to_6 import industrial, loop_shaping, reference_model
 from replicate.papers.panagopoulos.parts_3_to_6.active_damping import EXAMPLE, Shaft
@@ -19,13 +22,13 @@ from replicate.papers.panagopoulos.parts_3_to_6.modal import ModalSum
 
 
 @pytest.mark.parametrize("m", [1.2, 1.4, 2.0, 3.5])
-def test_largest_gamma_on_the_combined_circle(m):
+def test_largest_gamma_on_the_combined_circle(m: float) -> None:
     """(14): maximise (1 + |L|)/|1 + L| on the circle through -m/(m-1) and -(m-1)/m, in 30 digits."""
     with mp.workdps(30):
         left, right = mp.mpf(m) / (mp.mpf(m) - 1), (mp.mpf(m) - 1) / mp.mpf(m)
         center, radius = (left + right) / 2, (left - right) / 2
 
-        def gamma(angle):
+        def gamma(angle: mp.mpf) -> mp.mpf:
             loop = -center + radius * mp.expj(angle)
             return (1 + abs(loop)) / abs(1 + loop)
 
@@ -36,7 +39,7 @@ def test_largest_gamma_on_the_combined_circle(m):
 
 
 @pytest.mark.parametrize("gamma", loop_shaping.CONTOURS)
-def test_contour_by_root_finding(gamma):
+def test_contour_by_root_finding(gamma: float) -> None:
     """Radii on the contour along a ray, from the equation itself."""
     curve = loop_shaping.contour(gamma)
     points = curve[[0, 100, 300, 720, 900, 1800, 2500]]
@@ -48,7 +51,7 @@ def test_contour_by_root_finding(gamma):
         assert (1.0 + abs(inverse)) / abs(1.0 + inverse) == pytest.approx(gamma, rel=1e-10)
 
 
-def test_example_1_touches_the_circle():
+def test_example_1_touches_the_circle() -> None:
     """The Nyquist curve of the unrounded design has the circle as tangent; k_i cannot grow with k fixed."""
     found = loop_shaping.design()
     w = np.linspace(0.3, 0.9, 600_001)
@@ -62,7 +65,7 @@ def test_example_1_touches_the_circle():
 
 
 @pytest.mark.parametrize("weighting", ["none", "favourable"])
-def test_example_2_on_a_grid(weighting):
+def test_example_2_on_a_grid(weighting: str) -> None:
     """Margin and gap from their definitions on a dense grid."""
     w = np.geomspace(1e-3, 1e2, 400_001)
     s = 1j * w
@@ -80,9 +83,9 @@ def test_example_2_on_a_grid(weighting):
 
 
 @pytest.mark.parametrize("ratio", [0.25, 1.0, 3.0])
-def test_reference_model(ratio):
+def test_reference_model(ratio: float) -> None:
     """Step response and its characteristics against scipy, with te = 1."""
-    system = scipy.signal.lti([2.0, 0.0], np.polymul([2.0, 1.0], [2.0 * ratio, 1.0]))
+    system = ([2.0, 0.0], np.polymul([2.0, 1.0], [2.0 * ratio, 1.0]))
     t, y = scipy.signal.step(system, T=np.linspace(0.0, 40.0, 40_001))
     assert reference_model.step(ratio, t) == pytest.approx(y, abs=1e-9)
     found = reference_model.characteristics(ratio)
@@ -96,12 +99,12 @@ def test_reference_model(ratio):
 # ------------------------------------------------------------------------------------------------------------ V
 
 
-def _starch(w, gain, ti, td):
+def _starch(w: NDArray[np.float64], gain: float, ti: float, td: float) -> NDArray[np.complex128]:
     s = 1j * w
-    return 1.34 * np.exp(-12.9 * s) / (43.3 * s + 1.0) ** 2 * gain * (1.0 + 1.0 / (ti * s) + td * s)
+    return np.asarray(1.34 * np.exp(-12.9 * s) / (43.3 * s + 1.0) ** 2 * gain * (1.0 + 1.0 / (ti * s) + td * s))
 
 
-def test_starch_boiler_on_both_limits():
+def test_starch_boiler_on_both_limits() -> None:
     """On a dense grid: 1/|1 + L| peaks at 1.6, and the unwrapped phase is level at one point of the range."""
     found = industrial.on_both_limits(1.35)
     low, high = industrial.starch_range()
@@ -112,7 +115,7 @@ def test_starch_boiler_on_both_limits():
     assert slope[1:-1].max() == pytest.approx(0.0, abs=1e-6)
 
 
-def test_starch_boiler_as_printed():
+def test_starch_boiler_as_printed() -> None:
     """Largest curvature and phase slope of the printed settings by finite differences."""
     low, high = industrial.starch_range()
     w = np.linspace(low, high, 40_001)
@@ -127,7 +130,7 @@ def test_starch_boiler_as_printed():
     assert slope[5:-5].max() == pytest.approx(industrial.shape(gains, "phase"), abs=1e-5)
 
 
-def test_filter_of_the_drying_section():
+def test_filter_of_the_drying_section() -> None:
     """The mended formula does what it is for: |F G_sp| = 1 at the peak of |T|."""
     gain, ti, td = industrial.DRYING_SETTINGS
     w = np.linspace(0.15, 0.3, 1_500_001)
@@ -146,7 +149,7 @@ def test_filter_of_the_drying_section():
 
 
 @pytest.mark.parametrize("gains", [None, (5.2, 1.6, 5.4)])
-def test_filter_from_the_peak_on_the_default_grid(gains):
+def test_filter_from_the_peak_on_the_default_grid(gains: tuple[float, float, float] | None) -> None:
     """|F G_sp| = 1 at the point of Matlab's 50-point grid with the largest |T|, with G_sp written out."""
     k, ki, kd = gains or (5.21, 5.21 / 3.16, 5.21 * 1.02)
     s = 1j * 10.0 ** (-2.0 + 4.0 * np.arange(50) / 49.0)
@@ -165,12 +168,12 @@ def test_filter_from_the_peak_on_the_default_grid(gains):
 # ----------------------------------------------------------------------------------------------------------- VI
 
 
-def _shaft(w):
+def _shaft(w: Any) -> Any:
     s = 1j * w
     return 15.21 / ((s + 0.1) * (s**2 + 2 * 0.02 * 7.66 * s + 7.66**2))
 
 
-def test_characteristics_of_the_shaft():
+def test_characteristics_of_the_shaft() -> None:
     """P_max, P_min and omega_a by minimisation and root finding on the frequency response."""
     assert EXAMPLE.p_max == pytest.approx(abs(_shaft(7.66)), rel=1e-13)
     low = scipy.optimize.minimize_scalar(lambda w: abs(_shaft(w)), bounds=(2.0, 7.0), options={"xatol": 1e-10})
@@ -178,15 +181,15 @@ def test_characteristics_of_the_shaft():
     high = scipy.optimize.minimize_scalar(lambda w: -abs(_shaft(w)), bounds=(7.4, 7.9), options={"xatol": 1e-10})
     assert EXAMPLE.extrema()[1].value == pytest.approx(-high.fun, rel=1e-12)
 
-    def imaginary(omega_a):
+    def imaginary(omega_a: float) -> float:
         s = 7.66j
-        return (_shaft(7.66) * (s**2 - omega_a * s + omega_a**2) / (s**2 + omega_a * s + omega_a**2)).imag
+        return float((_shaft(7.66) * (s**2 - omega_a * s + omega_a**2) / (s**2 + omega_a * s + omega_a**2)).imag)
 
     assert EXAMPLE.omega_a == pytest.approx(scipy.optimize.brentq(imaginary, 7.0, 8.0, xtol=1e-13), rel=1e-12)
 
 
 @pytest.mark.parametrize("k_b", [1.0, 2.75])
-def test_inner_loop(k_b):
+def test_inner_loop(k_b: float) -> None:
     """PF = k_b at the resonance, and P/(1 + PF) is what it says."""
     w = np.array([0.3, 4.0, 7.66, 20.0])
     s = 1j * w
@@ -198,7 +201,7 @@ def test_inner_loop(k_b):
     assert abs(EXAMPLE.damped(k_b)(7.66j)) == pytest.approx(EXAMPLE.p_max / (1.0 + k_b), rel=1e-11)
 
 
-def test_largest_stable_gain_by_nyquist():
+def test_largest_stable_gain_by_nyquist() -> None:
     """The inner loop loses stability where PF = -1, which is a phase crossover with |PF| = 1 for k_b = limit."""
     limit = EXAMPLE.largest_stable_gain()
     num, den = EXAMPLE.filter(1.0)
@@ -209,24 +212,24 @@ def test_largest_stable_gain_by_nyquist():
 
 
 @pytest.mark.parametrize("k_b", [0.0, 1.0, 2.75])
-def test_iae_by_quadrature(k_b):
+def test_iae_by_quadrature(k_b: float) -> None:
     """The IAE of the impulse response, from scipy's state-space simulation and a fine trapezoidal rule."""
     shaft = Shaft.as_in_eq_3(0.05, 3.0)
     plant = shaft.damped(k_b)
     t = np.linspace(0.0, 120.0, 600_001)
-    _, y = scipy.signal.impulse(scipy.signal.lti(plant.num, plant.den), T=t)
+    _, y = scipy.signal.impulse((plant.num, plant.den), T=t)
     assert ModalSum.impulse(plant)(t[::1000]) == pytest.approx(y[::1000], abs=1e-9)
     assert impulse_iae(shaft, k_b) == pytest.approx(scipy.integrate.trapezoid(np.abs(y), t), rel=1e-6)
 
 
-def test_pulse_is_an_average_of_the_impulse_response():
+def test_pulse_is_an_average_of_the_impulse_response() -> None:
     response = ModalSum.impulse(EXAMPLE.damped(2.75))
     for time in (0.05, 0.3, 4.0):
         area, _ = scipy.integrate.quad(lambda x: float(response(x)), max(time - 0.1, 0.0), time)
         assert float(response.pulse(0.1, time)) == pytest.approx(area / 0.1, rel=1e-9)
 
 
-def test_best_gain_is_a_minimum():
+def test_best_gain_is_a_minimum() -> None:
     shaft = Shaft.as_in_eq_3(0.05, 3.0)
     k_b, iae = best_gain(shaft)
     others = [impulse_iae(shaft, k) for k in np.linspace(0.0, 0.95 * shaft.largest_stable_gain(), 150)]
@@ -234,7 +237,7 @@ def test_best_gain_is_a_minimum():
     assert k_b == pytest.approx(scipy.optimize.brent(lambda k: impulse_iae(shaft, k), brack=(0.9, 1.2, 1.7)), abs=2e-5)
 
 
-def test_batch_with_the_gain_of_equation_10():
+def test_batch_with_the_gain_of_equation_10() -> None:
     """Poles of 1 + PF from polynomials written out, k_b by (10) from |P| on a grid, the IAE never below the best."""
     for member in batch()[::7]:
         wp, zeta = member.omega_p, member.zeta_p
@@ -243,10 +246,11 @@ def test_batch_with_the_gain_of_equation_10():
         size = np.abs(np.polyval(p_num, 1j * w) / np.polyval(p_den, 1j * w))
         k_b = -0.46 + 0.33 * size[-1] / size.min()
         # the all-pass filter turns the phase of P at wp to -360 degrees
-        phase = np.angle(np.polyval(p_num, 1j * wp) / np.polyval(p_den, 1j * wp))
+        phase = float(np.angle(np.polyval(p_num, 1j * wp) / np.polyval(p_den, 1j * wp)))
 
-        def turned(a, wp=wp, phase=phase):
-            return np.angle(np.exp(1j * phase) * np.polyval([1, -a, a**2], 1j * wp) / np.polyval([1, a, a**2], 1j * wp))
+        def turned(a: float, wp: float = wp, phase: float = phase) -> float:
+            all_pass = np.polyval([1, -a, a**2], 1j * wp) / np.polyval([1, a, a**2], 1j * wp)
+            return float(np.angle(np.exp(1j * phase) * all_pass))
 
         a = scipy.optimize.brentq(turned, 0.3 * wp, 1.2 * wp)
         f_num = np.polymul([1.0, -a, a**2], [k_b * 1.8 * wp / size[-1], 0.0])
@@ -257,7 +261,7 @@ def test_batch_with_the_gain_of_equation_10():
         assert member.iae <= member.iae_by_formula_10 * (1.0 + 1e-9)
 
 
-def test_no_minimum_below_the_resonance():
+def test_no_minimum_below_the_resonance() -> None:
     with pytest.raises(ValueError, match="no minimum below its resonance"):
         Shaft.as_in_eq_3(0.5, 3.0).extrema()
 
@@ -271,7 +275,7 @@ def test_no_minimum_below_the_resonance():
         [Shaft.as_in_eq_3(1e-9, np.sqrt(2.0) * factor) for factor in (1.0001, 0.9999)],
     ],
 )
-def test_where_the_minimum_begins_to_exist(inside, outside):
+def test_where_the_minimum_begins_to_exist(inside: Shaft, outside: Shaft) -> None:
     assert inside.extrema()[0].frequency > 0.0
     with pytest.raises(ValueError, match="no minimum below its resonance"):
         outside.extrema()

@@ -1,5 +1,7 @@
 """Texts of the papers' modules say what they mean to say."""
 
+from __future__ import annotations
+
 import ast
 import re
 from pathlib import Path
@@ -22,13 +24,13 @@ def plain_strings(source: str) -> list[str]:
     ]
 
 
-def test_no_field_is_left_unfilled_for_want_of_an_f():
+def test_no_field_is_left_unfilled_for_want_of_an_f() -> None:
     for path in sorted(Path(replicate.papers.__path__[0]).rglob("*.py")):
         unfilled = [text for text in plain_strings(path.read_text(encoding="utf-8")) if _FIELD.search(text)]
         assert not unfilled, path
 
 
-def test_such_a_field_is_found():
+def test_such_a_field_is_found() -> None:
     assert _FIELD.search('the pole is at {number(rightmost)}."')
     assert _FIELD.search("it is {value:.3f}")
     assert not _FIELD.search(r"$e^{1+ph}$, $\sqrt{2T/\theta}$, $K_{max}$")
