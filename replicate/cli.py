@@ -24,7 +24,7 @@ TERMINATED = 143
 
 app = typer.Typer(
     name="replicate",
-    help="Recompute what papers print, compare, and say why where it differs.",
+    help="Recompute the numbers that papers print, compare them, and explain the differences.",
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,

@@ -35,7 +35,7 @@ def diff(
 ) -> None:
     """Show what differs from the accepted state, in words and pictures.
 
-    The page is diff/index.html in the output folder. Exit status 1 if something differs.
+    The pictures are in diff/index.html in the output folder. Exit status 1 if something differs.
     """
     from replicate.diff.comparison import compare
     from replicate.diff.outputs import write_diff

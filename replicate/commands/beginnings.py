@@ -35,7 +35,7 @@ def new(
 
     within = library()
     if paper in within.ids():
-        msg = f"there is a paper '{paper}' already; choose another id"
+        msg = f"the paper '{paper}' already exists; choose another id"
         raise PaperDefinitionError(msg)
     homes = within.project.papers if within.project is not None else ()
     folder = new_paper(paper, homes[0] if homes else Path())

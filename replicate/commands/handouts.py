@@ -25,14 +25,14 @@ def handout(
     papers_dir: PapersDir = None,
     bundled: Bundled = False,
     solutions: Annotated[
-        bool | None, typer.Option("--solutions/--no-solutions", help="One edition only; default: both.")
+        bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
     format: Annotated[str, typer.Option("--format", help="pdf or html.")] = "pdf",  # noqa: A002
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
 ) -> None:
-    """Build teaching handouts, without and with solutions."""
+    """Build teaching handouts, with and without solutions."""
     from replicate.handout import build_handouts, checked_format, with_handout
     from replicate.staging import staged
 

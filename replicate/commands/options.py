@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 DIFFERS, BROKEN = 1, 2
 
-Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Processes; default: one per core.")]
+Jobs = Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="Number of processes; default: one per core.")]
 Out = Annotated[
     Path | None,
-    typer.Option("--out", help="Folder for what a run leaves behind; default: the project's.", file_okay=False),
+    typer.Option("--out", help="Folder for the results; default: the project's.", file_okay=False),
 ]
-NoCache = Annotated[bool, typer.Option("--no-cache", help="Compute everything anew, keep nothing.")]
+NoCache = Annotated[bool, typer.Option("--no-cache", help="Recompute everything and keep nothing.")]
 Accepted = Annotated[
     Path | None,
     typer.Option("--accepted", help="Folder of the accepted state; default: the project's own."),

@@ -23,7 +23,7 @@ from replicate.errors import ReplicateError, UnknownPaperError
 
 
 def list_(
-    paper: Annotated[str | None, typer.Argument(metavar="PAPER", help="Default: the papers.")] = None,
+    paper: Annotated[str | None, typer.Argument(metavar="PAPER", help="Default: list the papers.")] = None,
     papers_dir: PapersDir = None,
     bundled: Bundled = False,
 ) -> None:
@@ -47,7 +47,7 @@ def list_(
 def show(
     paper: Annotated[str, typer.Argument(metavar="PAPER")],
     exhibit: Annotated[str, typer.Argument(metavar="EXHIBIT")],
-    reading: Annotated[str | None, typer.Option("--reading", help="Show this reading only.")] = None,
+    reading: Annotated[str | None, typer.Option("--reading", help="Show only this reading.")] = None,
     papers_dir: PapersDir = None,
     bundled: Bundled = False,
     jobs: Jobs = None,

@@ -30,7 +30,7 @@ class FrameCells:
     words
         What is held by a cell that holds something else than a real number, as its text: a word, a date, a pair.
     wrong
-        Why such a cell is no number, by (row, column).
+        Why such a cell is not a number, by (row, column).
     twice
         Keys that occur more than once, each with its kind: ``("row", key)``.
     """
@@ -48,7 +48,7 @@ class FrameCells:
         Raises
         ------
         CellError
-            If the row or column is missing or appears twice, or the cell holds something else than a real number.
+            If the row or column is missing or appears twice, or the cell does not hold a real number.
         """
         for kind, key, keys in (("row", row, self.rows), ("column", column, self.columns)):
             if (kind, key) in self.twice:

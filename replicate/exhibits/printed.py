@@ -149,7 +149,7 @@ def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedVal
     ------
     PrintedFileError
         If the file cannot be read, a cell is not a number, has more digits than the table prints, or a row
-        or column is missing, unknown, out of order or there twice. The message names file, line and cell.
+        or column is missing, unknown, out of order or duplicated. The message names file, line and cell.
     """
     name = display_name(path)
     (header_line, columns), body = _grid(path, name, table.columns)
@@ -204,7 +204,7 @@ def _grid(
     """Return line and column keys of the header, then line, row key and cells of every row."""
     records = _records(path, name)
     if not records:
-        msg = f"{name}:1: the file is empty; needed: a header with the columns {_listed(needed)}"
+        msg = f"{name}:1: the file is empty; expected: a header with the columns {_listed(needed)}"
         raise PrintedFileError(msg)
     (header_line, header), *body = records
     if len(header) == 1 and ";" in header[0]:
@@ -271,7 +271,7 @@ def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expecte
         if key != wanted:
             where = place if kind == "column" else f"{place}:{line}"
             order = _listed(expected)
-            msg = f"{where}: {kind} '{key}' is out of order, '{wanted}' comes first; the order is {order}"
+            msg = f"{where}: {kind} '{key}' is out of order, '{wanted}' comes first; expected order: {order}"
             raise PrintedFileError(msg)
 
 

@@ -170,7 +170,7 @@ class Library:
             same = [one for one in source if one.name == id and one.paper is not None]
             if len(same) > 1 and found[0] in same:
                 first, second = same[:2]
-                msg = f"{second.where}: there is a paper '{id}' already, in {first.where}"
+                msg = f"{second.where}: the paper '{id}' is already defined in {first.where}"
                 raise PaperDefinitionError(msg)
         if found:
             return found[0]

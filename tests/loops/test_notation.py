@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +18,7 @@ from replicate.loops.notation import controller_notation, parse_controller, pars
 POINTS = (0.3 + 0.2j, 2j, 1.0 + 5j, 0.01j)
 
 #: What a text means, written down in Python's own complex arithmetic.
-MEANINGS = {
+MEANINGS: dict[str, Callable[[complex], complex]] = {
     "e^{-1.5s}/(s+1)^3": lambda s: cmath.exp(-1.5 * s) / (s + 1) ** 3,
     "2 e^{-s}/(s(s+1))": lambda s: 2 * cmath.exp(-s) / s / (s + 1),
     "1/(s^2+0.4s+1) e^{-0.5s}": lambda s: cmath.exp(-0.5 * s) / (s * s + 0.4 * s + 1),
@@ -96,7 +97,7 @@ positive = st.floats(1e-9, 1e9)
 
 @given(num=st.lists(finite, min_size=1, max_size=4), den=st.lists(finite, min_size=1, max_size=3),
        leading=positive, dead_time=st.one_of(st.just(0.0), positive))  # fmt: skip
-def test_any_plant_round_trips_bit_by_bit(num, den, leading: float, dead_time) -> None:
+def test_any_plant_round_trips_bit_by_bit(num: list[float], den: list[float], leading: float, dead_time: float) -> None:
     if not np.any(num):
         num = [*num, 1.0]
     plant = Plant(num, [leading, *[0.0] * len(num), *den], dead_time)
@@ -109,7 +110,7 @@ def test_any_plant_round_trips_bit_by_bit(num, den, leading: float, dead_time) -
 
 
 @given(k=finite, ki=finite, b=finite, tf=positive, sp=st.one_of(positive, st.tuples(positive, positive)))
-def test_any_controller_round_trips(k, ki, b, tf: float, sp) -> None:
+def test_any_controller_round_trips(k: float, ki: float, b: float, tf: float, sp: float | tuple[float, float]) -> None:
     setpoint_filter = sp if isinstance(sp, float) else ((1.0,), (*sp, 1.0))
     pi = PI(k, ki, b, measurement_filter=tf, setpoint_filter=setpoint_filter)
     pid = PID(k, ki, kd=k, b=b, c=ki, derivative_filter=tf, measurement_filter_order=2)
@@ -125,7 +126,7 @@ def test_any_text_is_a_plant_or_one_line_with_a_column(text: str) -> None:
         assert slip is None or ("\n" not in str(slip) and 1 <= slip.column <= len(text) + 1)
 
 
-def _slip(read, text):
+def _slip(read: Callable[[str], object], text: str) -> NotationError | None:
     try:
         read(text)
     except NotationError as error:
@@ -202,8 +203,8 @@ def test_a_slip_in_a_controller_is_one_line_with_its_column(text: str, column: i
 
 def test_what_is_no_text_and_what_has_none() -> None:
     with pytest.raises(NotationError, match="a text is needed, not float"):
-        parse_plant(3.0)
+        parse_plant(3.0)  # type: ignore[arg-type]
     with pytest.raises(NotationError, match="a text is needed, not int"):
-        parse_controller(3)
+        parse_controller(3)  # type: ignore[arg-type]
     with pytest.raises(LoopError, match="has no notation; write it as a text"):
         plant_notation(Plant.from_function(lambda s: np.exp(-np.sqrt(s))))
