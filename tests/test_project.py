@@ -102,12 +102,12 @@ def test_a_paper_with_the_name_of_a_library_is_refused(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ('titel = "x"', "replicate.toml:1: 'titel' is unknown; allowed: title, intro, methods, papers,"),
-        ("title = 3", "replicate.toml:1: title is 3; needed: a text in quotes"),
-        ('# why\npapers = "papers"', "replicate.toml:2: papers is 'papers'; needed: a list of folders"),
+        ("title = 3", "replicate.toml:1: title is 3; expected: a text in quotes"),
+        ('# why\npapers = "papers"', "replicate.toml:2: papers is 'papers'; expected: a list of folders"),
         ('papers = ["../nowhere"]', "replicate.toml:1: papers: there is no folder ../nowhere"),
         ('methods = "m.md"', "replicate.toml:1: methods: there is no file m.md"),
         ('[theme]\naccent = "red"', "replicate.toml:2: theme: accent = 'red'; allowed: accent, paper, ink, each a"),
-        ('language = "English"', "replicate.toml:1: language is 'English'; needed: a tag such as 'en'"),
+        ('language = "English"', "replicate.toml:1: language is 'English'; expected: a tag such as 'en'"),
         ("title = ", "replicate.toml: is not readable TOML: "),
     ],
 )

@@ -72,7 +72,7 @@ def test_an_entry_point_that_names_no_paper_is_refused(folder: Path, value: str)
 def test_two_papers_of_one_name_are_refused(folder: Path) -> None:
     points = folder.parent / "lab_paper-1.0.dist-info" / "entry_points.txt"
     points.write_text("[replicate.papers]\nlab = lab_paper:paper\nlab2 = lab_paper:paper\n")
-    with pytest.raises(PaperDefinitionError, match="there is a paper 'lab' already"):
+    with pytest.raises(PaperDefinitionError, match="the paper 'lab' is already defined"):
         Library().paper("lab")
 
 

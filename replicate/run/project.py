@@ -113,12 +113,12 @@ def read_project(path: Path) -> Project:
             raise _wrong(path, key, f"'{key}' is unknown; allowed: {', '.join(_KEYS)}")
     for key in (*_TEXTS, *_PATHS, "methods"):
         if not isinstance(data.get(key, ""), str):
-            raise _wrong(path, key, f"{key} is {data[key]!r}; needed: a text in quotes")
+            raise _wrong(path, key, f"{key} is {data[key]!r}; expected: a text in quotes")
     if not isinstance(data.get("bundled", False), bool):
-        raise _wrong(path, "bundled", f"bundled is {data['bundled']!r}; needed: true or false")
+        raise _wrong(path, "bundled", f"bundled is {data['bundled']!r}; expected: true or false")
     language = data.get("language", "en")
     if not _LANGUAGE.fullmatch(language):
-        raise _wrong(path, "language", f"language is {language!r}; needed: a tag such as 'en' or 'pt-BR'")
+        raise _wrong(path, "language", f"language is {language!r}; expected: a tag such as 'en' or 'pt-BR'")
     root = path.parent
     methods = root / data["methods"] if data.get("methods") else None
     if methods is not None and not methods.is_file():
@@ -144,7 +144,7 @@ def _papers(path: Path, data: dict[str, Any]) -> tuple[tuple[Path, ...], tuple[s
     """Tell folders from names of installed papers: a name is one if there is no such folder."""
     names = data.get("papers", [] if data.get("bundled") else ["papers"])
     if not isinstance(names, list) or not all(isinstance(name, str) and name for name in names):
-        raise _wrong(path, "papers", f"papers is {names!r}; needed: a list of folders or names of installed papers")
+        raise _wrong(path, "papers", f"papers is {names!r}; expected: a list of folders or names of installed papers")
     folders, installed = [], []
     for name in names:
         if (path.parent / name).is_dir():
@@ -158,7 +158,7 @@ def _papers(path: Path, data: dict[str, Any]) -> tuple[tuple[Path, ...], tuple[s
 
 def _theme(path: Path, theme: object) -> dict[str, str]:
     if not isinstance(theme, dict):
-        raise _wrong(path, "theme", f"theme is {theme!r}; needed: a table of colours")
+        raise _wrong(path, "theme", f"theme is {theme!r}; expected: a table of colours")
     for name, colour in theme.items():
         if name not in _THEME or not isinstance(colour, str) or not _COLOUR.fullmatch(colour):
             allowed = f"{', '.join(_THEME)}, each a colour such as '#0b5cad'"

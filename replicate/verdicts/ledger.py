@@ -223,7 +223,7 @@ def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> Ledge
         msg = f"{place}: consequence = '{consequence}' needs evidence, but 'evidence' is empty"
         raise LedgerError(msg)
     if entry.answer and not entry.informed:
-        msg = f"{place}: 'answer' is given, but not when and how the authors were informed; needed: 'informed'"
+        msg = f"{place}: 'answer' is given, but not when and how the authors were informed; expected: 'informed'"
         raise LedgerError(msg)
     _check_corrected(place, entry)
     return entry
