@@ -73,6 +73,7 @@ def table(reports: Sequence[pytest.TestReport]) -> list[str]:
     if not found:
         return []
     rows = [("kind", "tried", "held"), *((kind, str(tried), str(held)) for kind, (tried, held) in found.items())]
-    rows.append(("all", *(str(sum(numbers)) for numbers in zip(*found.values(), strict=True))))
+    tried, held = (sum(numbers) for numbers in zip(*found.values(), strict=True))
+    rows.append(("all", str(tried), str(held)))
     width = max(len(kind) for kind, _, _ in rows)
     return [f"{kind:{width}}  {tried:>6}  {held:>6}" for kind, tried, held in rows]

@@ -217,10 +217,10 @@ def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('"xlim": [0.0,', '"xlim": [NaN,', "toy/fig-1.json: is no JSON: NaN is no number"),
-        ('"xlim": [0.0, ', '"xlim": [', "xlim of panel 'panel 1' is [10.0], needed: two different numbers"),
-        ('"xlim": [0.0,', '"xlim": ["0",', "xlim of panel 'panel 1' is [\"0\", 10.0], needed: two different"),
-        ('"xlim": [0.0,', '"xlim": [10.0,', "xlim of panel 'panel 1' is [10.0, 10.0], needed: two different"),
+        ('"xlim": [0.0,', '"xlim": [NaN,', "toy/fig-1.json: is not valid JSON: NaN is not a number"),
+        ('"xlim": [0.0, ', '"xlim": [', "xlim of panel 'panel 1' is [10.0]; expected: two different numbers"),
+        ('"xlim": [0.0,', '"xlim": ["0",', "xlim of panel 'panel 1' is [\"0\", 10.0]; expected: two different"),
+        ('"xlim": [0.0,', '"xlim": [10.0,', "xlim of panel 'panel 1' is [10.0, 10.0]; expected: two different"),
         ('"xscale": "linear"', '"xscale": "log"', "xlim of panel 'panel 1' is not positive on a logarithmic axis"),
         ('"title": ""', '"title": 5', "title of panel 'panel 1' is 5; expected: a text"),
         ('"title": ""', '"legend": [null]', "toy/fig-1.json"),

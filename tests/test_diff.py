@@ -231,7 +231,7 @@ def test_panels_are_named_and_matched() -> None:
 
 
 def test_other_fonts_and_resolutions() -> None:
-    def with_fonts(family: str, dpi: float) -> Draw:
+    def with_fonts(family: str, dpi: float) -> Callable[[Canvas], None]:
         def draw(canvas: Canvas) -> None:
             BOTH(canvas)
             canvas.set_dpi(dpi)

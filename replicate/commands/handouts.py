@@ -27,7 +27,7 @@ def handout(
     solutions: Annotated[
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
-    format: Annotated[str, typer.Option("--format", help="pdf or html.")] = "pdf",  # noqa: A002
+    format: Annotated[str, typer.Option("--format", help="File format: pdf or html.")] = "pdf",  # noqa: A002
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,

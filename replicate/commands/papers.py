@@ -84,12 +84,13 @@ def chart(
     name: Annotated[str | None, typer.Option("--chart", help="Which chart; default: the paper's first.")] = None,
     papers_dir: PapersDir = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="File, .svg or .png; default: in build/charts.", dir_okay=False)
+        Path | None,
+        typer.Option("--out", help="Output file, .svg or .png; default: a file in build/charts.", dir_okay=False),
     ] = None,
 ) -> None:
     """Draw a chart of a paper for parameters of your own.
 
-    They are given as --NAME VALUE; without any, the message names those of the chart.
+    Give them as --NAME VALUE; without any, the message lists those that the chart needs.
     """
     from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
     from replicate.staging import replace_files, staged

@@ -176,7 +176,7 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         changes = [Change.of_figure(paper, exhibit, difference) for difference in found.differences]
         picture = f"{paper}/{exhibit}.png"
         if not (folder / picture).is_file():
-            changes.append(Change(paper, exhibit, "new", f"its picture for people, {picture}, is missing", "picture"))
+            changes.append(Change(paper, exhibit, "new", f"its picture, {picture}, is missing", "picture"))
         old = before.version < after.version
         return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs, outdated=old)
     assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind

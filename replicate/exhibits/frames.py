@@ -109,7 +109,7 @@ def _read(cells: FrameCells, key: Key, value: object) -> None:
     elif isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         kind = "text" if isinstance(value, str) else type(value).__name__
         cells.words[key] = given_text(value) or str(value)
-        cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds {kind} ({value!r}), needed: a number"
+        cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds {kind} ({value!r}); expected: a number"
     else:
         number = float(value)
         cells.numbers[key] = None if number != number else number  # noqa: PLR0124  -- NaN

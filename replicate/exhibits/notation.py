@@ -122,7 +122,7 @@ class Notation:
 
     def __post_init__(self) -> None:
         if self.decimal == self.thousands:
-            msg = f"decimal and thousands are both '{self.decimal}'; needed: two different marks"
+            msg = f"decimal and thousands are both '{self.decimal}'; expected: two different marks"
             raise ValueError(msg)
 
     @property

@@ -72,7 +72,7 @@ def read_points(path: Traversable | Path) -> list[Point]:
     reader = csv.DictReader(io.StringIO(text, newline=""))
     columns = reader.fieldnames or ()
     if not set(_NEEDED) <= set(columns) <= {*_NEEDED, "panel"}:
-        msg = f"{name}:1: the columns are {','.join(columns) or 'missing'}; needed: {','.join(_NEEDED)} (and panel)"
+        msg = f"{name}:1: the columns are {','.join(columns) or 'missing'}; expected: {','.join(_NEEDED)} (and panel)"
         raise PrintedFileError(msg)
     points: dict[str, Point] = {}
     for row in reader:
@@ -96,7 +96,7 @@ def _point(place: str, row: dict[str, str], line: int) -> Point:
             msg = f"{place}: column '{column}': '{cells[column]}' is not {needed}"
             raise PrintedFileError(msg)
     if not cells["point"]:
-        msg = f"{place}: column 'point' is blank; needed: a name"
+        msg = f"{place}: column 'point' is blank; expected: a name"
         raise PrintedFileError(msg)
     return Point(
         cells["point"],

@@ -26,7 +26,7 @@ def check_record(figure: object, panels: object) -> None:
     if not isinstance(figure, dict):
         refuse("'figure' must be an object")
     if not isinstance(panels, list) or not all(isinstance(entry, dict) and entry.keys() >= _NEEDED for entry in panels):
-        refuse(f"needed: a list of objects, each with {', '.join(sorted(_NEEDED))}")
+        refuse(f"expected: a list of objects, each with {', '.join(sorted(_NEEDED))}")
     _check_fields(figure, "the figure")
     seen: set[str] = set()
     for entry in panels:
@@ -36,15 +36,15 @@ def check_record(figure: object, panels: object) -> None:
             if entry.get(f"{axis}scale") == "log" and min(entry[f"{axis}lim"]) <= 0.0 and "projection" not in entry:
                 refuse(f"{axis}lim of {where} is not positive on a logarithmic axis")
         if entry["panel"] in seen:
-            refuse(f"describes {where} twice, needed: every panel once")
+            refuse(f"describes {where} twice; allowed: each panel once")
         seen.add(entry["panel"])
 
 
 def _check_fields(entry: Mapping[str, Any], where: str) -> None:
     for name, value in entry.items():
-        holds, needed = _FIELDS.get(name, (_anything, ""))
+        holds, expected = _FIELDS.get(name, (_anything, ""))
         if not holds(value):
-            refuse(f"{name} of {where} is {_shown(value)}, needed: {needed}")
+            refuse(f"{name} of {where} is {_shown(value)}; expected: {expected}")
 
 
 def refuse(why: str, line: int | None = None) -> NoReturn:

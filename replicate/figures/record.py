@@ -129,11 +129,11 @@ def _parsed(text: str) -> Any:
     try:
         return json.loads(text, parse_constant=_no_number)
     except json.JSONDecodeError as error:
-        refuse(f"is no JSON: {error.msg}", error.lineno)
+        refuse(f"is not valid JSON: {error.msg}", error.lineno)
     except (ValueError, RecursionError) as error:
-        refuse(f"is no JSON: {error}")
+        refuse(f"is not valid JSON: {error}")
 
 
 def _no_number(name: str) -> NoReturn:
-    msg = f"{name} is no number"
+    msg = f"{name} is not a number"
     raise ValueError(msg)

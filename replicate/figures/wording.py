@@ -48,7 +48,7 @@ def _distance_words(pair: Pair) -> tuple[str, float]:
     if pair.name in pair.axes.get("points", ()) and counts[0] != counts[1]:
         return f"now has {counts[1]} points (was {counts[0]})", furthest.largest
     if not np.isfinite(furthest.largest):
-        return "is now out of sight" if furthest is pair.distance[1] else "came into sight", furthest.largest
+        return "is no longer visible" if furthest is pair.distance[1] else "is now visible", furthest.largest
     at = _at(pair.axes, furthest.place)
     return f"moved: at most {percent(furthest.largest)} of the axes at {at}", furthest.largest
 

@@ -71,7 +71,7 @@ def found_as(name: str, module: str, where: str) -> Found:
 def checked(name: str, where: str, paper: object) -> Found:
     """Return what a module calls its paper, if it is one."""
     if not isinstance(paper, Paper):
-        return Found(name, where, error=f"{where}: defines no 'paper' that is a replicate.exhibits.Paper")
+        return Found(name, where, error=f"{where}: defines no 'paper' of type replicate.exhibits.Paper")
     return Found(paper.id, where, paper)
 
 

@@ -107,6 +107,16 @@ def child(action: Callable[[], None]) -> int:
     return os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
 
 
+def killing(at: int, folder: Path, action: Callable[[Path], None]) -> Callable[[], None]:
+    """Return the action with a kill at one of its operations."""
+
+    def act() -> None:
+        kill_at(at, folder)
+        action(folder)
+
+    return act
+
+
 def fresh(folder: Path, prepare: Callable[[Path], None]) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     prepare(folder)
@@ -122,13 +132,13 @@ def killed(name: str, folder: Path, every: int) -> Iterator[tuple[str, str]]:
     assert old != new
     for first in count(1, every):
         fresh(folder, prepare)
-        if not child(lambda: (kill_at(first, folder), action(folder))):  # type: ignore[func-returns-value]  # noqa: B023
+        if not child(killing(first, folder, action)):
             return
         yield f"{name}, killed at {first}: its files", torn(folder, old, new)
         for second in count(1, every):
             fresh(folder, prepare)
-            child(lambda: (kill_at(first, folder), action(folder)))  # type: ignore[func-returns-value]  # noqa: B023
-            again = child(lambda: (kill_at(second, folder), recover(folder)))  # type: ignore[func-returns-value]  # noqa: B023
+            child(killing(first, folder, action))
+            again = child(killing(second, folder, recover))
             case = f"{name}, killed at {first}, the next run at {second}"
             wrong = torn(folder, old, new)
             recover(folder)
@@ -151,7 +161,12 @@ def signalled(name: str, folder: Path, every: int) -> Iterator[tuple[str, str]]:
             fresh(folder, prepare)
             reached = folder.parent / "reached"
             reached.unlink(missing_ok=True)
-            child(lambda: (two_signals(first, gap, folder, reached), action(folder)))  # type: ignore[func-returns-value]  # noqa: B023
+
+            def act(first: int = first, gap: int = gap, reached: Path = reached) -> None:
+                two_signals(first, gap, folder, reached)
+                action(folder)
+
+            child(act)
             if not reached.exists():
                 break
             yield f"{name}, signals at {first} and {first + gap}", "" if tree(folder) in (old, new) else "a mixture"
