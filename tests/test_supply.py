@@ -47,7 +47,7 @@ def test_the_lock_says_how_old_it_is_and_every_file_has_its_digest() -> None:
 
 @pytest.fixture(scope="module")
 def wheels(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
-    made = []
+    made: list[Path] = []
     for name in ("one", "other"):
         folder = tmp_path_factory.mktemp(name)
         build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
