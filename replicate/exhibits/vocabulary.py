@@ -10,6 +10,7 @@ This module only describes: computing, judging and rendering happen elsewhere. E
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
@@ -19,6 +20,7 @@ from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
 from replicate.exhibits.printed import USUAL, Key, Near
 from replicate.exhibits.read_off import Point
+from replicate.exhibits.rows import Row, frame_of_rows
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -120,6 +122,43 @@ class Table:
     def notation_of(self, column: str) -> Notation:
         """Return how a column prints its values."""
         return self.notation if isinstance(self.notation, Notation) else self.notation.get(column, PLAIN)
+
+    def frame(self, rows: Mapping[str, Row]) -> pd.DataFrame:
+        """Return the whole table as a reading returns it, from the cells of each row.
+
+        Parameters
+        ----------
+        rows
+            By row key, in any order where the table names its rows: a mapping from column key to cell (a column left
+            out is blank), a sequence with a cell for each column, or the cell itself if there is one column. A cell is
+            a number, or what a column of another notation holds: a word, a date, a pair.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Rows and columns in the table's order. A table that names no rows or no columns takes those given.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If rows or columns are not those of the table, or a row has too few or too many cells.
+
+        Examples
+        --------
+        >>> table = Table("table-1", "table", "Squares", rows=("two", "three"), columns=("n", "square"))
+        >>> table.frame({"three": [3, 9], "two": {"n": 2, "square": 4}})
+               n  square
+        two    2       4
+        three  3       9
+        >>> table.frame({"two": [2, 4]})
+        Traceback (most recent call last):
+        replicate.errors.PaperDefinitionError: table-1: row 'three' is missing
+        """
+        return frame_of_rows(self.id, self.rows, self.columns, rows)
+
+    def blank(self) -> pd.DataFrame:
+        """Return the table with nothing computed: what a reading returns where all inputs are missing."""
+        return self.frame({row: [math.nan] * len(self.columns) for row in self.rows})
 
     def reading(
         self, id: str, title: str, note: str = ""

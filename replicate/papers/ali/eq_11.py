@@ -102,10 +102,9 @@ eq_11_error = paper.table(
 
 
 def _errors(data: dict[str, float], coefficients: tuple[float, float, float, float]) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {row: [data[row], value := cubic(float(row), coefficients), value / data[row] - 1.0] for row in ROWS}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(eq_11_error.columns))
+    return eq_11_error.frame(rows)
 
 
 @eq_11_error.reading("as-written", "(11) as printed, against the printed $T_i$")

@@ -185,7 +185,6 @@ equations = paper.table(
 
 
 def _count(restored: bool) -> pd.DataFrame:
-    import pandas as pd
 
     checks: dict[str, Callable[[Point], bool]] = {
         "3": _holds_3,
@@ -197,7 +196,7 @@ def _count(restored: bool) -> pd.DataFrame:
     }
     grid = list(points())
     rows = {row: [len(grid), sum(not holds(p) for p in grid)] for row, holds in checks.items()}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(equations.columns))
+    return equations.frame(rows)
 
 
 @equations.reading("as-written", "As it stands on the page", note="(5) with its bracket as scanned; (10) as printed.")

@@ -27,7 +27,7 @@ quoted_settings = paper.table(
 @quoted_settings.reading("as-written", "No rule is given")
 def nothing() -> pd.DataFrame:
     """Compute nothing: the paper has no rule for these settings."""
-    return pd.DataFrame(index=list(quoted_settings.rows), columns=list(quoted_settings.columns), dtype=float)
+    return quoted_settings.blank()
 
 
 def _optimal(form: str) -> pd.DataFrame:

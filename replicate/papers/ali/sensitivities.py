@@ -63,8 +63,6 @@ def sensitivity(
 
 def compute(table: Table, structure: Structure, peak: Peak, settings: Callable[[str, str], Settings]) -> pd.DataFrame:
     """Return a whole table: the settings by the rules, and Ms."""
-    import pandas as pd
-
     rows = {}
     for row in table.rows:
         design = designed(table.id, row)
@@ -75,7 +73,7 @@ def compute(table: Table, structure: Structure, peak: Peak, settings: Callable[[
             "Ms_star": float(specified_sensitivity(Fraction(row))),
         }
         rows[row] = [values[column] for column in table.columns]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table.columns))
+    return table.frame(rows)
 
 
 def add_readings(table: Table) -> None:

@@ -89,8 +89,6 @@ sensitivity_count = paper.table(
 @sensitivity_count.reading("as-written", "Number of printed values met")
 def count() -> pd.DataFrame:
     """Count the printed Ms that each hypothesis meets."""
-    import pandas as pd
-
     rows = {}
     for id, (_, structure, peak, settings) in HYPOTHESES.items():
         equal, deviations = [], []
@@ -100,4 +98,4 @@ def count() -> pd.DataFrame:
             equal.append(sum(meets(texts[row, "Ms"], value) for row, value in values.items()))
             deviations += [abs(value / float(texts[row, "Ms"]) - 1.0) for row, value in values.items()]
         rows[id] = [*equal, sum(equal), 100.0 * max(deviations), len(deviations)]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(sensitivity_count.columns))
+    return sensitivity_count.frame(rows)

@@ -80,10 +80,9 @@ def robustness(x: Fraction, settings: Settings, structure: Structure) -> dict[st
 
 
 def _compute(structure: Structure) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {id: robustness(x, settings, structure) for id, (x, settings) in DESIGNS.items()}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(stability.columns))
+    return stability.frame(rows)
 
 
 @stability.reading("as-written", "Controller (2), $\\alpha = 0.1$")

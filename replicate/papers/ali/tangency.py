@@ -80,8 +80,6 @@ tangency = paper.table(
 )
 def compute() -> pd.DataFrame:
     """Compute settings and sensitivities for both signs of q."""
-    import pandas as pd
-
     rows = {}
     for row in tangency.rows:
         x = Fraction(row)
@@ -93,4 +91,4 @@ def compute() -> pd.DataFrame:
                 true_peak(x, branch),
             ]
         rows[row] = [*values, tangency_frequency(x)]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(tangency.columns))
+    return tangency.frame(rows)

@@ -58,8 +58,6 @@ sample_grid = paper.table(
 @sample_grid.reading("as-written", "Printed times in sample steps")
 def in_steps() -> pd.DataFrame:
     """Divide every printed time by its row's sample step."""
-    import pandas as pd
-
     rows: dict[str, list[float]] = {}
     for table, process in TABLES:
         printed = paper.printed_cells(table.id)
@@ -75,7 +73,7 @@ def in_steps() -> pd.DataFrame:
             counts = [time / step for time in times]
             pairs = zip(counts, off, strict=True)
             rows[f"{table.id}-{row}"] = [step, *(entry for pair in pairs for entry in pair)]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(sample_grid.columns))
+    return sample_grid.frame(rows)
 
 
 def last_digit(value: float) -> float:
@@ -116,20 +114,18 @@ match_count = paper.table(
 @match_count.reading("as-written", "Number of printed values met")
 def matches() -> pd.DataFrame:
     """Count the printed values that each combination of assumptions meets."""
-    import pandas as pd
-
     rows: dict[str, list[int]] = {}
     for assumption in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS):
         equal, near, cells = [], 0, 0
         for table, process in TABLES:
-            computed = assumption.table(process, table.rows)
+            computed = assumption.table(table, process)
             printed = paper.printed_cells(table.id)
             pairs = [(text, number(computed, row, column)) for (row, column), text in printed.items()]
             equal.append(sum(_equal(text, value) for text, value in pairs))
             near += sum(_equal(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs)
             cells += len(pairs)
         rows[assumption.id] = [*equal, sum(equal), near, cells]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(match_count.columns))
+    return match_count.frame(rows)
 
 
 def number(frame: pd.DataFrame, row: str, column: str) -> float:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import PI
 from replicate.loops.tune import PRINTED
-from replicate.papers.bayhan.processes import SPECIFICATIONS, Convention, Process, controllers, specifications
+from replicate.papers.bayhan.processes import Convention, Process, controllers, specifications
 from replicate.papers.bayhan.toolchain import sampled_specifications
 
 if TYPE_CHECKING:
@@ -27,13 +27,11 @@ class Assumption:
     variant: str = PRINTED
     note: str = ""
 
-    def table(self, process: Process, rows: Sequence[str]) -> pd.DataFrame:
+    def table(self, table: Table, process: Process) -> pd.DataFrame:
         """Compute a whole table."""
-        import pandas as pd
-
         found = controllers(process, self.convention, self.variant)
-        values = {row: self.method(process, found[row]) for row in rows}
-        return pd.DataFrame.from_dict(values, orient="index", columns=list(SPECIFICATIONS))
+        values = {row: self.method(process, found[row]) for row in table.rows}
+        return table.frame(values)
 
 
 TEXT = Assumption(
@@ -82,7 +80,7 @@ def add_readings(table: Table, process: Process) -> None:
     for assumption in READINGS:
 
         def compute(assumption: Assumption = assumption) -> pd.DataFrame:
-            return assumption.table(process, table.rows)
+            return assumption.table(table, process)
 
         table.reading(assumption.id, assumption.title, assumption.note)(compute)
 

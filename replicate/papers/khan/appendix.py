@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 from scipy.optimize import root
 
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import case_gains, plant
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -112,7 +115,7 @@ def _j_frame(sign: float) -> pd.DataFrame:
     for p, kp, ki in POINTS:
         formula, exact = closed_form(p, kp, ki, sign=sign), integral(p, kp, ki)
         rows[f"p={p:g}, KP={kp:g}, KI={ki:g}"] = {"formula": formula, "integral": exact, "ratio": formula / exact}
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return appendix_j.frame(rows)
 
 
 @appendix_j.reading("as-written", "as printed")
@@ -150,4 +153,4 @@ def fits() -> pd.DataFrame:
                 "J_opt": best, "J_fit": reached, "J_loss": 100.0 * (reached / best - 1.0),
                 "J_estimate": estimate(p), "J_error": 100.0 * (estimate(p) / best - 1.0),
             }  # fmt: skip
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return appendix_fit.frame(rows)

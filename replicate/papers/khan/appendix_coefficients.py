@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.appendix import optimum
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -47,7 +50,7 @@ def _frame(spaced: Callable[[float, float], Array]) -> pd.DataFrame:
         target = np.array([optimum(float(x))[which] for x in p])
         basis = np.stack([np.ones_like(p), p, np.sqrt(p)][: len(TERMS[case])], axis=1)
         values += [float(f"{x:.6g}") for x in np.linalg.lstsq(basis, target, rcond=None)[0]]
-    return pd.DataFrame({"value": values}, index=list(ROWS))
+    return appendix_coefficients.frame(dict(zip(ROWS, values, strict=True)))
 
 
 @appendix_coefficients.reading("as-written", "least squares, $ph$ in equal ratios")

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pandas as pd
 from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.sweep import stability_limit, sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 VISIBLE = (0.01, 0.1, 1.0)  # overshoot, in per cent
 
@@ -56,4 +60,4 @@ def compare() -> pd.DataFrame:
         }
         for ph in PH
     }
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return breakpoint_table.frame(rows)

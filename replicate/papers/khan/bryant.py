@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from replicate.papers.khan import paper
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 DAMPING = {"zeta1.0": 1.0, "zeta0.6": 0.6, "zeta0.0": 0.0}
 
@@ -48,7 +50,7 @@ def gain_for_damping_pade(zeta: float) -> float:
 @bryant.reading("as-written", "Dominant poles, exact dead time")
 def as_written() -> pd.DataFrame:
     """Compute the gains with the exact dead time."""
-    return pd.DataFrame({"Kh": [gain_for_damping(zeta) for zeta in DAMPING.values()]}, index=list(DAMPING))
+    return bryant.frame({row: gain_for_damping(zeta) for row, zeta in DAMPING.items()})
 
 
 @bryant.reading(
@@ -56,4 +58,4 @@ def as_written() -> pd.DataFrame:
 )
 def pade() -> pd.DataFrame:
     """Compute the gains with a first-order Pade model."""
-    return pd.DataFrame({"Kh": [gain_for_damping_pade(zeta) for zeta in DAMPING.values()]}, index=list(DAMPING))
+    return bryant.frame({row: gain_for_damping_pade(zeta) for row, zeta in DAMPING.items()})

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import case_gains
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # (7a): K_P = a p^2 h + b p + c/h, K_I = a p^2 + b p/h + c/h^2; (7b): a/h + b p + c sqrt(p/h), and K_I alike
 ROWS = tuple(f"{case}_{gain}_{letter}" for case in ("7a", "7b") for gain in ("KP", "KI") for letter in "abc")
@@ -70,7 +72,7 @@ def implied() -> pd.DataFrame:
         values += [float(f"{x:.12g}") for x in _combinations(gain)[0][1]]
     for gain, factor in (("KP", 0.5), ("KI", 0.85)):
         values += [factor * x for x in _appendix(gain)]
-    return pd.DataFrame({"value": values}, index=list(ROWS))
+    return coefficients.frame(dict(zip(ROWS, values, strict=True)))
 
 
 def _appendix(gain: str) -> tuple[float, float, float]:
@@ -95,4 +97,4 @@ def lost_zeros() -> pd.DataFrame:
         own = tuple(float(printed[f"7a_{gain}_{letter}", "value"]) for letter in "abc")
         jump = next(jump for jump, values in found if max(abs(x - y) for x, y in zip(values, own, strict=True)) < 1e-12)
         rows[f"{gain}, printed"] = [*own, jump]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(search.columns))
+    return search.frame(rows)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import cache
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from replicate.exhibits.matching import meets
 from replicate.loops import PI, Loop, Signal
@@ -15,6 +14,9 @@ from replicate.papers.khan import paper
 from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
 from replicate.papers.khan.sweep import stability_limit
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES, RULES_1, RULES_2
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 NEAR = 0.005  # half a per cent: the printed times carry errors of that size
 DEAD_TIMES = {"10": 10.0, "1": 1.0, "0.1": 0.1}  # by the label of ph; p = 1 throughout
@@ -140,7 +142,7 @@ def count() -> pd.DataFrame:
     for rule, versions in VERSIONS.items():
         for name, version in versions.items():
             rows[name] = _count(_version_cells(rule, version))
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return definitions.frame(rows)
 
 
 def _version_cells(rule: str, version: Version) -> list[tuple[str, float]]:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import PRINTED, RESTORED, UNROUNDED, case_gains
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.figure import Figure
 
 eq_7 = paper.table(
@@ -18,6 +18,7 @@ eq_7 = paper.table(
     "The proposed gains over both cases",
     kind="formula",
     printed=False,
+    columns=("KPh", "KIh2"),
     caption="$K_P h$ and $K_I h^2$ of (7a) and (7b). The two cases meet at $ph = 0.2$, where both are given; the jump "
     "is the relative difference of (7a) from (7b).",
     labels={"KPh": "$K_P h$", "KIh2": "$K_I h^2$"},
@@ -31,7 +32,7 @@ def _frame(variant: str) -> pd.DataFrame:
     rows = {f"{case} ph={ph:g}": case_gains(case, ph, 1.0, variant) for case, ph in ROWS}
     left, right = rows["7a ph=0.2"], rows["7b ph=0.2"]
     rows["jump at ph=0.2 (%)"] = tuple(100.0 * (a / b - 1.0) for a, b in zip(left, right, strict=True))  # type: ignore[assignment]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=["KPh", "KIh2"])
+    return eq_7.frame(rows)
 
 
 @eq_7.reading("as-written", "as printed")

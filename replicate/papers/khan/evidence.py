@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from replicate.exhibits.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.definitions import VERSIONS, specifications_of
 from replicate.papers.khan.processes import loop, settling_after_load
 from replicate.papers.khan.tables import LOAD_AT, QUANTITIES
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 swapped = paper.table(
     "swapped-rows",
@@ -63,7 +65,7 @@ def swapped_rows() -> pd.DataFrame:
         text = printed[rule, "td"]
         own, crossed = (_against(text, exact[name]) for name in (rule, other))
         rows[rule] = [float(text), exact[rule], exact[other], own[0], crossed[0], own[1], crossed[1]]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(swapped.columns))
+    return swapped.frame(rows)
 
 
 def _against(text: str, value: float) -> tuple[float, float]:
@@ -86,7 +88,7 @@ def scaled() -> pd.DataFrame:
         rows[f"{rule}, ts/h"] = [*(float(text) / h for text, h in cells), y.settling_time(0.02)]
         tr = float(example[f"{rule}_tr", "value"]) / 1.82
         rows[f"{rule}, tr/h"] = [math.nan, math.nan, math.nan, tr, y.rise_time()]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(scaling.columns))
+    return scaling.frame(rows)
 
 
 @cohen_coon.reading("as-written", "Versions of the rule")
@@ -100,4 +102,4 @@ def cohen_coon_versions() -> pd.DataFrame:
         found = {h: specifications_of(version(h), h) for h in (1.0, 0.1)}
         met = [float(sum(meets(printed["CC", f"ph{h:g}_{q}"], found[h][q]) for q in QUANTITIES)) for h in (1.0, 0.1)]
         rows[name.removeprefix("CC: ")] = [*version(1.0), *(found[1.0][q] for q in QUANTITIES), *met]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(cohen_coon.columns))
+    return cohen_coon.frame(rows)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from replicate.papers.khan import closed_form, paper
 from replicate.papers.khan.fits import overshoot_fits, rise_time_fit
 from replicate.papers.khan.sweep import dense
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -41,7 +45,7 @@ def coverage() -> pd.DataFrame:
             "overshoot": _row(peak, closed_form.first_peak(ph, kh), overshoot_fits(ph, kh), loops.first_peak, 1.0),
             "rise-time": _row(rise, closed_form.rise_time(ph, kh), fit, loops.rise_time, loops.rise_time / 100.0),
         }
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(exact_forms.columns))
+    return exact_forms.frame(rows)
 
 
 def _row(mask: NDArray[np.bool_], closed: Array, fit: Array, exact: Array, scale: Array | float) -> list[float]:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pandas as pd
 
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import overshoot_fit
 from replicate.papers.khan.processes import plant
 from replicate.papers.khan.sweep import sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 ROWS_31 = ("L_IB", "L_PB", "Bryant_tr", "Bryant_ts", "L_IH", "L_PH", "Haalman_overshoot", "Haalman_tr", "Haalman_ts",
            "overshoot_K0.28", "L_P")  # fmt: skip
@@ -41,7 +45,7 @@ def _example_3_1(overshoot: float) -> pd.DataFrame:
         integral, gain_bryant, bryant.rise_time(), bryant.settling_time(), integral, gain_haalman,
         100.0 * haalman.overshoot(), haalman.rise_time(), haalman.settling_time(), overshoot, 0.28 * tau,
     ]  # fmt: skip
-    return pd.DataFrame({"value": values}, index=list(ROWS_31))
+    return example_3_1.frame(dict(zip(ROWS_31, values, strict=True)))
 
 
 @example_3_1.reading("as-written", "exact")

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import pandas as pd
 
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
 from replicate.papers.khan.sweep import stability_limit, sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 ROWS_21 = ("ph", "A1", "B1", "overshoot_estimate", "overshoot_actual", "overshoot_error", "A2", "B2", "C2", "D2",
            "tr_estimate", "tr_actual")  # fmt: skip
@@ -36,7 +40,7 @@ def _example_2_1(p: float) -> pd.DataFrame:
     parts = [float(part) for part in rise_time_parts(ph)]
     values = [ph, a1, b1, estimate, float(exact.overshoot[0]), float(exact.overshoot[0]) - estimate, *parts,
               H * float(rise_time_fit(ph, H)), H * float(exact.rise_time[0])]  # fmt: skip
-    return pd.DataFrame({"value": values}, index=list(ROWS_21))
+    return example_2_1.frame(dict(zip(ROWS_21, values, strict=True)))
 
 
 @example_2_1.reading("as-written", "$p = 1.6667$, as the example says")
@@ -73,7 +77,7 @@ def example_2_1_from_print() -> pd.DataFrame:
         "overshoot_error": printed["overshoot_actual"] - printed["overshoot_estimate"],
         "tr_estimate": H * (parts[0] * np.exp(-H / parts[1]) + parts[2] * np.exp(-H / parts[3])),
     }
-    return pd.DataFrame({"value": values})
+    return example_2_1.frame(values)
 
 
 example_2_2 = paper.table(
@@ -89,7 +93,7 @@ example_2_2 = paper.table(
 @example_2_2.reading("as-written", "$\\cos wh = -p/K$, $\\sin wh = w/K$")
 def example_2_2_as_written() -> pd.DataFrame:
     """Solve the two equations."""
-    return pd.DataFrame({"value": [stability_limit(1.0)]}, index=["K_max"])
+    return example_2_2.frame({"K_max": stability_limit(1.0)})
 
 
 example_2_3 = paper.table(
@@ -113,7 +117,7 @@ def example_2_3_exact() -> pd.DataFrame:
     gain = brentq(lambda k: float(sweep(1.0, np.array([k])).rise_time[0]) - 1.0, 0.2, 0.6, xtol=1e-13)
     at = sweep(1.0, np.array([0.375]))
     values = [gain, float(at.rise_time[0]), float(at.overshoot[0])]
-    return pd.DataFrame({"value": values}, index=list(example_2_3.rows))
+    return example_2_3.frame(dict(zip(example_2_3.rows, values, strict=True)))
 
 
 @example_2_3.reading("formulas", "with the fits (2) and (3)", "The 'more precise estimates' that the text mentions.")
@@ -123,4 +127,4 @@ def example_2_3_formulas() -> pd.DataFrame:
 
     gain = brentq(lambda k: float(rise_time_fit(1.0, k)) - 1.0, 0.2, 0.6, xtol=1e-13)
     values = [gain, float(rise_time_fit(1.0, 0.375)), overshoot_fit(1.0, 0.375)]
-    return pd.DataFrame({"value": values}, index=list(example_2_3.rows))
+    return example_2_3.frame(dict(zip(example_2_3.rows, values, strict=True)))

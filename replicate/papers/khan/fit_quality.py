@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
+from replicate.exhibits import Table
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import (
     CASES,
@@ -19,6 +20,9 @@ from replicate.papers.khan.fits import (
     rise_time_fit,
 )
 from replicate.papers.khan.sweep import Sweep, dense, stability_limit, sweep
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -54,6 +58,7 @@ edges = paper.table(
     "Where the cases of (2) meet, and what they leave out",
     kind="formula",
     printed=False,
+    columns=("value", "ph", "Kh"),
     caption="Jumps: the largest difference of two neighbouring cases on their common edge, in percentage points, and "
     "where. Then three gains: below the first $M$ is complex, up to the second it is negative (both mean an estimate "
     "of zero), and from 1.5 to the third, the stability limit, no case applies. Last, the share of the stability "
@@ -84,17 +89,23 @@ def _overshoot(loops: Sweep, *, first_peak: bool = False) -> pd.DataFrame:
     estimate = overshoot_fits(loops.ph, loops.kh)
     masks = {f"Case {case}": cases == case for case in CASES} | {"all cases": cases != ""}
     masks |= {f"ph = {ph:g}": (loops.ph == ph) & (cases != "") for ph in PH_2}
-    return _by_mask(masks, estimate, exact, loops)
+    return _by_mask(eq_2, masks, estimate, exact, loops)
 
 
 def _by_mask(
-    masks: Mapping[str, NDArray[np.bool_]], estimate: Array, exact: Array, loops: Sweep, *, relative: bool = False
+    table: Table,
+    masks: Mapping[str, NDArray[np.bool_]],
+    estimate: Array,
+    exact: Array,
+    loops: Sweep,
+    *,
+    relative: bool = False,
 ) -> pd.DataFrame:
     rows = {}
     for name, mask in masks.items():
         scale = exact[mask] / 100.0 if relative else 1.0
         rows[name] = quality(estimate[mask], exact[mask], loops.where(mask), scale)
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return table.frame(rows)
 
 
 def usual() -> Sweep:
@@ -131,7 +142,7 @@ def usual_quality() -> pd.DataFrame:
 
 def _rise_time(loops: Sweep) -> pd.DataFrame:
     masks = {"0.5 <= ph <= 10": loops.ph >= 0.5} | {f"ph = {ph:g}": loops.ph == ph for ph in PH_3}
-    return _by_mask(masks, rise_time_fit(loops.ph, loops.kh), loops.rise_time, loops, relative=True)
+    return _by_mask(eq_3, masks, rise_time_fit(loops.ph, loops.kh), loops.rise_time, loops, relative=True)
 
 
 @eq_3.reading("as-written", "gains to 0.99 of the limit", "$Kh$ from 0.01 to 0.99 of the stability limit.")
@@ -171,7 +182,7 @@ def compare_edges() -> pd.DataFrame:
     for ph_value in (3.0, 5.0, 7.0, 10.0):
         share = _later_peak_from(ph_value)
         rows[f"later peak higher from, ph = {ph_value:g}"] = (share, ph_value, share * stability_limit(ph_value))
-    return pd.DataFrame.from_dict(rows, orient="index", columns=["value", "ph", "Kh"])
+    return edges.frame(rows)
 
 
 def _later_peak_from(ph: float) -> float:

@@ -241,7 +241,7 @@ def compare() -> pd.DataFrame:
             for name in ("r2", "rms", "worst")
             for who, values in (("paper", old), ("refit", new))
         }
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return refit.frame(rows)
 
 
 @coefficients.reading("as-written", "Least squares on exact data")
@@ -252,4 +252,4 @@ def compare_coefficients() -> pd.DataFrame:
         parts = np.split(found, np.cumsum(SIZES[case])[:-1])
         for name, part in zip(PARTS[case], parts, strict=True):
             rows[f"{case} {name}"] = {f"x{k}": significant(float(x), 3) for k, x in enumerate(part)}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(coefficients.columns))
+    return coefficients.frame(rows)

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-
-import pandas as pd
+from typing import TYPE_CHECKING
 
 from replicate.exhibits import Table
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, loop, specifications
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 QUANTITIES = ("Mp", "ts", "td", "Ms")
 RULES_1 = ("Proposed", "Haalman", "Bryant", "ZN", "ISE")
@@ -94,12 +96,11 @@ READINGS: dict[str, tuple[str, str, Specifications]] = {
 
 
 def _table_1(compute: Specifications) -> pd.DataFrame:
-    return pd.DataFrame([compute(rule, 10.0) for rule in RULES_1], index=list(RULES_1), columns=list(QUANTITIES))
+    return table_1.frame({rule: compute(rule, 10.0) for rule in RULES_1})
 
 
 def _table_2(compute: Specifications) -> pd.DataFrame:
-    rows = [(*compute(rule, 1.0), *compute(rule, 0.1)) for rule in RULES_2]
-    return pd.DataFrame(rows, index=list(RULES_2), columns=list(table_2.columns))
+    return table_2.frame({rule: (*compute(rule, 1.0), *compute(rule, 0.1)) for rule in RULES_2})
 
 
 def _register(table: Table, build: Callable[[Specifications], pd.DataFrame]) -> None:

@@ -182,8 +182,6 @@ worked_designs = paper.table(
 @worked_designs.reading("as-written", "Section 6")
 def work() -> pd.DataFrame:
     """Run the procedure and measure the loops it designs."""
-    import pandas as pd
-
     rows = {}
     for tau in TAUS:
         plant = Plant.foptd(GAIN, TIME_CONSTANT, tau * TIME_CONSTANT)
@@ -206,4 +204,4 @@ def work() -> pd.DataFrame:
             "rise_time": y.rise_time(),
             "settling_time": y.settling_time(),
         }
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(worked_designs.columns))
+    return worked_designs.frame(rows)

@@ -100,11 +100,9 @@ fig_1_values = paper.table(
 @fig_1_values.reading("as-written", "Nyquist criterion and closed-loop poles")
 def values() -> pd.DataFrame:
     """Count encirclements and poles."""
-    import pandas as pd
-
     rows = {}
     for name, (a, b) in CASES.items():
         start = complex(frequency_response(a, b, TAU, 1e-6))
         unstable = loop(a, b, TAU).unstable_poles()
         rows[name] = [a, b, float(asymptote(a, b, TAU)), quadrant(start), encirclements(a, b, TAU), unstable]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(fig_1_values.columns))
+    return fig_1_values.frame(rows)

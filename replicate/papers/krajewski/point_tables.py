@@ -69,14 +69,13 @@ def point_table(exhibit: str, title: str, *, responses: bool = True, caption: st
     )
 
     def frame(loop_at: Callable[[NamedPoint], tuple[float, float]]) -> pd.DataFrame:
-        import pandas as pd
 
         rows = {}
         for row, named in points.items():
             at = loop_at(named)
             found = dict(zip(COORDINATES, named.exact(), strict=True)) | margins_at(*at)
             rows[row] = found | (metrics_at(*at) if responses else {})
-        return pd.DataFrame.from_dict(rows, orient="index", columns=list(columns))
+        return table.frame(rows)
 
     table.reading("as-written", "Definition of the point; margins at the printed point", NOTE)(
         lambda: frame(lambda named: (named.a, named.b))

@@ -172,8 +172,6 @@ robust_points = paper.table(
 @robust_points.reading("as-written", "±20 %")
 def points_table() -> pd.DataFrame:
     """Compare the paper's vertex with the worst case."""
-    import pandas as pd
-
     rows = {}
     names = list(VERTICES)
     for key, (a, b) in POINTS.items():
@@ -190,4 +188,4 @@ def points_table() -> pd.DataFrame:
             float(names[int(np.argmin(margins))] == PAPERS_VERTEX),
             TAU * float(crossover(a, b)) ** 2,
         ]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(robust_points.columns))
+    return robust_points.frame(rows)

@@ -98,14 +98,13 @@ def r_squared(margin: str, coefficients: tuple[float, float]) -> float:
 
 
 def _table(coefficients: Callable[[str], tuple[float, float]]) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {}
     for margin in MARGINS:
         pair = coefficients(margin)
         of_b, of_omega = errors(margin, pair)
         rows[margin] = [*of_b, *of_omega, r_squared(margin, pair)]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS))
+    return table_1_errors.frame(rows)
 
 
 @table_1_errors.reading("as-written", "Coefficients as printed")

@@ -77,7 +77,6 @@ def spare(outer: Circle, inner: Circle) -> Fraction:
 
 
 def _table(circle: Callable[[Fraction, Fraction], Circle]) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {}
     for row, (ms, mp) in PAIRS.items():
@@ -91,7 +90,7 @@ def _table(circle: Callable[[Fraction, Fraction], Circle]) -> pd.DataFrame:
             spare((center, radius), complementary_circle(mp)),
         )
         rows[row] = [float(value) for value in values]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(errata.columns))
+    return errata.frame(rows)
 
 
 @errata.reading(

@@ -8,7 +8,6 @@ from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import complementary_peak, design
 from replicate.papers.panagopoulos.part_1.phase import frequencies_of_lag
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,7 +21,7 @@ LABELS = {
         for ms in ("1.4", "2.0")
         for key, symbol in (("k", "k"), ("ki", "k_i"), ("Ti", "T_i"), ("w0", "\\omega_0"), ("Mp", "M_p"))
     },
-    VALUE: "Value",
+    "value": "Value",
 }
 
 example_1 = paper.table(
@@ -31,7 +30,7 @@ example_1 = paper.table(
     kind="example",
     printed=False,
     rows=("w90", "w180", "k_1.4", "ki_1.4", "Ti_1.4", "w0_1.4", "k_2.0", "ki_2.0", "Ti_2.0", "w0_2.0"),
-    columns=(VALUE,),
+    columns=("value",),
     caption="The text gives $\\omega_{90} = \\pi/2$ and $\\omega_{180} = \\pi$ and refers to Table 2 for the "
     "controllers.",
     labels=LABELS,
@@ -53,4 +52,4 @@ def as_written() -> pd.DataFrame:
     """Compute the frequencies and the designs."""
     lags = {f"w{degrees}": frequencies_of_lag(PLANTS["G7"], degrees)[0] for degrees in (90, 180)}
     values = {**lags, **designs_at("G7")}
-    return column({row: values[row] for row in example_1.rows})
+    return example_1.frame(values)

@@ -8,7 +8,6 @@ from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.example_1 import LABELS, designs_at
 from replicate.papers.panagopoulos.part_1.phase import frequencies_of_lag
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,7 +28,7 @@ example_3 = paper.table(
         "w0_2.0",
         "ki_ratio",
     ),
-    columns=(VALUE,),
+    columns=("value",),
     caption="Frequencies at which the plant lags by 90, 150 and 180 degrees; the controllers are in Table 2. "
     "The last row is the gain in $k_i$ from $M_s = 1.4$ to 2, the text's “significant increase in "
     "performance”.",
@@ -45,4 +44,4 @@ def as_written() -> pd.DataFrame:
         **designs_at("G9"),
     }
     values["ki_ratio"] = values["ki_2.0"] / values["ki_1.4"]
-    return column({row: values[row] for row in example_3.rows})
+    return example_3.frame(values)

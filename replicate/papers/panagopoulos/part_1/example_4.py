@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design
 from replicate.papers.panagopoulos.part_1.plants import FAST, MIDDLE, PLANTS, SLOW, SLOW_TERM
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -20,7 +19,7 @@ example_4 = paper.table(
     "A fast and a slow mode, $G_{10}$ and $G_{11}$",
     kind="example",
     rows=("T_fast", "T_middle", "T_slow", "gain_slow", "gain_total", "gain_G11", *RATIOS),
-    columns=(VALUE,),
+    columns=("value",),
     caption="Time constants of $G_{10}$, the steady-state gain of its slow term in (27), its whole steady-state gain "
     "and that of $G_{11}$; then the gains for $G_{11}$ relative to those for $G_{10}$. Dropping the slow mode "
     "of (27) would leave 100 in the numerator of (28), not 150: $G_{11}$ keeps the high-frequency gain "
@@ -33,7 +32,7 @@ example_4 = paper.table(
         "gain_total": "gain of $G_{10}$",
         "gain_G11": "gain of $G_{11}$",
         **{f"{key}_{ms}": f"${s}(G_{{11}})/{s}(G_{{10}})$, $M_s = {ms}$" for ms in (1.4, 2.0) for key, s in _SYMBOLS},
-        VALUE: "Value",
+        "value": "Value",
     },
 )
 
@@ -47,4 +46,4 @@ def as_written() -> pd.DataFrame:
         ratios |= {f"k_{ms}": without.k / with_mode.k, f"ki_{ms}": without.ki / with_mode.ki}
     times = {"T_fast": 1.0 / FAST, "T_middle": 1.0 / MIDDLE, "T_slow": 1.0 / SLOW}
     gains = {"gain_slow": SLOW_TERM.gain, "gain_total": PLANTS["G10"].gain, "gain_G11": PLANTS["G11"].gain}
-    return column({**times, **gains, **ratios})
+    return example_4.frame({**times, **gains, **ratios})

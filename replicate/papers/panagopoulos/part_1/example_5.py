@@ -14,7 +14,6 @@ from replicate.papers.panagopoulos.part_1.corner import (
     slope_limit,
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -43,7 +42,7 @@ example_5 = paper.table(
         "w2_a0",
         "Ms_of_printed_gains",
     ),
-    columns=(VALUE,),
+    columns=("value",),
     caption="Three different limits for $a$. From $a_{corner}$ on the root of (18) is the optimum, below it "
     "the optimum is a corner; it depends on $M_s$. At $a_{slope}$ the largest slope of $|G|$ is 1, the limit "
     "of condition (20); this is the printed number, and the root of (18) for $M_s = 2$ violates the "
@@ -61,17 +60,17 @@ example_5 = paper.table(
         "w1_a0": "$\\omega_1$, $a = 0$",
         "w2_a0": "$\\omega_2$, $a = 0$",
         "Ms_of_printed_gains": "$M_s$ of the printed gains",
-        VALUE: "Value",
+        "value": "Value",
     },
 )
 
 
 def _values(a_corner: float, ms: float) -> pd.DataFrame:
     found = design_pi(PLANTS[EXTREME], ms=ms)
-    gains = (paper.printed_numbers("I-example-5")[row, VALUE] for row in ("k_a0", "ki_a0"))
+    gains = (paper.printed_numbers("I-example-5")[row, "value"] for row in ("k_a0", "ki_a0"))
     resonance = PLANTS["G6"].poles()
     resonance = resonance[resonance.imag > 0.0][0]
-    return column(
+    return example_5.frame(
         {
             "zeta_G6": -resonance.real / abs(resonance),
             "a_corner": a_corner,

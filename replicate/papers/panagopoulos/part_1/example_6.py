@@ -8,7 +8,6 @@ from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, design, weight
 from replicate.papers.panagopoulos.part_1.phase import frequencies_of_lag
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +35,7 @@ example_6 = paper.table(
         "solutions_1.4",
         *(f"{symbol}_{name}" for name in SOLUTIONS for symbol in _SYMBOLS),
     ),
-    columns=(VALUE,),
+    columns=("value",),
     caption="Where the plant lags by 90 and 180 degrees, where its Nyquist curve crosses the negative real "
     "axis, and the gains between which proportional feedback is unstable; then the two solutions for $M_s = "
     "2$ and the one for $M_s = 1.4$.",
@@ -51,7 +50,7 @@ example_6 = paper.table(
         "solutions_2.0": "solutions, $M_s = 2$",
         "solutions_1.4": "solutions, $M_s = 1.4$",
         **{f"{key}_{name}": f"${tex}$, {_TITLES[name]}" for name in SOLUTIONS for key, tex in _SYMBOLS.items()},
-        VALUE: "Value",
+        "value": "Value",
     },
 )
 
@@ -80,7 +79,7 @@ def _values(rule: WeightRule) -> dict[str, float]:
 @example_6.reading("as-written", "As written", note="$b$ by (25) at the peak of $|L/(1+L)|$, as (24) says.")
 def as_written() -> pd.DataFrame:
     """Compute the limits and the solutions."""
-    return column(_values("w_mp"))
+    return example_6.frame(_values("w_mp"))
 
 
 @example_6.reading(
@@ -90,4 +89,5 @@ def as_written() -> pd.DataFrame:
 )
 def authors() -> pd.DataFrame:
     """Compute the example as the numbers were made."""
-    return column({**_values("w_0"), "crossing_2": -1.0 / paper.printed_numbers("I-example-6")["k_low", VALUE]})
+    k_low = paper.printed_numbers("I-example-6")["k_low", "value"]
+    return example_6.frame({**_values("w_0"), "crossing_2": -1.0 / k_low})

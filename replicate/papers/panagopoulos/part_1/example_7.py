@@ -13,7 +13,6 @@ from replicate.loops.pi_tangency import smooth_gains
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,7 +32,7 @@ example_7 = paper.table(
         "k_a8_printed_w0",
         "ki_a8_printed_w0",
     ),
-    columns=(VALUE,),
+    columns=("value",),
     caption="The smallest $a$ for which the circle of $M_s = 2$ can be avoided, the designs for $a = 4$ and "
     "8, and the smallest phase lag (degrees) of the plant with its frequency, where the phase is stationary.",
     labels={
@@ -43,7 +42,7 @@ example_7 = paper.table(
         **{f"w_lag_a{a}": f"its $\\omega$, $a = {a}$" for a in PARAMETERS},
         "k_a8_printed_w0": "$k$ (17) at the printed $\\omega_0$, $a = 8$",
         "ki_a8_printed_w0": "$k_i$ (17) there",
-        VALUE: "Value",
+        "value": "Value",
     },
 )
 
@@ -73,8 +72,8 @@ def _values(rule: WeightRule) -> pd.DataFrame:
         values |= {f"k_a{a}": found.k, f"ki_a{a}": found.ki, f"b_a{a}": weight(plant, MS, rule)}
         values |= {f"w0_a{a}": found.frequency, f"Mp_a{a}": complementary_peak(plant, MS).value}
         values[f"lag_a{a}"], values[f"w_lag_a{a}"] = smallest_lag(a)
-    at_printed = smooth_gains(PLANTS["G14 a=8"], Circle.of(MS), paper.printed_numbers("I-example-7")["w0_a8", VALUE])
-    return column(values | dict(zip(example_7.rows[-2:], at_printed, strict=True)))
+    at_printed = smooth_gains(PLANTS["G14 a=8"], Circle.of(MS), paper.printed_numbers("I-example-7")["w0_a8", "value"])
+    return example_7.frame(values | dict(zip(example_7.rows[-2:], at_printed, strict=True)))
 
 
 @example_7.reading("as-written", "As written", note="$b$ by (25) at the peak of $|L/(1+L)|$, as (24) says.")

@@ -18,7 +18,6 @@ from replicate.papers.panagopoulos.part_1.table_4 import (
     Filtered,
     filtered,
 )
-from replicate.papers.panagopoulos.part_1.values import VALUE, column
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,7 +35,7 @@ example_8 = paper.table(
         *(f"sigma_S_m{m}" for m in FINITE),
         *(f"excess_m{m}" for m in FINITE),
     ),
-    columns=(VALUE,),
+    columns=("value",),
     caption="The filter at $\\omega_0$ for the recommended $m$ (section 4.2; degrees); its time constant; the "
     "standard deviation of the control signal with the sensitivity itself in place of $M_s$; and by which "
     "factor the paper's formula, which is in Table 4, overestimates it.",
@@ -46,7 +45,7 @@ example_8 = paper.table(
         **{f"Tf_m{m}": f"$T_f$, $m = {m}$" for m in FINITE},
         **{f"sigma_S_m{m}": f"$\\sigma$ with $|S|$, $m = {m}$" for m in FINITE},
         **{f"excess_m{m}": f"overestimated, $m = {m}$" for m in FINITE},
-        VALUE: "Value",
+        "value": "Value",
     },
 )
 
@@ -89,4 +88,4 @@ def as_written() -> pd.DataFrame:
             f"sigma_S_m{name}": sigma,
             f"excess_m{name}": case.sigma / sigma,
         }
-    return column({row: values[row] for row in example_8.rows})
+    return example_8.frame(values)

@@ -38,8 +38,6 @@ evidence = paper.table(
 @evidence.reading("as-written", "Exact load responses")
 def horizons() -> pd.DataFrame:
     """Look for the time at which the running IAE passes the print."""
-    import pandas as pd
-
     rows = {}
     for row, plant in ROWS.items():
         loop = Loop(PLANTS[plant], ziegler_nichols(plant))
@@ -50,4 +48,4 @@ def horizons() -> pd.DataFrame:
 
         horizon = float(brentq(missing, 0.2 * settling, 0.9 * loop.horizon(), xtol=1e-9))
         rows[row] = [loop.load_step().iae(), target, horizon, settling]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(evidence.columns))
+    return evidence.frame(rows)

@@ -58,8 +58,6 @@ def _row(text: str, response: Signal, dead_time: float) -> list[float]:
 @evidence.reading("as-written", "Exact load responses")
 def levels() -> pd.DataFrame:
     """Read every load response at the printed settling time."""
-    import pandas as pd
-
     rows = {}
     for row, (plant, ms) in table_1.ROWS.items():
         rows[row] = _row(paper.printed_cells("I-table-1")[row, "ts"], load_response(plant, ms), PLANTS[plant].dead_time)
@@ -68,4 +66,4 @@ def levels() -> pd.DataFrame:
         pi = table_5.authors_controller(plant, method)
         _, load = table_5.responses(plant, pi.k, pi.ki, pi.b)
         rows[row] = _row(paper.printed_cells("I-table-5")[key, "ts"], load, PLANTS[plant].dead_time)
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(evidence.columns))
+    return evidence.frame(rows)

@@ -37,7 +37,6 @@ table_1 = paper.table(
 
 
 def _rows(w0: dict[str, float], b: dict[str, float], ts: dict[str, float]) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {}
     for row, (plant, ms) in ROWS.items():
@@ -54,7 +53,7 @@ def _rows(w0: dict[str, float], b: dict[str, float], ts: dict[str, float]) -> pd
             ts[row],
             complementary_peak(plant, ms).value,
         ]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table_1.columns))
+    return table_1.frame(rows)
 
 
 @table_1.reading(

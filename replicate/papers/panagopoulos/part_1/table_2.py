@@ -25,13 +25,12 @@ table_2 = paper.table(
 
 
 def _table(rule: WeightRule) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {}
     for row, key in ROWS.items():
         found = design(*key)
         rows[row] = [found.k, found.ki, weight(*key, rule), found.frequency, complementary_peak(*key).value]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table_2.columns))
+    return table_2.frame(rows)
 
 
 @table_2.reading("as-written", "As the text says", note="$b$ by (25) at the peak of $|L/(1+L)|$, as (24) says.")

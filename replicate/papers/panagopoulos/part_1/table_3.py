@@ -31,10 +31,8 @@ table_3 = paper.table(
 )
 def as_written() -> pd.DataFrame:
     """Design for every a."""
-    import pandas as pd
-
     rows = {}
     for row in ROWS:
         found = design(f"G12 {row}", 2.0)
         rows[row] = [found.k, found.ki, found.frequencies[0], found.frequencies[-1]]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table_3.columns))
+    return table_3.frame(rows)

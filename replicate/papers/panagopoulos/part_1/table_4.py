@@ -69,7 +69,6 @@ table_4 = paper.table(
 
 
 def _table(filter_of_ratio: Literal["first", "new"]) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {}
     for row, m in FACTORS.items():
@@ -79,7 +78,7 @@ def _table(filter_of_ratio: Literal["first", "new"]) -> pd.DataFrame:
         ratio = found.integral_time / filter_time if filter_time else math.nan
         sigma = case.sigma if case.filter_time else math.nan
         rows[row] = [found.k, found.ki, found.frequency, 1.0 / found.ki, sigma, ratio]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table_4.columns))
+    return table_4.frame(rows)
 
 
 @table_4.reading(

@@ -72,7 +72,6 @@ def _table(
     overshoot: Callable[[Signal], float],
     settling: Callable[[Signal, str], float],
 ) -> pd.DataFrame:
-    import pandas as pd
 
     rows = {}
     for row, (plant, method) in ROWS.items():
@@ -89,7 +88,7 @@ def _table(
             settling(load, plant),
             loop.complementary_peak().value,
         ]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(table_5.columns))
+    return table_5.frame(rows)
 
 
 @table_5.reading(
@@ -151,12 +150,10 @@ identification = paper.table(
 @identification.reading("as-written", "Exact step responses")
 def models() -> pd.DataFrame:
     """Identify the three plants in five ways."""
-    import pandas as pd
-
     rows: dict[str, list[float]] = {}
     for plant in ("G1", "G2", "G3"):
         found = [method(plant) for method in METHODS.values()]
         integral_time, ki = (paper.printed_numbers("I-table-5")[f"{plant} Lambda", column] for column in ("Ti", "ki"))
         rows[f"{plant} T"] = [*(model.time_constant for model in found), integral_time]
         rows[f"{plant} L"] = [*(model.dead_time for model in found), 1.0 / ki - 3.0 * integral_time]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(identification.columns))
+    return identification.frame(rows)

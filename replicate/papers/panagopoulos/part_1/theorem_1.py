@@ -74,8 +74,6 @@ def gains_at_roots(plant: str, ms: float) -> list[tuple[float, float, float, boo
 @theorem_1.reading("as-written", "All roots of (18)")
 def roots() -> pd.DataFrame:
     """Look for every root of h, for every plant."""
-    import pandas as pd
-
     rows = {}
     for row, (plant, ms) in ROWS.items():
         low, high = interval(plant, ms)
@@ -93,4 +91,4 @@ def roots() -> pd.DataFrame:
             sum(ki > 0.0 for _, _, ki, _ in found),
             sum(stable for *_, stable in found),
         ]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(theorem_1.columns))
+    return theorem_1.frame(rows)

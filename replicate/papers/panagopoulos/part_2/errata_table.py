@@ -26,25 +26,6 @@ _SHAPE = {
 }
 
 
-def violations(table: str) -> pd.DataFrame:
-    """Return what the printed controllers of a table do to the constraints, and how far from the optimum they are."""
-    import pandas as pd
-
-    rows = {}
-    for row in ROWS:
-        name, ms = split(row)
-        controller, span = printed(table, row), stated_range(row)
-        rows[row] = {
-            "Ms": printed_properties(table, row).Ms,
-            "curvature": largest_over("curvature", PLANTS[name], controller, span),
-            "phase": largest_over("phase", PLANTS[name], controller, span),
-            "ki_share": controller.ki / optimal(row).ki,
-            "ki_share_ms": controller.ki / optimal(row, "ms-only").ki,
-            "k_share": controller.k / largest_gain(PLANTS[name], ms),
-        }
-    return pd.DataFrame.from_dict(rows, orient="index")
-
-
 def _register(table: str, id: str, title: str) -> None:
     exhibit = paper.table(
         id,
@@ -60,8 +41,20 @@ def _register(table: str, id: str, title: str) -> None:
     )
 
     @exhibit.reading("as-written", "From the printed gains")
-    def compute() -> pd.DataFrame:
-        return violations(table)
+    def violations() -> pd.DataFrame:
+        rows = {}
+        for row in ROWS:
+            name, ms = split(row)
+            controller, span = printed(table, row), stated_range(row)
+            rows[row] = {
+                "Ms": printed_properties(table, row).Ms,
+                "curvature": largest_over("curvature", PLANTS[name], controller, span),
+                "phase": largest_over("phase", PLANTS[name], controller, span),
+                "ki_share": controller.ki / optimal(row).ki,
+                "ki_share_ms": controller.ki / optimal(row, "ms-only").ki,
+                "k_share": controller.k / largest_gain(PLANTS[name], ms),
+            }
+        return exhibit.frame(rows)
 
 
 _register(SUPERSEDED, "II-violations", "What the controllers of Table 1 violate")
@@ -91,8 +84,6 @@ tried = paper.table(
 @tried.reading("as-written", "Integrated error")
 def readings_tried() -> pd.DataFrame:
     """Compare the printed integrated errors with those of all sets of constraints."""
-    import pandas as pd
-
     rows = {
         row: {
             "printed": printed_number(REPLACEMENT, row, "IE"),
@@ -103,4 +94,4 @@ def readings_tried() -> pd.DataFrame:
         }
         for row in TRIED_ROWS
     }
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return tried.frame(rows)

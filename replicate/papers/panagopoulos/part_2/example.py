@@ -41,13 +41,11 @@ example = paper.table(
 @example.reading("as-written", "Exact", "The error over the whole response, the poles as roots.")
 def numbers() -> pd.DataFrame:
     """Return errors and poles."""
-    import pandas as pd
-
     rows = {
         key: {"IAE": Loop(G4, controller).load_step().iae()} | pole_numbers(controller)
         for key, controller in CONTROLLERS.items()
     }
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(example.columns))
+    return example.frame(rows)
 
 
 def bottom_maximum(kd: float) -> float:
@@ -91,8 +89,6 @@ envelope = paper.table(
 @envelope.reading("as-written", "Exact")
 def envelopes() -> pd.DataFrame:
     """Compare the true largest ki with what the vertices suggest."""
-    import pandas as pd
-
     rows = {}
     for key in envelope.rows:
         kd = float(key[3:])
@@ -108,4 +104,4 @@ def envelopes() -> pd.DataFrame:
                 "Ms": float(Loop(G4, controller).sensitivity_peak()),
             }
         rows[key] = row
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(envelope.columns))
+    return envelope.frame(rows)

@@ -112,7 +112,6 @@ evidence = paper.table(
 @evidence.reading("as-written", "From the printed gains")
 def which_filter() -> pd.DataFrame:
     """Return the evidence for N = 1 and the overwritten w0."""
-    import pandas as pd
     from scipy.optimize import brentq
 
     from replicate.loops import Loop, design_pi, search_range
@@ -147,4 +146,4 @@ def which_filter() -> pd.DataFrame:
             "w0_implied": implied,
             "w0_source": source,
         }
-    return pd.DataFrame.from_dict(rows, orient="index")
+    return evidence.frame(rows)

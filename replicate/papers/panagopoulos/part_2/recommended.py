@@ -55,9 +55,8 @@ def load_numbers(row: str, controller: PID) -> dict[str, float]:
 
 def _reading(of: Callable[[str], PID]) -> Callable[[], pd.DataFrame]:
     def compute() -> pd.DataFrame:
-        import pandas as pd
 
-        return pd.DataFrame.from_dict({row: load_numbers(row, of(row)) for row in ROWS}, orient="index")[list(COLUMNS)]
+        return table.frame({row: load_numbers(row, of(row)) for row in ROWS})
 
     return compute
 

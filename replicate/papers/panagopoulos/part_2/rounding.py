@@ -7,7 +7,6 @@ over all gains that round to the printed ones; some of the formulas are much mor
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING
 
@@ -67,36 +66,36 @@ def gains_that_round(table: str, row: str) -> list[PID]:
     return [PID.ideal(*gains) for gains in product(*steps)]
 
 
-def _left_open(table: str) -> pd.DataFrame:
-    import pandas as pd
-
-    rows = {}
-    for quantity, where in OPEN[table].items():
-        for row in where:
-            name, ms = split(row)
-            values = [QUANTITIES[quantity](PLANTS[name], c) for c in gains_that_round(table, row)]
-            text = ms if quantity == "Ms" else printed_number(table, row, quantity)
-            rows[f"{row} {quantity}"] = {"low": min(values), "printed": text, "high": max(values)}
-    return pd.DataFrame.from_dict(rows, orient="index")
-
-
-for _id, _table, _name in (("II-rounding", SUPERSEDED, "Table 1"), ("IIs-rounding", REPLACEMENT, "the errata")):
-    paper.table(
-        _id,
-        f"What the digits of the gains in {_name} leave open",
+def _add(id: str, printed_in: str, name: str) -> None:
+    """Add the table of the columns that the gains printed in a table leave open."""
+    labels = LABELS | {"Ms": "$M_s$"}
+    cells = {f"{row} {quantity}": (row, quantity) for quantity, where in OPEN[printed_in].items() for row in where}
+    table = paper.table(
+        id,
+        f"What the digits of the gains in {name} leave open",
         printed=False,
-        rows=tuple(f"{row} {quantity}" for quantity, where in OPEN[_table].items() for row in where),
+        rows=tuple(cells),
         columns=("low", "printed", "high"),
         caption="The print, and the smallest and largest value over all $k$, $T_i$ and $T_d$ that round to the "
         "printed ones, for columns that the printed gains do not give to the last digit. The print is rounded too: it "
         "may stand outside by half a unit. $T_{sp}$ is (16) over $\\omega_{mp}$ on Matlab's default grid.",
         labels={"low": "from", "printed": "printed", "high": "to"}
-        | {
-            f"{row} {quantity}": f"{(LABELS | {'Ms': '$M_s$'})[quantity]}, {ROW_LABELS[row]}"
-            for quantity, where in OPEN[_table].items()
-            for row in where
-        },
-    ).reading("as-written", "From the printed gains")(partial(_left_open, _table))
+        | {key: f"{labels[quantity]}, {ROW_LABELS[row]}" for key, (row, quantity) in cells.items()},
+    )
+
+    @table.reading("as-written", "From the printed gains")
+    def left_open() -> pd.DataFrame:
+        rows = {}
+        for key, (row, quantity) in cells.items():
+            process, ms = split(row)
+            values = [QUANTITIES[quantity](PLANTS[process], c) for c in gains_that_round(printed_in, row)]
+            text = ms if quantity == "Ms" else printed_number(printed_in, row, quantity)
+            rows[key] = {"low": min(values), "printed": text, "high": max(values)}
+        return table.frame(rows)
+
+
+_add("II-rounding", SUPERSEDED, "Table 1")
+_add("IIs-rounding", REPLACEMENT, "the errata")
 
 
 TWO_PEAKS = "G8 Ms=1.4"
@@ -114,11 +113,9 @@ peaks = paper.table(
 @peaks.reading("as-written", "From the printed gains")
 def two_peaks() -> pd.DataFrame:
     """Return the local maxima of the sensitivity."""
-    import pandas as pd
-
     loop = Loop(PLANTS[split(TWO_PEAKS)[0]], printed(SUPERSEDED, TWO_PEAKS))
     w = np.geomspace(0.1, 5.0, 40001)
     size = np.abs(1.0 / (1.0 + loop(1j * w)))
     at = np.nonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]))[0] + 1
     at = np.sort(at[np.argsort(-size[at])][:2])
-    return pd.DataFrame({"w": w[at], "S": size[at]}, index=["first", "second"])
+    return peaks.frame({row: (float(w[i]), float(size[i])) for row, i in zip(peaks.rows, at, strict=True)})

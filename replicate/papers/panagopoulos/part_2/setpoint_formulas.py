@@ -92,7 +92,6 @@ def _frame(
     filter_time: Callable[[PID, Resonance], float],
     full_filter: Callable[[PID, Resonance], float],
 ) -> pd.DataFrame:
-    import pandas as pd
 
     nan = float("nan")
     rows = {}
@@ -112,7 +111,7 @@ def _frame(
             "gain_b1": setpoint.setpoint_gain(c, peak, 1.0, full),
             "Msp": setpoint_peak(row, c, b, time),
         }
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS))
+    return table.frame(rows)
 
 
 @table.reading("as-written", "As printed", r"(15) as the limit, (16) and the filter for $b = 1$ as printed.")

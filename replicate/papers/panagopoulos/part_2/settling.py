@@ -99,13 +99,11 @@ tried = paper.table(
 @tried.reading("as-written", "Printed values met")
 def counts() -> pd.DataFrame:
     """Count the hits of every definition."""
-    import pandas as pd
-
     best: dict[str, dict[str, int]] = {key: {SUPERSEDED: 0, REPLACEMENT: 0} for key in KEYS}
     for definition in definitions():
         for table, most in best[definition.row].items():
             best[definition.row][table] = max(most, hits(table, definition))
-    return pd.DataFrame.from_dict(best, orient="index")
+    return tried.frame(best)
 
 
 _COLUMNS = {"printed": "printed", "above": "last above $+0.05$", "late": "print later by, %"}
@@ -127,8 +125,6 @@ shifted = paper.table(
 @shifted.reading("as-written", "Exact load responses of the printed gains")
 def by_paper_1() -> pd.DataFrame:
     """Compare the printed settling times with paper I's definition."""
-    import pandas as pd
-
     rows = {}
     for row in ROWS:
         values: list[float] = []
@@ -136,4 +132,4 @@ def by_paper_1() -> pd.DataFrame:
             text, time = printed_number(table, row, "ts"), one_sided_settling(table, row)
             values += [text, time, 100.0 * (text / time - 1.0) if time > 0.0 else float("nan")]
         rows[row] = values
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(shifted.columns))
+    return shifted.frame(rows)

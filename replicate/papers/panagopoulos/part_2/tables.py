@@ -47,38 +47,32 @@ def one_sided_settling(table: str, row: str) -> float:
     return float(crossings[-1]) - PLANTS[process].dead_time if crossings.size else 0.0
 
 
-def _frame(rows: dict[str, dict[str, float]]) -> pd.DataFrame:
-    import pandas as pd
-
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS)).loc[list(ROWS)]
+def _designs(table: Table, problem: Problem) -> Callable[[], pd.DataFrame]:
+    return lambda: table.frame({row: design_properties(row, problem).row() for row in ROWS})
 
 
-def _designs(problem: Problem) -> Callable[[], pd.DataFrame]:
-    return lambda: _frame({row: design_properties(row, problem).row() for row in ROWS})
-
-
-def _from_printed(table: str) -> Callable[[], pd.DataFrame]:
+def _from_printed(table: Table) -> Callable[[], pd.DataFrame]:
     def compute() -> pd.DataFrame:
         rows = {}
         for row in ROWS:
-            rows[row] = printed_properties(table, row).row() | dict.fromkeys(GAINS, float("nan"))
-            if table == SUPERSEDED and row == "G3 Ms=2.0":  # its Td was taken from the printed b
+            rows[row] = printed_properties(table.id, row).row() | dict.fromkeys(GAINS, float("nan"))
+            if table.id == SUPERSEDED and row == "G3 Ms=2.0":  # its Td was taken from the printed b
                 rows[row]["b"] = float("nan")
-        return _frame(rows)
+        return table.frame(rows)
 
     return compute
 
 
-def _filter_only(table: str, peak_of: Callable[[Plant, PID], Resonance]) -> Callable[[], pd.DataFrame]:
+def _filter_only(table: Table, peak_of: Callable[[Plant, PID], Resonance]) -> Callable[[], pd.DataFrame]:
     def compute() -> pd.DataFrame:
         rows = {}
         for row in ROWS:
-            plant, controller = PLANTS[split(row)[0]], printed(table, row)
+            plant, controller = PLANTS[split(row)[0]], printed(table.id, row)
             exact = Resonance.of(plant, controller)
             # whether there is a filter at all is decided by the exact peak
             size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(plant, controller))
             rows[row] = {"Tsp": size}
-        return _frame(rows)
+        return table.frame(rows)
 
     return compute
 
@@ -94,7 +88,7 @@ def _add_readings(table: Table) -> None:
         "by (16) as "
         "printed. The text gives no band for $t_s$: here it is the time after which the response to a unit load stays "
         "within ±0.02.",
-    )(_designs("stated"))
+    )(_designs(table, "stated"))
     table.reading(
         "printed-gains",
         "The other columns from the printed gains",
@@ -105,30 +99,30 @@ def _add_readings(table: Table) -> None:
             if table.id == SUPERSEDED
             else ""
         ),
-    )(_from_printed(table.id))
+    )(_from_printed(table))
     table.reading(
         "filter-corrected",
         "The printed gains, (16) over $\\omega_{mp}$",
         "$T_{sp} = \\sqrt{k_i^2M_p^2/A-1}/\\omega_{mp}$, which does what the text wants; the print divides by "
         "$\\omega_{mp}^2$.",
-    )(_filter_only(table.id, Resonance.of))
+    )(_filter_only(table, Resonance.of))
     table.reading(
         "filter-default-grid",
         "The same on Matlab's default frequency grid",
         "As before, with the peak of $|T|$ taken from 50 frequencies, `logspace(-2,2)`.",
-    )(_filter_only(table.id, Resonance.on_default_grid))
+    )(_filter_only(table, Resonance.on_default_grid))
     table.reading(
         "paper-1-settling",
         "The settling time of paper I",
         "$t_s$ as the numbers of paper I show it: the last time at which the load response is above $+0.05$, "
         "undershoot "
         "ignored, counted from the end of the dead time; for the printed gains.",
-    )(lambda: _frame({row: {"ts": one_sided_settling(table.id, row)} for row in ROWS}))
+    )(lambda: table.frame({row: {"ts": one_sided_settling(table.id, row)} for row in ROWS}))
     table.reading(
         "ms-only",
         "The optimum under the circle alone",
         "The largest $k_i$ with neither curvature nor phase constraint.",
-    )(_designs("ms-only"))
+    )(_designs(table, "ms-only"))
 
 
 table_1 = paper.table(

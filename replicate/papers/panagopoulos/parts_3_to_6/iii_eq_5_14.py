@@ -59,8 +59,6 @@ formulas = paper.table(
 )
 def as_written() -> pd.DataFrame:
     """Evaluate the contour formulas for every gamma of Figure 5."""
-    import pandas as pd
-
     rows = {}
     for gamma in CONTOURS:
         curve, points = contour(gamma), contour_points(gamma)
@@ -83,4 +81,4 @@ def as_written() -> pd.DataFrame:
             inner_m,
             round(1.0 - float(np.min(np.abs(curve + inner.center))) / inner.radius, DECIMALS) + 0.0,
         ]  # fmt: skip
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(formulas.columns))
+    return formulas.frame(rows)

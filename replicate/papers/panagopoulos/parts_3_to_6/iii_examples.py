@@ -64,8 +64,6 @@ example_1 = paper.table(
 @example_1.reading("as-written", "Largest $k_i$ outside the combined circle")
 def first_example() -> pd.DataFrame:
     """Design the controller and evaluate it unrounded."""
-    import pandas as pd
-
     found = design()
     controller = PI(found.k, found.ki)
     loop = Loop(PROCESS, controller)
@@ -86,7 +84,7 @@ def first_example() -> pd.DataFrame:
         "omega_gc": margins.gain_crossover,
         "omega_pc": margins.phase_crossover,
     }
-    return pd.DataFrame.from_dict({row: [values[row]] for row in example_1.rows}, orient="index", columns=["value"])
+    return example_1.frame(values)
 
 
 def smallest_weight(controller: PI = PRINTED) -> tuple[float, float]:
@@ -176,7 +174,6 @@ example_2 = paper.table(
 
 
 def _second_example(weighting: str) -> pd.DataFrame:
-    import pandas as pd
 
     found = robustness(weighting)
     winding = winding_count(PROCESS, TRUE_PROCESS)
@@ -191,7 +188,7 @@ def _second_example(weighting: str) -> pd.DataFrame:
         "Ms_true": loop.sensitivity_peak().value,
         "pole_true": loop.rightmost_pole().real,
     }
-    return pd.DataFrame.from_dict({row: [values[row]] for row in example_2.rows}, orient="index", columns=["value"])
+    return example_2.frame(values)
 
 
 @example_2.reading(
@@ -240,10 +237,8 @@ comparison = paper.table(
 @comparison.reading("as-written", "Margin and gap by weight")
 def by_weight() -> pd.DataFrame:
     """Tabulate margin and gap for each weight."""
-    import pandas as pd
-
     rows = {}
     for name in comparison.rows:
         found = robustness(name)
         rows[name] = [found.b, found.gap, found.b - found.gap, found.smallest_difference]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(comparison.columns))
+    return comparison.frame(rows)

@@ -38,13 +38,11 @@ def printed_pairs() -> dict[str, tuple[float, float]]:
 )
 def as_written() -> pd.DataFrame:
     """Compute M from the printed gamma and gamma from the printed M."""
-    import pandas as pd
-
     rows = {
         "M": [float(m_of_gamma(gamma)) for _, gamma in printed_pairs().values()],
         "gamma": [float(gamma_of_m(m)) for m, _ in printed_pairs().values()],
     }
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS))
+    return table_1.frame(rows)
 
 
 direction = paper.table(
@@ -67,11 +65,9 @@ direction = paper.table(
 @direction.reading("as-written", "Both formulas against the print")
 def both_ways() -> pd.DataFrame:
     """Compare both directions with the print."""
-    import pandas as pd
-
     rows = {}
     for column, (m, gamma) in printed_pairs().items():
         forward, backward = float(gamma_of_m(m)), float(m_of_gamma(gamma))
         off = [round(100.0 * difference, 9) + 0.0 for difference in (forward - gamma, backward - m)]
         rows[column] = [forward, off[0], backward, off[1]]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(direction.columns))
+    return direction.frame(rows)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -75,10 +74,8 @@ model = paper.table(
 @model.reading("as-written", "Closed forms")
 def reference_model() -> pd.DataFrame:
     """Evaluate the closed forms of the step response."""
-    import pandas as pd
-
     rows = {f"{ratio:g}": list(characteristics(ratio)) for ratio in RATIOS}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(model.columns))
+    return model.frame(rows)
 
 
 @paper.figure(
@@ -146,10 +143,8 @@ settings = paper.table(
 )
 def relations() -> pd.DataFrame:
     """Evaluate the relations between printed numbers."""
-    import pandas as pd
-
     printed = paper.printed_numbers("IV-table-1")
-    frame = pd.DataFrame(math.nan, index=list(settings.rows), columns=list(settings.columns))
+    frame = settings.blank()
     for column in settings.columns:
         ti = printed["Ti", column]
         frame.loc["Td", column] = ti / 4.0
@@ -185,9 +180,7 @@ results = paper.table(
 @results.reading("as-written", "Not computable", note=NO_PLANT)
 def evaluation() -> pd.DataFrame:
     """Return an empty table: nothing of it can be computed."""
-    import pandas as pd
-
-    return pd.DataFrame(math.nan, index=list(results.rows), columns=list(results.columns))
+    return results.blank()
 
 
 text = paper.table(
@@ -220,6 +213,4 @@ text = paper.table(
 @text.reading("as-written", "Not computable", note=NO_PLANT)
 def text_numbers() -> pd.DataFrame:
     """Return an empty table: nothing of it can be computed."""
-    import pandas as pd
-
-    return pd.DataFrame(math.nan, index=list(text.rows), columns=list(text.columns))
+    return text.blank()

@@ -92,10 +92,9 @@ def evaluation() -> dict[str, float]:
 
 
 def _frame(setpoint_filter: float) -> pd.DataFrame:
-    import pandas as pd
 
     values = {**settings(drying_design()), "Tf": setpoint_filter, **evaluation()}
-    return pd.DataFrame.from_dict({row: [values[row]] for row in drying.rows}, orient="index", columns=["value"])
+    return drying.frame(values)
 
 
 @drying.reading(
@@ -192,8 +191,6 @@ near_peak = paper.table(
 @near_peak.reading("as-written", "Mended formula at each frequency")
 def peak_frequency() -> pd.DataFrame:
     """Evaluate the mended formula at the true peak, at the grid's points, and solve it for the frequency."""
-    import pandas as pd
-
     found = default_grid_peak()
     step = DEFAULT_GRID[1] / DEFAULT_GRID[0]
     frequencies = {
@@ -204,4 +201,4 @@ def peak_frequency() -> pd.DataFrame:
         "above": found.frequency * step,
     }
     rows = {name: [w, *beside_the_peak(w)] for name, w in frequencies.items()}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(near_peak.columns))
+    return near_peak.frame(rows)

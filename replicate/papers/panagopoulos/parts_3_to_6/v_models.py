@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 from replicate.papers.panagopoulos import paper
@@ -35,6 +34,4 @@ models = paper.table(
 @models.reading("as-written", "Not computable", note="The step responses to which the models were fitted are lost.")
 def given() -> pd.DataFrame:
     """Return an empty table: nothing of it can be computed."""
-    import pandas as pd
-
-    return pd.DataFrame(math.nan, index=list(models.rows), columns=list(models.columns))
+    return models.blank()

@@ -89,11 +89,9 @@ def evaluation() -> dict[str, float]:
 )
 def all_constraints() -> pd.DataFrame:
     """Design with circle, curvature and phase."""
-    import pandas as pd
-
     best = settings(starch_design(("curvature", "phase")))
     values = {**best, "ISE_PI": math.nan, "ISE_PID": math.nan, **evaluation()}
-    return pd.DataFrame.from_dict({row: [values[row]] for row in starch.rows}, orient="index", columns=["value"])
+    return starch.frame(values)
 
 
 OPTIMA: dict[str, tuple[Literal["curvature", "phase"], ...]] = {
@@ -125,12 +123,10 @@ optima = paper.table(
 @optima.reading("as-written", "Largest $k_i$")
 def by_constraints() -> pd.DataFrame:
     """Design under each set of constraints."""
-    import pandas as pd
-
     rows = {name: list(settings(starch_design(constraints)).values()) for name, constraints in OPTIMA.items()}
     pi = design_pi(STARCH, ms=STARCH_MS)
     rows["pi"] = [pi.k, pi.k / pi.ki, 0.0, pi.ki]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(optima.columns))
+    return optima.frame(rows)
 
 
 GAINS = (1.2, 1.35, 1.5, 2.0, 2.4)
@@ -151,8 +147,6 @@ ridge = paper.table(
 @ridge.reading("as-written", "Along the two limits")
 def along_the_ridge() -> pd.DataFrame:
     """Follow the curve on which both constraints are active."""
-    import pandas as pd
-
     rows = {}
     for gain in GAINS:
         found = on_both_limits(gain)
@@ -160,4 +154,4 @@ def along_the_ridge() -> pd.DataFrame:
         rows[f"{gain:g}"] = [gain, found["Ti"], found["Td"], found["ki"], loop.sensitivity_peak().value]
     best = settings(starch_design(("phase",)))
     rows["optimum"] = [best["K"], best["Ti"], best["Td"], best["ki"], STARCH_MS]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(ridge.columns))
+    return ridge.frame(rows)

@@ -53,7 +53,6 @@ example = paper.table(
 
 
 def _frame(shaft: Shaft, ratio: float) -> pd.DataFrame:
-    import pandas as pd
 
     smallest, peak = shaft.extrema()
     k_b = k_b_from(ratio)
@@ -75,7 +74,7 @@ def _frame(shaft: Shaft, ratio: float) -> pd.DataFrame:
         "omega_p_squared": shaft.omega_p**2,
         "kb_limit": shaft.largest_stable_gain(),
     }
-    return pd.DataFrame.from_dict({row: [values[row]] for row in example.rows}, orient="index", columns=["value"])
+    return example.frame(values)
 
 
 @example.reading(
@@ -161,8 +160,6 @@ reduction = paper.table(
 @reduction.reading("as-written", "Flexible shaft")
 def gain_reduction() -> pd.DataFrame:
     """Evaluate (7) for the three gains."""
-    import pandas as pd
-
     rows = {}
     s = 1j * EXAMPLE.omega_p
     w = np.geomspace(EXAMPLE.extrema()[0].frequency, 100.0 * EXAMPLE.omega_p, 20_001)
@@ -173,4 +170,4 @@ def gain_reduction() -> pd.DataFrame:
         gain = float(abs(damped(s)))
         largest = float(np.max(np.abs(damped(1j * w))))
         rows[name] = [k_b, float(loop_gain.real), gain, gain / EXAMPLE.p_max, 0.5, largest / EXAMPLE.p_max]
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(reduction.columns))
+    return reduction.frame(rows)

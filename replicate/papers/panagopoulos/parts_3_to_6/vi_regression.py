@@ -58,10 +58,8 @@ lines = paper.table(
 @lines.reading("as-written", "One line for each $\\omega_p$")
 def by_frequency() -> pd.DataFrame:
     """Fit a line to the members of each resonance frequency."""
-    import pandas as pd
-
     rows = {f"{omega_p:g}": list(fit(of(omega_p))) for omega_p in OMEGA_P}
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(lines.columns))
+    return lines.frame(rows)
 
 
 members = paper.table(
@@ -88,12 +86,10 @@ members = paper.table(
 @members.reading("as-written", "Gain of smallest IAE")
 def best_gains() -> pd.DataFrame:
     """Tabulate the batch."""
-    import pandas as pd
-
     rows = {
         f"{m.omega_p:g}, {m.zeta_p:g}": [
             m.ratio, m.k_b, k_b_from(m.ratio), m.iae, m.iae_by_formula_10, m.iae_by_formula_6, m.iae_without, m.damping,
         ]
         for m in batch()
     }  # fmt: skip
-    return pd.DataFrame.from_dict(rows, orient="index", columns=list(members.columns))
+    return members.frame(rows)
