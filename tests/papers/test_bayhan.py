@@ -16,7 +16,7 @@ from scipy import linalg, optimize
 
 from replicate.exhibits import Claim, Claims, Table
 from replicate.papers.bayhan import paper, pole_assignment
-from replicate.papers.bayhan.claims import UNSTABLE
+from replicate.papers.bayhan.claims_examples import UNSTABLE
 from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process, competing_rules, controllers
 from replicate.papers.bayhan.readings import AUTHORS, GAINS, TEXT, Assumption
 
@@ -166,7 +166,7 @@ def imc_response(t: mp.mpf) -> mp.mpf:
 
 
 def test_imc_row_as_written_is_the_closed_form() -> None:
-    computed = TEXT.table(EXAMPLE_41, ["IMC"]).loc["IMC"]
+    computed = TEXT.rows(EXAMPLE_41, ["IMC"])["IMC"]
     assert computed["delay_time"] == pytest.approx(1 + 0.5 * 1.06, rel=1e-11)
     assert computed["rise_time"] == pytest.approx(0.8 * 1.06, rel=1e-11)
     with mp.workdps(40):
@@ -227,7 +227,7 @@ def rk4_response(
     ids=["as-written-ITAESPC", "ki-over-ti-ITAESPC", "as-written-PA", "ki-over-ti-ISE"],
 )
 def test_exact_readings_agree_with_a_plain_integration(assumption: Assumption, process: Process, rule: str) -> None:
-    computed = assumption.table(process, [rule]).loc[rule]
+    computed = assumption.rows(process, [rule])[rule]
     gains = competing_rules()[rule].evaluate(**process.symbols) if rule != "PA" else None
     if gains is None:
         k, ki = mp_double_pole(process)
@@ -317,7 +317,7 @@ def test_authors_reading_by_matrix_exponential(
         "delay_time": int(np.argmax(output >= 0.5)) * step,
         "rise_time": int(np.argmax(output >= 0.9) - np.argmax(output >= 0.1)) * step,
     }
-    computed = AUTHORS.table(process, [rule]).loc[rule]
+    computed = AUTHORS.rows(process, [rule])[rule]
     for column, value in expected.items():
         assert computed[column] == pytest.approx(value, rel=1e-8, abs=1e-8), column
         same = f"{float(printed(table)[rule][column]):.6g}" == f"{value if value > 5e-7 else 0:.6g}"

@@ -8,6 +8,7 @@ import math
 from fractions import Fraction
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.loops import Loop
 from replicate.papers.ali import paper
 from replicate.papers.ali.sensitivities import designed, exact_peak
@@ -29,11 +30,6 @@ claims = paper.claims()
 
 TABLE_1 = tuple(Fraction(row) for row in table_1.rows)
 WORST = Fraction(9, 10)  # the last row of Table 1
-
-
-def number(value: float) -> str:
-    """Write a number for an evidence text."""
-    return f"{value:.4g}"
 
 
 def true_peak(table: str, x: Fraction) -> float:

@@ -6,8 +6,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.loops import Signal
-from replicate.papers.ali.claims import claims, number
+from replicate.papers.ali.claims import claims
 from replicate.papers.ali.examples import (
     EXAMPLE_1,
     EXAMPLE_2,

@@ -7,10 +7,11 @@ from fractions import Fraction
 from itertools import pairwise
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.exhibits.matching import meets
 from replicate.loops import Loop
 from replicate.papers.ali import paper
-from replicate.papers.ali.claims import TABLE_1, WORST, claims, number, true_peak
+from replicate.papers.ali.claims import TABLE_1, WORST, claims, true_peak
 from replicate.papers.ali.eq_11 import ROWS, printed_coefficients, printed_integral_times
 from replicate.papers.ali.sensitivities import designed, exact_peak
 from replicate.papers.ali.stability import DESIGNS, robustness

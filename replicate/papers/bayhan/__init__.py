@@ -24,6 +24,11 @@ paper = Paper(
         "fig_5",
         "evidence",
         "claims",
+        "claims_formulas",
+        "claims_choice_of_a",
+        "claims_examples",
+        "claims_table_1",
+        "claims_pt326",
     ),
     numbered=("fig-1", "table-1", "table-2", "fig-2", "table-3", "fig-3", "fig-4", "fig-5"),
     summary="A tuning rule that gives the loop a double pole, compared with ten classical rules. The rule "

@@ -118,19 +118,14 @@ def matches() -> pd.DataFrame:
     for assumption in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS):
         equal, near, cells = [], 0, 0
         for table, process in TABLES:
-            computed = assumption.table(table, process)
+            computed = assumption.rows(process, table.rows)
             printed = paper.printed_cells(table.id)
-            pairs = [(text, number(computed, row, column)) for (row, column), text in printed.items()]
+            pairs = [(text, computed[row][column]) for (row, column), text in printed.items()]
             equal.append(sum(_equal(text, value) for text, value in pairs))
             near += sum(_equal(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs)
             cells += len(pairs)
         rows[assumption.id] = [*equal, sum(equal), near, cells]
     return match_count.frame(rows)
-
-
-def number(frame: pd.DataFrame, row: str, column: str) -> float:
-    """Return one number of a computed table."""
-    return float(frame[column].to_dict()[row])
 
 
 def _equal(printed: str, computed: float) -> bool:

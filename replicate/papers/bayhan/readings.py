@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -27,11 +27,10 @@ class Assumption:
     variant: str = PRINTED
     note: str = ""
 
-    def table(self, table: Table, process: Process) -> pd.DataFrame:
-        """Compute a whole table."""
+    def rows(self, process: Process, rules: Sequence[str]) -> dict[str, dict[str, float]]:
+        """Return the specifications of every rule, by name."""
         found = controllers(process, self.convention, self.variant)
-        values = {row: self.method(process, found[row]) for row in table.rows}
-        return table.frame(values)
+        return {rule: self.method(process, found[rule]) for rule in rules}
 
 
 TEXT = Assumption(
@@ -80,7 +79,7 @@ def add_readings(table: Table, process: Process) -> None:
     for assumption in READINGS:
 
         def compute(assumption: Assumption = assumption) -> pd.DataFrame:
-            return assumption.table(table, process)
+            return table.frame(assumption.rows(process, table.rows))
 
         table.reading(assumption.id, assumption.title, assumption.note)(compute)
 

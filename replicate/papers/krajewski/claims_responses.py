@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed
 from replicate.loops import PI, Plant, step_responses
 from replicate.papers.krajewski.claims import claims
 from replicate.papers.krajewski.modal_models import modes, second_order_error, three_mode_error
@@ -26,10 +27,6 @@ def _metric(exhibit: str, name: str) -> list[float]:
 
 def _margin(exhibit: str, name: str) -> list[float]:
     return [margins_at(*at)[name] for at in _points(exhibit).values()]
-
-
-def _listed(values: list[float], digits: int = 4) -> str:
-    return ", ".join(f"{value:.{digits}g}" for value in values)
 
 
 def _rising(values: list[float]) -> bool:
@@ -82,7 +79,7 @@ def fig_9_slow_mode() -> Finding:
     return Finding(
         "holds" if _rising(weights) and _rising(rates[::-1]) else "fails",
         weights[-1],
-        f"Its weight grows, {_listed(weights, 3)}, and its rate of decay falls, {_listed(rates, 3)} (in 1/T).",
+        f"Its weight grows, {listed(weights, 3)}, and its rate of decay falls, {listed(rates, 3)} (in 1/T).",
     )
 
 
@@ -108,7 +105,7 @@ def fig_9_rise_unchanged() -> Finding:
     return Finding(
         "holds" if abs(change) < 0.05 else "holds-partly",
         change,
-        f"From 10 to 90 % it takes {_listed(values)}: {100 * change:.2g} % longer next to P2 than at P1. "
+        f"From 10 to 90 % it takes {listed(values)}: {100 * change:.2g} % longer next to P2 than at P1. "
         "Small beside the change of the settling time, but not nothing.",
     )
 
@@ -116,7 +113,7 @@ def fig_9_rise_unchanged() -> Finding:
 @claims.claim("fig-9-overshoot-falls", "From P1 to P2 the overshoot decreases.", where="section 8")
 def fig_9_overshoot_falls() -> Finding:
     values = [100.0 * value for value in _metric("fig-9", "overshoot")]
-    return Finding("holds" if _rising(values[::-1]) else "fails", values[-1] / 100.0, f"{_listed(values)} %.")
+    return Finding("holds" if _rising(values[::-1]) else "fails", values[-1] / 100.0, f"{listed(values)} %.")
 
 
 @claims.claim("fig-9-settling-grows", "From P1 to P2 the settling time increases.", where="section 8")
@@ -125,7 +122,7 @@ def fig_9_settling_grows() -> Finding:
     return Finding(
         "holds" if _rising(values) else "fails",
         values[-1],
-        f"To 2 %: {_listed(values)}. Next to P2 far beyond any time axis that shows the rise.",
+        f"To 2 %: {listed(values)}. Next to P2 far beyond any time axis that shows the rise.",
     )
 
 
@@ -141,7 +138,7 @@ def fig_10_position() -> Finding:
     return Finding(
         "holds" if 0.9 < ratios[0] < 1.0 < ratios[1] < ratios[2] else "fails",
         ratios[0],
-        f"b/a is {_listed(ratios)} for 45, 60 and 75 degrees.",
+        f"b/a is {listed(ratios)} for 45, 60 and 75 degrees.",
     )
 
 
@@ -198,7 +195,7 @@ def second_order_like() -> Finding:
     return Finding(
         "holds" if max(like) < 0.02 and min(unlike) > 5.0 * max(like) else "fails",
         max(like),
-        f"The best second-order response with a zero is within {_listed(like, 2)} of them, but off by "
+        f"The best second-order response with a zero is within {listed(like, 2)} of them, but off by "
         f"{min(unlike):.2g} to {max(unlike):.2g} for the other responses of Figs. 9 and 10.",
     )
 
@@ -236,7 +233,7 @@ def almost_minimal_settling() -> Finding:
     return Finding(
         "holds-partly" if here == min(drawn) and here > 1.2 * least else ("holds" if here <= 1.2 * least else "fails"),
         here / least,
-        f"It is the smallest of the three drawn ({_listed(drawn)}), and close to critical damping, a = "
+        f"It is the smallest of the three drawn ({listed(drawn)}), and close to critical damping, a = "
         f"1/(eτ) = {1.0 / (math.e * TAU):.4g}. Along b = a the least 2 % settling time is {least:.4g}, at "
         f"a = {best[0.02]:.4g}, and the least 5 % settling time is at a = {best[0.05]:.4g}; a = 0.75 needs "
         f"{here:.4g}, {here / least:.3g} times the least.",
@@ -253,7 +250,7 @@ def fig_11_trend() -> Finding:
     return Finding(
         "holds" if _rising(margins) and _rising(crossovers[::-1]) else "fails",
         margins[-1],
-        f"{_listed(margins)} degrees, ω_A = {_listed(crossovers)}.",
+        f"{listed(margins)} degrees, ω_A = {listed(crossovers)}.",
     )
 
 
@@ -267,7 +264,7 @@ def fig_11_monotone() -> Finding:
     return Finding(
         "holds" if overshoots[1] < 1e-4 and overshoots[2] == 0.0 and _rising(rises) else "fails",
         overshoots[1],
-        f"Rise times {_listed(rises)}. Strictly, (b) still overshoots, by {100 * overshoots[1]:.2g} %, "
+        f"Rise times {listed(rises)}. Strictly, (b) still overshoots, by {100 * overshoots[1]:.2g} %, "
         f"since aτ = {0.75 * TAU:g} is above 1/e; no graph shows it.",
     )
 
@@ -285,6 +282,6 @@ def fig_12_slow_mode() -> Finding:
     return Finding(
         "holds" if _rising(times) and _rising(rates[::-1]) and _rising(errors) else "fails",
         times[-1],
-        f"Settling times {_listed(times)}; the slowest mode decays with {_listed(rates, 3)}; the distance "
-        f"from a second-order response grows, {_listed(errors, 2)}.",
+        f"Settling times {listed(times)}; the slowest mode decays with {listed(rates, 3)}; the distance "
+        f"from a second-order response grows, {listed(errors, 2)}.",
     )

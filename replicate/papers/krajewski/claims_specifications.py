@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.claims import claims, interior
@@ -114,15 +115,12 @@ def very_well_approximated() -> Finding:
     of_b = {margin: abs(found[0].value) for margin, found in fits.items()}
     of_omega = {margin: abs(found[1].value) for margin, found in fits.items()}
     worst = max(of_omega.values())
-
-    def listed(values: dict[str, float]) -> str:
-        return ", ".join(f"{100 * value:.2g}" for value in values.values())
-
+    percent_b, percent_omega = (listed([100.0 * error for error in of.values()], 2) for of in (of_b, of_omega))
     return Finding(
         "holds-partly" if min(of_omega.values()) < 0.01 < worst else "holds",
         worst,
-        f"For {', '.join(MARGINS)} degrees the least-squares hyperbola is off by up to {listed(of_b)} % in "
-        f"b_u, and by up to {listed(of_omega)} % in the crossover frequency it is made for. Good for 30 "
+        f"For {', '.join(MARGINS)} degrees the least-squares hyperbola is off by up to {percent_b} % in "
+        f"b_u, and by up to {percent_omega} % in the crossover frequency it is made for. Good for 30 "
         "and 45 degrees; for more solve arctan ω + τω = π − m instead.",
     )
 

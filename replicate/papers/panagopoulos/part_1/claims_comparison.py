@@ -6,13 +6,13 @@ from __future__ import annotations
 from functools import cache
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.loops import Loop, Signal
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.settling import two_sided
 from replicate.papers.panagopoulos.part_1.simple_models import ultimate_point, ziegler_nichols
 from replicate.papers.panagopoulos.part_1.table_5 import authors_controller, overshoot_of_peak, responses
-from replicate.papers.panagopoulos.wording import number
 
 
 @cache

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.loops import Loop, design_pi
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
 from replicate.papers.panagopoulos.part_1.corner import corner_limit, slope_limit
@@ -20,7 +21,6 @@ from replicate.papers.panagopoulos.part_1.example_7 import smallest_a, smallest_
 from replicate.papers.panagopoulos.part_1.example_8 import FINITE, true_sigma
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, unstable
 from replicate.papers.panagopoulos.part_1.table_4 import FACTORS, filtered
-from replicate.papers.panagopoulos.wording import number
 
 LOW, HIGH = 1.4, 2.0
 

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.optimize import fsolve
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number
 from replicate.loops import PI, Circle, Loop
 from replicate.loops.pi_tangency import smooth_gains
 from replicate.papers.panagopoulos.part_1 import theorem_1
@@ -28,7 +29,6 @@ from replicate.papers.panagopoulos.part_1.designs import (
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, filtered_dead_time
 from replicate.papers.panagopoulos.part_1.table_4 import filtered
-from replicate.papers.panagopoulos.wording import listed, number
 
 NINE = tuple(f"G{number}" for number in range(1, 10))
 ROUNDING = 1e-9

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
@@ -18,7 +19,6 @@ from replicate.papers.panagopoulos.part_1.designs import (
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
-from replicate.papers.panagopoulos.wording import listed, number
 
 LOW, HIGH = 1.4, 2.0
 ROUNDING = 1e-9

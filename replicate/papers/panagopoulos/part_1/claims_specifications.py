@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number
 from replicate.loops import PI, Loop, design_pi
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import (
@@ -26,7 +27,6 @@ from replicate.papers.panagopoulos.part_1.errata import (
 )
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.simple_models import ziegler_nichols
-from replicate.papers.panagopoulos.wording import listed, number
 
 claims = paper.claims("I-claims", "Claims made in the text of paper I")
 

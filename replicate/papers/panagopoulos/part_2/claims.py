@@ -3,10 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import Literal
-
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number, share
 from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
@@ -26,24 +24,6 @@ EVERYWHERE = (1e-2, 30.0)  # rad/s, for lags of 1: below, L is all but a straigh
 ROUNDING = 1e-10  # relative; what a computation in double precision may leave
 PROCESSES = tuple(PLANTS)
 REGULAR = tuple(name for name in PROCESSES if name not in NEAR_INTEGRATING)
-Verdict = Literal["holds", "fails", "holds-partly"]
-
-
-def number(value: float, digits: int = 3) -> str:
-    """Write a number for a sentence."""
-    return f"{value:.{digits}g}"
-
-
-def listed(values: Mapping[str, float], digits: int = 3) -> str:
-    """Write named numbers for a sentence."""
-    return ", ".join(f"{number(value, digits)} ({key})" for key, value in values.items())
-
-
-def share(flags: Iterable[bool]) -> tuple[Verdict, int, int]:
-    """Return the verdict on a claim about all members of a list, how many keep it, and of how many."""
-    known = list(flags)
-    kept = sum(known)
-    return ("holds" if kept == len(known) else "holds-partly" if kept else "fails"), kept, len(known)
 
 
 def row_of(name: str, ms: float) -> str:
@@ -74,11 +54,11 @@ def similar() -> Finding:
         "holds-partly",
         max(swings[1.4]) - min(swings[1.4]),
         "The swing back, as a fraction of the peak, is alike for the lags in series $G_4$ to $G_7$: "
-        f"{number(min(without[1.4]))} to {number(max(without[1.4]))} for $M_s = 1.4$ and "
-        f"{number(min(without[2.0]))} to "
-        f"{number(max(without[2.0]))} for 2.0. Over all processes with the curvature constraint it runs from "
-        f"{number(min(swings[1.4]))} to {number(max(swings[1.4]))} and from {number(min(swings[2.0]))} to "
-        f"{number(max(swings[2.0]))}; the optimal responses of $G_1$ and $G_3$ do not swing at all.",
+        f"{number(min(without[1.4]), 3)} to {number(max(without[1.4]), 3)} for $M_s = 1.4$ and "
+        f"{number(min(without[2.0]), 3)} to "
+        f"{number(max(without[2.0]), 3)} for 2.0. Over all processes with the curvature constraint it runs from "
+        f"{number(min(swings[1.4]), 3)} to {number(max(swings[1.4]), 3)} and from {number(min(swings[2.0]), 3)} to "
+        f"{number(max(swings[2.0]), 3)}; the optimal responses of $G_1$ and $G_3$ do not swing at all.",
     )
 
 
@@ -156,7 +136,7 @@ def zero_weight() -> Finding:
         max(above.values()),
         f"In {count} of the {len(above)} rows with $b = 0$ the gain from the set point is above one at "
         f"$\\omega_{{mp}}$, up to "
-        f"{number(max(above.values()))}.",
+        f"{number(max(above.values()), 3)}.",
     )
 
 
@@ -173,7 +153,7 @@ def close_to_one() -> Finding:
         as_printed[worst],
         f"With the printed $b$ and $T_{{sp}}$ of the errata the peak exceeds 1.1 in {off} of {len(ROWS)} "
         "rows, most in "
-        f"{worst}: {number(as_printed[worst])}.",
+        f"{worst}: {number(as_printed[worst], 3)}.",
     )
 
 
@@ -186,8 +166,8 @@ def better_than_pi() -> Finding:
         verdict,
         gain[worst],
         f"The absolute error after a load step falls in {kept} of {total} cases, by factors up to "
-        f"{number(max(gain.values()))}. "
-        f"For {worst} the optimum of the stated problem is worse than PI ({number(gain[worst])} times): there "
+        f"{number(max(gain.values()), 3)}. "
+        f"For {worst} the optimum of the stated problem is worse than PI ({number(gain[worst], 3)} times): there "
         "the PI loop "
         "itself violates the phase constraint.",
     )
@@ -205,9 +185,9 @@ def too_severe() -> Finding:
     return Finding(
         "holds-partly",
         min(costs.values()),
-        f"It lowers the largest $k_i$ by factors {listed(costs)}. But the phase constraint alone, which the "
+        f"It lowers the largest $k_i$ by factors {listed(costs, 3)}. But the phase constraint alone, which the "
         "text keeps, already "
-        f"lowers it by {listed(loss)} against the circle alone.",
+        f"lowers it by {listed(loss, 3)} against the circle alone.",
     )
 
 
@@ -229,9 +209,9 @@ def phase_matters() -> Finding:
         "holds" if curvature < 0.0 < ratio - 1.0 else "fails",
         ratio,
         f"It is idle at {idle} of {len(slopes)} optima to which both apply (largest $d\\arg L/d\\ln\\omega$: "
-        f"{number(max(slopes.values()))}), but without it these would not be optimal. For $1/(s+1)^4$, $M_s = 1.4$, "
+        f"{number(max(slopes.values()), 3)}), but without it these would not be optimal. For $1/(s+1)^4$, $M_s = 1.4$, "
         f"the loop with the largest $k_i$ for $k_d = 3$ keeps the circle and bends the same way at all frequencies, "
-        f"with $k_i$ = {number(rival.ki)} against {number(optimal(row).ki)}; that its phase rises "
-        f"($d\\arg L/d\\ln\\omega$ up to {number(largest_over('phase', G4, loop, stated_range(row)))}) is all that "
+        f"with $k_i$ = {number(rival.ki, 3)} against {number(optimal(row).ki, 3)}; that its phase rises "
+        f"($d\\arg L/d\\ln\\omega$ up to {number(largest_over('phase', G4, loop, stated_range(row)), 3)}) is all that "
         "excludes it.",
     )

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from replicate.exhibits import Finding
-from replicate.papers.panagopoulos.part_2.claims import PROCESSES, REGULAR, claims, listed, row_of, share
+from replicate.exhibits.evidence import listed, share
+from replicate.papers.panagopoulos.part_2.claims import PROCESSES, REGULAR, claims, row_of
 from replicate.papers.panagopoulos.part_2.designs import optimal, printed
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split
 from replicate.papers.panagopoulos.part_2.shape import largest_over, stated_range
@@ -42,7 +43,7 @@ def errata_optimal() -> Finding:
         f"True for {kept} of {total} rows, with {100 * min(inside):.4g} to {100 * max(inside):.4g} % of the "
         "largest $k_i$; "
         f"$k$, $T_i$ and $T_d$ within {100 * CLOSE:g} %. The other $k_i$ are "
-        f"{listed({row: value for row, value in shares.items() if row not in good})} times that of the stated "
+        f"{listed({row: value for row, value in shares.items() if row not in good}, 3)} times that of the stated "
         "problem.",
     )
 
@@ -58,7 +59,7 @@ def table_1_feasible() -> Finding:
     return Finding(
         verdict,
         kept,
-        f"Of the {total} rows with this constraint {kept} satisfy it; largest curvatures {listed(found)}.",
+        f"Of the {total} rows with this constraint {kept} satisfy it; largest curvatures {listed(found, 3)}.",
     )
 
 
@@ -66,7 +67,7 @@ def table_1_feasible() -> Finding:
 def gain_larger() -> Finding:
     ratios = {n: optimal(row_of(n, 2.0)).k / optimal(row_of(n, 1.4)).k for n in PROCESSES}
     verdict, kept, total = share(value > 1.0 for value in ratios.values())
-    return Finding(verdict, min(ratios.values()), f"True for {kept} of {total}; ratios {listed(ratios)}.")
+    return Finding(verdict, min(ratios.values()), f"True for {kept} of {total}; ratios {listed(ratios, 3)}.")
 
 
 @claims.claim(
@@ -78,7 +79,7 @@ def integral_time() -> Finding:
     return Finding(
         verdict,
         max(value for n, value in ratios.items() if n != "G1"),
-        f"$T_i$ for $M_s = 1.4$ over that for 2.0: {listed(ratios)}; within a quarter for {kept} of {total}.",
+        f"$T_i$ for $M_s = 1.4$ over that for 2.0: {listed(ratios, 3)}; within a quarter for {kept} of {total}.",
     )
 
 
@@ -111,7 +112,7 @@ def complex_zeros() -> Finding:
     return Finding(
         verdict,
         max(ratios.values()),
-        f"$T_i/T_d$ must be below 4: true for {kept} of {total} optimal designs ({listed(ratios)}) and for "
+        f"$T_i/T_d$ must be below 4: true for {kept} of {total} optimal designs ({listed(ratios, 3)}) and for "
         f"{also} of {total} "
         "printed ones.",
     )

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number, share
 from replicate.loops import PID, Loop
-from replicate.papers.panagopoulos.part_2.claims import ROUNDING, claims, number, share
+from replicate.papers.panagopoulos.part_2.claims import ROUNDING, claims
 from replicate.papers.panagopoulos.part_2.designs import optimal
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split
 from replicate.papers.panagopoulos.part_2.setpoint import (
@@ -49,7 +50,7 @@ def eq_16() -> Finding:
     return Finding(
         "fails" if abs(worst - 1.0) > 1e-6 else "holds",
         worst,
-        f"As printed it gives {number(min(gains))} to {number(max(gains))}; divided by $\\omega_{{mp}}$ "
+        f"As printed it gives {number(min(gains), 3)} to {number(max(gains), 3)}; divided by $\\omega_{{mp}}$ "
         f"instead of its square it gives one in {sum(abs(g - 1.0) < ROUNDING for g in right)} of {len(right)} cases.",
     )
 
@@ -78,7 +79,7 @@ def filter_b_one() -> Finding:
         max(ratio.values()),
         f"The rise time grows in {sum(slower)} of {len(slower)} cases. The settling time (2 %) stays within a "
         f"tenth in {same} of "
-        f"them; it changes by factors between {number(min(ratio.values()))} and {number(max(ratio.values()))}.",
+        f"them; it changes by factors between {number(min(ratio.values()), 3)} and {number(max(ratio.values()), 3)}.",
     )
 
 
@@ -94,5 +95,5 @@ def weight_helps() -> Finding:
         max(found.values()),
         f"With the corrected formulas the overshoot stays below 20 % in {kept} of {total} designs; the "
         "largest is "
-        f"{number(max(found.values()))} percent ({max(found, key=lambda row: found[row])}).",
+        f"{number(max(found.values()), 3)} percent ({max(found, key=lambda row: found[row])}).",
     )

@@ -6,9 +6,10 @@ from __future__ import annotations
 import numpy as np
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number, share
 from replicate.loops import Loop
 from replicate.papers.panagopoulos.part_2 import feasible, filters
-from replicate.papers.panagopoulos.part_2.claims import claims, listed, number, share
+from replicate.papers.panagopoulos.part_2.claims import claims
 from replicate.papers.panagopoulos.part_2.example import bottom_maximum
 from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS, pole_numbers
 from replicate.papers.panagopoulos.part_2.noise_figures import NOISE_FREQUENCY, filtered
@@ -59,9 +60,9 @@ def envelope() -> Finding:
     return Finding(
         "holds-partly",
         excess["$k_d=3$"],
-        f"The highest bottom vertex exceeds the largest feasible $k_i$ by the factors {listed(excess)}; for "
+        f"The highest bottom vertex exceeds the largest feasible $k_i$ by the factors {listed(excess, 3)}; for "
         "$k_d = 4$ nothing "
-        f"is feasible, and the locus still reaches {number(bottom_maximum(4.0))}.",
+        f"is feasible, and the locus still reaches {number(bottom_maximum(4.0), 3)}.",
     )
 
 
@@ -86,7 +87,7 @@ def iae_degrades() -> Finding:
     iae = {key: y.iae() for key, y in load.items()}
     peak = {key: float(y.peak()) for key, y in load.items()}
     holds = iae["kd=3"] > iae["kd=1"] and peak["kd=3"] < peak["kd=1"]
-    return Finding("holds" if holds else "fails", iae["kd=3"], f"IAE {listed(iae, 4)}; peaks {listed(peak)}.")
+    return Finding("holds" if holds else "fails", iae["kd=3"], f"IAE {listed(iae, 4)}; peaks {listed(peak, 3)}.")
 
 
 @claims.claim(
@@ -102,11 +103,11 @@ def faster_less_damped() -> Finding:
     return Finding(
         verdict,
         three["omega2"],
-        f"{kept} of {total} comparisons agree: both pairs lose damping ({number(one['zeta1'])} to "
-        f"{number(three['zeta1'])}, "
-        f"{number(one['zeta2'])} to {number(three['zeta2'])}), but the slow pair, which dominates, becomes "
+        f"{kept} of {total} comparisons agree: both pairs lose damping ({number(one['zeta1'], 3)} to "
+        f"{number(three['zeta1'], 3)}, "
+        f"{number(one['zeta2'], 3)} to {number(three['zeta2'], 3)}), but the slow pair, which dominates, becomes "
         "slower "
-        f"({number(one['omega2'])} to {number(three['omega2'])}).",
+        f"({number(one['omega2'], 3)} to {number(three['omega2'], 3)}).",
     )
 
 
@@ -123,8 +124,8 @@ def gain_greater() -> Finding:
     return Finding(
         "holds" if ratio.min() >= 1.0 else "holds-partly",
         float(ratio.min()),
-        f"Except between {number(below.min())} and {number(below.max())} rad/s, where it falls to "
-        f"{number(float(ratio.min()))} of it (at {number(float(W[lowest]))} rad/s)."
+        f"Except between {number(below.min(), 3)} and {number(below.max(), 3)} rad/s, where it falls to "
+        f"{number(float(ratio.min()), 3)} of it (at {number(float(W[lowest]), 3)} rad/s)."
         if below.size
         else "At all frequencies.",
     )
@@ -139,7 +140,7 @@ def lag_and_lead() -> Finding:
     slopes = {key: largest_over("phase", G4, c, (0.01, 10.0)) for key, c in CONTROLLERS.items()}
     holds = slopes["kd=1"] < 0.0 < slopes["kd=3"]
     return Finding(
-        "holds" if holds else "fails", slopes["kd=3"], f"Largest $d\\arg L/d\\ln\\omega$: {listed(slopes)} rad."
+        "holds" if holds else "fails", slopes["kd=3"], f"Largest $d\\arg L/d\\ln\\omega$: {listed(slopes, 3)} rad."
     )
 
 
@@ -154,7 +155,7 @@ def cusp() -> Finding:
         "holds-partly",
         curvature,
         f"Not in the strict sense: the curve never stands still ($|dL/d\\ln\\omega| \\geq "
-        f"{number(float(speed.min()))}$). It "
+        f"{number(float(speed.min()), 3)}$). It "
         f"turns back in a narrow loop, clockwise throughout (largest curvature {number(curvature, 2)}): of "
         "the two constraints "
         "added to prevent it, only the one on the phase does.",
@@ -176,8 +177,8 @@ def trade_off() -> Finding:
     return Finding(
         verdict,
         iae["n1_N2"],
-        f"IAE {listed(iae)}; $M_n$ {listed(noise)}; without filter IAE is "
-        f"{number(filters.numbers(None, filters.unfiltered().controller)['IAE'])}.",
+        f"IAE {listed(iae, 3)}; $M_n$ {listed(noise, 3)}; without filter IAE is "
+        f"{number(filters.numbers(None, filters.unfiltered().controller)['IAE'], 3)}.",
     )
 
 
@@ -196,7 +197,7 @@ def orders_alike() -> Finding:
         "holds",
         max(gap.values()),
         f"$F_y(i\\omega_0)$ of the two orders differs by {listed(gap, 2)}, against a change of "
-        f"{number(float(abs(1.0 - 1.0 / (1.0 + 0.5j))))} by the filter itself for $N = 2$.",
+        f"{number(float(abs(1.0 - 1.0 / (1.0 + 0.5j))), 3)} by the filter itself for $N = 2$.",
     )
 
 
@@ -217,7 +218,7 @@ def filtering_alike() -> Finding:
         ratio["$N=2$"],
         "The text says both. With the filters of (8), $M_n$ and IAE are close indeed; at 40 rad/s the "
         "first-order filter "
-        f"lets through {listed(ratio)} times as much. In the printed table the second-order columns look more "
+        f"lets through {listed(ratio, 3)} times as much. In the printed table the second-order columns look more "
         "efficient because "
         "their filters are slower than (8) says.",
     )

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.loops import PI, Circle, Loop, design_pi, gamma_norm
 from replicate.papers.panagopoulos.parts_3_to_6.iii_claims import ROUNDING, claims
 from replicate.papers.panagopoulos.parts_3_to_6.iii_table_1 import printed_pairs
@@ -23,7 +24,6 @@ from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import (
     gamma_of_m,
     m_of_gamma,
 )
-from replicate.papers.panagopoulos.wording import number
 
 LEVELS = (1.1, 1.4, 2.0, 3.0)  # of M, where a statement is checked for several
 

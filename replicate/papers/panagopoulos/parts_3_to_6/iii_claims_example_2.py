@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.loops import Loop
 from replicate.papers.panagopoulos.parts_3_to_6.iii_claims import claims
 from replicate.papers.panagopoulos.parts_3_to_6.iii_examples import robustness
 from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import PRINTED, TRUE_PROCESS
-from replicate.papers.panagopoulos.wording import number
 
 
 @claims.claim("winding", "The winding condition of the $\\nu$-gap is fulfilled.", where="Example 2")

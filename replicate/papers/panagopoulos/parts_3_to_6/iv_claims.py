@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.iv_steam_generator import RATIOS
 from replicate.papers.panagopoulos.parts_3_to_6.reference_model import step
-from replicate.papers.panagopoulos.wording import number
 
 claims = paper.claims("IV-claims", "Claims of paper IV that its own numbers decide")
 

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number, share
 from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6 import v_drying, v_starch
@@ -25,7 +26,6 @@ from replicate.papers.panagopoulos.parts_3_to_6.industrial import (
     starch_design,
     starch_pid,
 )
-from replicate.papers.panagopoulos.wording import number
 
 claims = paper.claims("V-claims", "Claims made in the text of paper V")
 
@@ -88,7 +88,7 @@ def starch_setpoint() -> Finding:
     settled = [step.settling_time(0.02) for step in (new, old)]
     better = [new.ise() < old.ise(), new.overshoot() < old.overshoot(), settled[0] < settled[1]]
     return Finding(
-        "holds" if all(better) else "holds-partly" if any(better) else "fails",
+        share(better).verdict,
         new.ise() / old.ise(),
         "By the paper's own measure, the squared error, it barely does: on the model, with $b = 1$ and no set-point "
         f"filter, the ISE of a step is {number(new.ise())} with PID and {number(old.ise())} with PI. But PID "

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
@@ -19,7 +20,6 @@ from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
     bandpass,
     damping_ratio,
 )
-from replicate.papers.panagopoulos.wording import listed, number
 
 claims = paper.claims("VI-claims", "Claims made in the text of paper VI")
 

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from replicate.exhibits import Finding
+from replicate.exhibits.evidence import number
 from replicate.papers.panagopoulos.parts_3_to_6.active_damping import EXAMPLE, K_B, k_b_from
 from replicate.papers.panagopoulos.parts_3_to_6.damping_batch import OMEGA_P, batch, fit, impulse_iae, of
 from replicate.papers.panagopoulos.parts_3_to_6.vi_claims import claims
-from replicate.papers.panagopoulos.wording import number
 
 ROUNDING = 1e-6  # of ratios of two IAE
 

@@ -1,0 +1,113 @@
+"""Section III: condition (27) and the choice of the free parameter a."""
+# ruff: noqa: D103  -- the text of a claim documents its check
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy import optimize
+
+from replicate.exhibits import Finding
+from replicate.exhibits.evidence import listed, number
+from replicate.loops import Loop
+from replicate.papers.bayhan.claims import PROCESSES, claims
+from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process, specifications
+
+
+def _limit_of_dominance(process: Process) -> float:
+    """Return the a at which the second margin of (27) changes sign, the one that fails first."""
+
+    def margin(a: float) -> float:
+        return float(min(process.dominance(a)))
+
+    grid = np.linspace(0.01, 4.0, 400)
+    signs = np.array([margin(a) > 0 for a in grid])
+    first = int(np.flatnonzero(~signs)[0])
+    return float(optimize.brentq(margin, grid[first - 1], grid[first], xtol=1e-13))
+
+
+def _dominance(process: Process) -> Finding:
+    margins = process.dominance()
+    return Finding(
+        "holds" if margins.holds else "fails",
+        float(min(margins)),
+        f"For $a = {process.a}$ the two margins are {number(float(margins.linear))} and "
+        f"{number(float(margins.constant))}; both must be positive, which they are for $a$ below "
+        f"{number(_limit_of_dominance(process))}.",
+    )
+
+
+@claims.claim("dominance-4-1", "Condition (27) is met for Example 4.1, $a = 0.85$.", where="(27), Example 4.1")
+def dominance_41() -> Finding:
+    return _dominance(EXAMPLE_41)
+
+
+@claims.claim("dominance-4-2", "Condition (27) is met for Example 4.2, $a = 0.3$.", where="(27), Example 4.2")
+def dominance_42() -> Finding:
+    return _dominance(EXAMPLE_42)
+
+
+@claims.claim("dominance-pt326", "Condition (27) is met for the PT326 set, $a = 1.3$.", where="(27), section V")
+def dominance_pt326() -> Finding:
+    return _dominance(PT326)
+
+
+@claims.claim(
+    "range-of-a",
+    "In many practical cases $a$ can be chosen between 0.5 and 4.",
+    where="section III, below (16)",
+)
+def range_of_a() -> Finding:
+    limits = {process.title: _limit_of_dominance(process) for process in PROCESSES}
+    lowest = min(limits.values())
+    return Finding(
+        "fails" if max(limits.values()) < 4.0 else "holds-partly",
+        lowest,
+        f"For the paper's own processes condition (27) allows $a$ only up to {listed(limits)}, and "
+        f"Example 4.2 uses $a = {EXAMPLE_42.a}$, outside the range.",
+    )
+
+
+def _stable_limit(process: Process) -> float:
+    """Return the first a above the paper's at which the loop with exact dead time becomes unstable."""
+
+    def stable(a: float) -> bool:
+        return Loop(process.plant, process.pole_assignment(a)).is_stable()
+
+    low = process.a
+    while stable(low + 0.05):
+        low += 0.05
+    high = low + 0.05
+    while high - low > 1e-6:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if stable(middle) else (low, middle)
+    return high
+
+
+def _slower_beyond(process: Process) -> float:
+    """Return the a up to which the settling time falls, on a grid from half the paper's a on."""
+    previous = math.inf
+    for step in range(round(50 * process.a), 400):
+        time = specifications(process, process.pole_assignment(step / 100))["settling_time"]
+        if not time < previous:
+            return (step - 1) / 100
+        previous = time
+    return 4.0
+
+
+@claims.claim(
+    "a-is-speed",
+    "The free parameter $a$ fine-tunes the speed of the closed loop (the larger, the faster).",
+    where="section III, (16)",
+)
+def a_is_speed() -> Finding:
+    turning = {process.title: _slower_beyond(process) for process in PROCESSES}
+    return Finding(
+        "holds-partly",
+        turning[PT326.title],
+        f"Only up to a point: the settling time falls with $a$ up to {listed(turning)} (on a grid of step "
+        f"0.01; the paper takes {EXAMPLE_41.a}, {EXAMPLE_42.a} and {PT326.a}), next to the limits of "
+        "condition (27), and rises again beyond. The PT326 loop is unstable from $a$ = "
+        f"{number(_stable_limit(PT326))} on.",
+    )
