@@ -3,47 +3,24 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from replicate.exhibits import Finding
-from replicate.exhibits.evidence import number
+from replicate.exhibits.evidence import number, share
 from replicate.loops import Signal
 from replicate.papers.ali.claims import claims
+from replicate.papers.ali.comparisons import padma_sree
 from replicate.papers.ali.examples import (
     EXAMPLE_1,
     EXAMPLE_2,
     example_1,
     example_2,
-    load_response,
     loop,
     setpoint_response,
 )
+from replicate.papers.ali.pairs import KINDS, Pair, by_form, pairs
 from replicate.papers.ali.structures import NAMES, STRUCTURES
 
 FORMS = {"series": "both in the form (2)", "ideal": "Padma Sree in the parallel form"}
-KINDS = {"setpoint": "set point", "load": "load"}
 ENOUGH = 60.0  # the largest peak comes in the first oscillations, long before
-
-
-class Pair(NamedTuple):
-    """A number for the proposed controller and for its competitor."""
-
-    proposed: float
-    competitor: float
-
-    def __str__(self) -> str:
-        """Write both for an evidence text."""
-        return f"{number(self.proposed)} against {number(self.competitor)}"
-
-
-def _example_1(kind: str, structure: str) -> tuple[Signal, Signal]:
-    """Return the outputs of the proposed controller, in (2), and of Padma Sree's in the given structure."""
-    response = setpoint_response if kind == "setpoint" else load_response
-    settings = example_1()
-    return (
-        response(EXAMPLE_1, "series", settings["proposed"]).output,
-        response(EXAMPLE_1, structure, settings["padma-sree"]).output,
-    )
 
 
 def _peak(structure: str, settings: str) -> float:
@@ -87,14 +64,13 @@ def larger_overshoot_setpoint() -> Finding:
     proposed = {structure: _peak(structure, "proposed") for structure in STRUCTURES}
     competitor = {structure: _peak(structure, "padma-sree") for structure in STRUCTURES}
     same = {s: Pair(proposed[s], competitor[s]) for s in STRUCTURES}
-    larger = [s for s, pair in same.items() if pair.proposed > pair.competitor]
     mixed = [(a, b) for a in STRUCTURES for b in STRUCTURES if a != b and proposed[a] > competitor[b]]
     partners = " or ".join(sorted({NAMES[b] for _, b in mixed}))
     return Finding(
-        "holds" if len(larger) == len(same) else "holds-partly" if larger else "fails",
+        share(pair.proposed > pair.competitor for pair in same.values()).verdict,
         same["series"].proposed - same["series"].competitor,
         "The peak of the proposed response is the smaller one: "
-        + ", ".join(f"{pair} ({NAMES[s]})" for s, pair in same.items())
+        + by_form(same, NAMES, ", ")
         + f". Of the {len(STRUCTURES) * (len(STRUCTURES) - 1)} combinations of two different structures, "
         f"{len(mixed)} would make the sentence true, with Padma Sree's controller in: {partners}. The paper "
         "does not mention such a difference.",
@@ -107,11 +83,11 @@ def larger_overshoot_setpoint() -> Finding:
     where="section 3, Example 1",
 )
 def larger_overshoot_load() -> Finding:
-    pairs = {s: Pair(*(signal.peak().value for signal in _example_1("load", s))) for s in FORMS}
+    found = pairs(padma_sree("load"), lambda y: y.peak().value)
     return Finding(
-        "holds" if all(p.proposed > p.competitor for p in pairs.values()) else "fails",
-        pairs["series"].proposed - pairs["series"].competitor,
-        "Peak of the load response: " + "; ".join(f"{p} ({FORMS[s]})" for s, p in pairs.items()) + ".",
+        "holds" if all(p.proposed > p.competitor for p in found.values()) else "fails",
+        found["series"].proposed - found["series"].competitor,
+        f"Peak of the load response: {by_form(found, FORMS)}.",
     )
 
 
@@ -121,15 +97,18 @@ def larger_overshoot_load() -> Finding:
     where="section 3, Example 1",
 )
 def shorter_settling() -> Finding:
-    pairs = {
-        (kind, s): Pair(*(signal.settling_time() for signal in _example_1(kind, s)))
-        for kind in ("setpoint", "load")
-        for s in FORMS
-    }
+    setpoint = pairs(padma_sree("setpoint"), Signal.settling_time)
+    load = pairs(padma_sree("load"), Signal.settling_time)
     return Finding(
-        "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
-        pairs["setpoint", "series"].competitor / pairs["setpoint", "series"].proposed,
-        "Settling to 2 %: " + "; ".join(f"{KINDS[kind]}, {p} ({FORMS[s]})" for (kind, s), p in pairs.items()) + ".",
+        "holds" if all(p.proposed < p.competitor for p in (*setpoint.values(), *load.values())) else "fails",
+        setpoint["series"].competitor / setpoint["series"].proposed,
+        "Settling to 2 %: "
+        + "; ".join(
+            f"{KINDS[kind]}, {p} ({FORMS[s]})"
+            for kind, found in (("setpoint", setpoint), ("load", load))
+            for s, p in found.items()
+        )
+        + ".",
     )
 
 

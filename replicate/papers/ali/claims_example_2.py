@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from replicate.exhibits import Finding
-from replicate.exhibits.evidence import number
+from replicate.exhibits.evidence import number, share
 from replicate.loops import Signal
 from replicate.papers.ali.claims import claims
-from replicate.papers.ali.claims_example_1 import KINDS, Pair
+from replicate.papers.ali.comparisons import visioli
 from replicate.papers.ali.examples import (
     EXAMPLE_1,
     EXAMPLE_2,
@@ -18,33 +20,23 @@ from replicate.papers.ali.examples import (
     setpoint_response,
     total_variation,
 )
+from replicate.papers.ali.pairs import KINDS, Pair, by_form, outputs, pairs
 from replicate.papers.ali.structures import NAMES
 
 VISIOLI = {"series": "all in the form (2)", "ideal": "Visioli in the parallel form"}
-
-
-def _example_2(kind: str, structure: str, setting: str = "") -> tuple[Signal, Signal]:
-    """Return the outputs of the proposed controller, in (2), and of Visioli's in the given structure."""
-    response = setpoint_response if kind == "setpoint" else load_response
-    settings = example_2()
-    return (
-        response(EXAMPLE_2, "series", settings["proposed"]).output,
-        response(EXAMPLE_2, structure, settings[f"visioli-{setting or kind}"]).output,
-    )
 
 
 @claims.claim(
     "same-speed", "Example 2: both methods give the same speed of response.", where="section 3, Example 2, Fig. 5"
 )
 def same_speed() -> Finding:
-    half = {s: Pair(*(signal.delay_time() for signal in _example_2("setpoint", s))) for s in VISIOLI}
-    rise = {s: Pair(*(signal.rise_time() for signal in _example_2("setpoint", s))) for s in VISIOLI}
+    half, rise = (pairs(visioli("setpoint"), measure) for measure in (Signal.delay_time, Signal.rise_time))
     ratio = rise["ideal"].proposed / rise["ideal"].competitor
     return Finding(
         "holds" if 0.8 < ratio < 1.25 else "holds-partly",
         ratio,
         "Only by the eye, because the dead time dominates: half the step is reached after "
-        + " and ".join(f"{p} ({VISIOLI[s]})" for s, p in half.items())
+        + by_form(half, VISIOLI, " and ")
         + ", dead time included; but the rise from 10 % to 90 % takes "
         + " and ".join(f"{p}" for p in rise.values())
         + ".",
@@ -55,11 +47,11 @@ def same_speed() -> Finding:
     "less-overshoot", "Example 2: the proposed method has less overshoot.", where="section 3, Example 2, Fig. 5"
 )
 def less_overshoot() -> Finding:
-    pairs = {s: Pair(*(100.0 * signal.overshoot() for signal in _example_2("setpoint", s))) for s in VISIOLI}
+    found = pairs(visioli("setpoint"), lambda y: 100.0 * y.overshoot())
     return Finding(
-        "holds" if all(p.proposed < p.competitor for p in pairs.values()) else "fails",
-        pairs["ideal"].competitor - pairs["ideal"].proposed,
-        "Overshoot in per cent: " + "; ".join(f"{p} ({VISIOLI[s]})" for s, p in pairs.items()) + ".",
+        "holds" if all(p.proposed < p.competitor for p in found.values()) else "fails",
+        found["ideal"].competitor - found["ideal"].proposed,
+        f"Overshoot in per cent: {by_form(found, VISIOLI)}.",
     )
 
 
@@ -69,14 +61,12 @@ def less_overshoot() -> Finding:
     where="section 3, Example 2, Fig. 5",
 )
 def slightly_longer_settling() -> Finding:
-    pairs = {s: Pair(*(signal.settling_time() for signal in _example_2("setpoint", s))) for s in VISIOLI}
-    longer = [s for s, p in pairs.items() if p.proposed > p.competitor]
+    found = pairs(visioli("setpoint"), Signal.settling_time)
     return Finding(
-        "holds" if len(longer) == len(pairs) else "holds-partly" if longer else "fails",
-        pairs["ideal"].proposed / pairs["ideal"].competitor,
-        "The structure decides the settling time of the set-point response: "
-        + "; ".join(f"{p} ({VISIOLI[s]})" for s, p in pairs.items())
-        + ". The sentence is evidence that Visioli's controller was simulated in the parallel form.",
+        share(p.proposed > p.competitor for p in found.values()).verdict,
+        found["ideal"].proposed / found["ideal"].competitor,
+        f"The structure decides the settling time of the set-point response: {by_form(found, VISIOLI)}. "
+        "The sentence is evidence that Visioli's controller was simulated in the parallel form.",
     )
 
 
@@ -103,7 +93,7 @@ def visioli_load_stable() -> Finding:
     where="section 3, Example 2, Fig. 6",
 )
 def visioli_better_load() -> Finding:
-    proposed, competitor = _example_2("load", "ideal")
+    proposed, competitor = outputs(visioli("load"), "ideal")
     better = competitor.iae() < proposed.iae() and competitor.peak().value < proposed.peak().value
     return Finding(
         "holds" if better else "fails",
@@ -121,8 +111,8 @@ def visioli_better_load() -> Finding:
     where="section 3, Example 2",
 )
 def two_settings() -> Finding:
-    proposed, own = _example_2("load", "ideal")
-    _, other = _example_2("load", "ideal", "setpoint")
+    proposed, own = outputs(visioli("load"), "ideal")
+    _, other = outputs(replace(visioli("load"), competitor=example_2()["visioli-setpoint"]), "ideal")
     settings = example_2()
     return Finding(
         "holds" if settings["visioli-setpoint"] != settings["visioli-load"] else "fails",

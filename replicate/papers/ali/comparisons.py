@@ -12,7 +12,7 @@ def padma_sree(kind: Kind, until: float = 30.0) -> Comparison:
     return Comparison(EXAMPLE_1, settings["proposed"], settings["padma-sree"], "Padma Sree", kind, until)
 
 
-def visioli(kind: Kind, until: float) -> Comparison:
+def visioli(kind: Kind, until: float = 6.0) -> Comparison:
     """Return the comparison of Example 2: Visioli's setting for the set point or the one for the load."""
     settings = example_2()
     return Comparison(EXAMPLE_2, settings["proposed"], settings[f"visioli-{kind}"], "Visioli", kind, until)

@@ -12,7 +12,7 @@ FIGURES = (
     ResponseFigure(
         "fig-5",
         "Set-point responses, Example 2",
-        partial(draw_outputs, comparison=visioli("setpoint", 6.0), limits=(-0.2, 2.7)),
+        partial(draw_outputs, comparison=visioli("setpoint"), limits=(-0.2, 2.7)),
         caption="Unit step of the set point, exact dead time. Proposed controller in the form (2); Visioli's "
         "set-point setting in the form (2) on the left and in the parallel form on the right. Which of the two "
         "settles first depends on that choice.",
@@ -22,7 +22,7 @@ FIGURES = (
     ResponseFigure(
         "fig-6",
         "Load responses, Example 2",
-        partial(draw_outputs, comparison=visioli("load", 6.0), limits=(-0.45, 0.75)),
+        partial(draw_outputs, comparison=visioli("load"), limits=(-0.45, 0.75)),
         caption="Unit step of a load at the plant input, exact dead time; Visioli's load setting. Read in the "
         "printed form (2) it is unstable (left); in the parallel form (right) it rejects the load with the "
         "smaller peak.",
@@ -34,7 +34,7 @@ FIGURES = (
         "Control signals for the set-point step, Example 2",
         partial(
             draw_setpoint_controls,
-            comparison=visioli("setpoint", 6.0),
+            comparison=visioli("setpoint"),
             limits=(-16.0, 24.0),
             kick_until=0.045,
             kick_top=76.0,
@@ -49,7 +49,7 @@ FIGURES = (
     ResponseFigure(
         "fig-8",
         "Control signals for the load step, Example 2",
-        partial(draw_load_controls, comparison=visioli("load", 6.0), limits=(-6.0, 5.4)),
+        partial(draw_load_controls, comparison=visioli("load"), limits=(-6.0, 5.4)),
         caption="Unit step of a load at the plant input; Visioli's load setting, structures as in Figure 6.",
         alt="Two panels of control signals. Left, Visioli's grows without bound; right, it oscillates several "
         "times before it reaches minus 1, while the proposed signal gets there after one undershoot.",

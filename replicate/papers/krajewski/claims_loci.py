@@ -5,10 +5,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from replicate.exhibits import Finding
+from replicate.exhibits import ClaimVerdict, Finding
 from replicate.papers.krajewski.chart_values import FREQUENCIES, TAUS
 from replicate.papers.krajewski.claims import claims, interior
 from replicate.papers.krajewski.loci import (
+    Array,
     constant_gain_ratio,
     constant_phase_margin,
     crossover_ellipse,
@@ -157,6 +158,13 @@ def g_curves_are_scaled() -> Finding:
     )
 
 
+def _between_ends(ends: list[Array], b: float) -> tuple[ClaimVerdict, float]:
+    """Judge whether b is among the ends of curves on the b axis, or only between them; and how near they come."""
+    enclose = all(low < b < high for low, high in ends)
+    nearest = min(float(np.min(np.abs(end - b))) for end in ends)
+    return "holds-partly" if enclose and nearest > 0.0 else "fails", nearest
+
+
 @claims.claim(
     "ends-include-origin",
     "The two intersections of every curve g = const with the b axis include the point (0, 0).",
@@ -164,10 +172,9 @@ def g_curves_are_scaled() -> Finding:
 )
 def ends_include_origin() -> Finding:
     ends = [constant_gain_ratio(tau, g).points(2)[:, 1] for tau in TAUS for g in (0.1, 0.5, 0.9)]
-    enclose = all(low < 0.0 < high for low, high in ends)
-    nearest = min(float(np.min(np.abs(end))) for end in ends)
+    verdict, nearest = _between_ends(ends, 0.0)
     return Finding(
-        "holds-partly" if enclose and nearest > 0.0 else "fails",
+        verdict,
         nearest,
         "True if it means that the origin lies between them: they are (0, −g) and (0, g b_u). It is not "
         f"one of them: on 30 curves the nearest is {nearest:.3g} away.",
@@ -181,10 +188,9 @@ def ends_include_origin() -> Finding:
 )
 def ends_include_0_1() -> Finding:
     ends = [constant_phase_margin(tau, float(m)).points(2)[:, 1] for tau in TAUS for m in MARGINS]
-    enclose = all(low < 1.0 < high for low, high in ends)
-    nearest = min(float(np.min(np.abs(end - 1.0))) for end in ends)
+    verdict, nearest = _between_ends(ends, 1.0)
     return Finding(
-        "holds-partly" if enclose and nearest > 0.0 else "fails",
+        verdict,
         nearest,
         "True if it means that (0, 1) lies between them: they are (0, −cos m) and (0, b_u). No curve "
         f"passes through (0, 1): the nearest end of 60 curves is {nearest:.3g} away.",

@@ -52,4 +52,4 @@ def as_written() -> pd.DataFrame:
     """Compute the frequencies and the designs."""
     lags = {f"w{degrees}": frequencies_of_lag(PLANTS["G7"], degrees)[0] for degrees in (90, 180)}
     values = {**lags, **designs_at("G7")}
-    return example_1.frame(values)
+    return example_1.frame({row: values[row] for row in example_1.rows})

@@ -28,4 +28,4 @@ def as_written() -> pd.DataFrame:
     """Compute the frequencies and the designs."""
     lags = {f"w{degrees}": frequencies_of_lag(PLANTS["G8"], degrees)[0] for degrees in (90, 180)}
     values = {**lags, **designs_at("G8")}
-    return example_2.frame(values)
+    return example_2.frame({row: values[row] for row in example_2.rows})

@@ -44,4 +44,4 @@ def as_written() -> pd.DataFrame:
         **designs_at("G9"),
     }
     values["ki_ratio"] = values["ki_2.0"] / values["ki_1.4"]
-    return example_3.frame(values)
+    return example_3.frame({row: values[row] for row in example_3.rows})
