@@ -112,7 +112,8 @@ class Table:
         for kind, named, known in (
             ("column", [*columns, *(column for _, column in cells), *self.units], self.columns),
             ("row", [row for row, _ in cells], self.rows),
-            ("row or column", self.labels, (*self.rows, *self.columns)),
+            # a table that leaves its rows or columns to the reading knows them only when it is computed
+            ("row or column", self.labels, (*self.rows, *self.columns) if self.rows and self.columns else ()),
         ):
             for key in named:
                 if known and key not in known:
