@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from replicate.errors import PaperDefinitionError
-from replicate.exhibits import Table
+from replicate.exhibits import Paper, Table
 
 NAMED = Table("table-1", "table", "Numbers", rows=("A", "B"), columns=("x", "y"))
 FREE = Table("evidence", "table", "What was tried", printed=False)
@@ -59,3 +59,19 @@ def test_cells_may_hold_words_and_pairs() -> None:
 def test_what_does_not_fit_is_refused(table: Table, rows: dict[str, object], message: str) -> None:
     with pytest.raises(PaperDefinitionError, match=re.escape(message)):
         table.frame(rows)  # type: ignore[arg-type]
+
+
+def test_of_the_labels_that_tables_share_a_table_takes_its_own() -> None:
+    paper = Paper("lab", "lab", "A laboratory", ("N. N.",), "N. N., 2000.", 2000, modules=(), numbered=())
+    shared = {"k": "$k$", "Ti": "$T_i$", "A": "plant A"}
+    table = paper.table("t", "Numbers", rows=("A",), columns=("k",), shared_labels=shared, labels={"A": "this plant"})
+    assert table.labels == {"k": "$k$", "A": "this plant"}
+    with pytest.raises(PaperDefinitionError, match="there is no row or column 'Ti'"):
+        paper.table("u", "Numbers", rows=("A",), columns=("k",), labels=shared)
+
+
+def test_a_table_that_leaves_its_rows_to_the_reading_may_label_them() -> None:
+    paper = Paper("lab", "lab", "A laboratory", ("N. N.",), "N. N., 2000.", 2000, modules=(), numbered=())
+    assert paper.table("t", "Numbers", columns=("k",), printed=False, labels={"A": "plant A"}).labels == {
+        "A": "plant A"
+    }

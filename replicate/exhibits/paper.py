@@ -123,7 +123,8 @@ class Paper:
         columns: Sequence[str] = (),
         kind: TableKind = "table",
         caption: str = "",
-        labels: dict[str, str] | None = None,
+        labels: Mapping[str, str] | None = None,
+        shared_labels: Mapping[str, str] | None = None,
         units: dict[str, str] | None = None,
         significant_digits: int | None = None,
         printed: bool = True,
@@ -133,6 +134,13 @@ class Paper:
     ) -> Table:
         """Add a table, worked example or formula; ``printed=False`` where the paper prints no numbers in it.
 
+        Parameters
+        ----------
+        labels
+            Display text of row and column keys of this table.
+        shared_labels
+            The same for several tables: what this one has no row or column for is left out.
+
         Raises
         ------
         PaperDefinitionError
@@ -141,6 +149,8 @@ class Paper:
         if printed and not (rows and columns):
             msg = f"{self.id}: {id} has printed values, so its row and column keys must be given"
             raise PaperDefinitionError(msg)
+        own = {*rows, *columns}
+        shared = {key: text for key, text in (shared_labels or {}).items() if key in own}
         exhibit = Table(
             id,
             kind,
@@ -148,7 +158,7 @@ class Paper:
             caption,
             tuple(rows),
             tuple(columns),
-            labels or {},
+            {**shared, **(labels or {})},
             units or {},
             significant_digits,
             printed,

@@ -19,7 +19,7 @@ example = paper.table(
     columns=("proposed", "proposed-eq-11", "padma-sree"),
     caption=CAPTION + "The proposed setting is simulated as printed in Table 2; Padma Sree's is quoted from another "
     "paper and simulated as printed.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 add_readings(
     example,

@@ -19,7 +19,7 @@ example = paper.table(
     columns=("proposed", "proposed-eq-11", "visioli-setpoint", "visioli-load"),
     caption=CAPTION + "Settings are simulated as printed (the proposed one is shown unrounded); Visioli's are quoted "
     "from another paper, one for the set point and one for the load, and each is tried on both.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 add_readings(
     example,

@@ -20,7 +20,7 @@ quoted_settings = paper.table(
     caption="Inputs of the two examples. The rules that gave them are not in this paper, nor is the controller "
     "structure that they were made for. Visioli's are fitted to settings that minimise the ISTE, and that minimum can "
     "be computed for each structure.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 
 

@@ -11,6 +11,6 @@ table_1 = paper.table(
     caption="Rows: $\\theta/T$. $M_s^*$ is the specified maximum sensitivity, $M_s$ the true one; times in "
     "units of $T$, $T_d = \\theta/2$. Row 0.5 is a tie: $M_s^* = 2$ makes $q$ exactly zero, so the search is "
     "decided in exact fractions.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 add_readings(table_1)

@@ -10,6 +10,6 @@ table_2 = paper.table(
     columns=("KKp", "Ti", "Ms"),
     caption="Rows: $\\theta/T$. $T_i$ is that of Table 1, found with the larger gain $\\sqrt{2T/\\theta}$; "
     "Table 1 has no row 1.0, so its $T_i$ is found the same way here.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 add_readings(table_2)

@@ -29,7 +29,8 @@ table_1 = paper.table(
     caption="Process $e^{-hs}/(s+p)$ with $p = 1$, $h = 10$. $M_P$ in per cent of the set-point; $t_s$ and $t_d$ are "
     "the last times outside $\\pm 0.02$ after the unit set-point step and after a unit load step at the plant input, "
     "each counted from its own step.",
-    labels=NAMES | {"Mp": "$M_P$", "ts": "$t_s$", "td": "$t_d$", "Ms": "$M_s$"},
+    shared_labels=NAMES,
+    labels={"Mp": "$M_P$", "ts": "$t_s$", "td": "$t_d$", "Ms": "$M_s$"},
     units={"Mp": "%", "ts": "s", "td": "s"},
 )
 table_2 = paper.table(
@@ -38,8 +39,8 @@ table_2 = paper.table(
     rows=RULES_2,
     columns=tuple(f"ph{ph}_{quantity}" for ph in ("1", "0.1") for quantity in QUANTITIES),
     caption="As Table I, with $p = 1$ and $h = 1$ (left) and $h = 0.1$ (right).",
-    labels=NAMES
-    | {
+    shared_labels=NAMES,
+    labels={
         f"ph{ph}_{key}": f"{text}, $ph = {ph}$"
         for ph in ("1", "0.1")
         for key, text in (("Mp", "$M_P$"), ("ts", "$t_s$"), ("td", "$t_d$"), ("Ms", "$M_s$"))

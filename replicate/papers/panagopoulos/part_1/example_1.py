@@ -33,7 +33,7 @@ example_1 = paper.table(
     columns=("value",),
     caption="The text gives $\\omega_{90} = \\pi/2$ and $\\omega_{180} = \\pi$ and refers to Table 2 for the "
     "controllers.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 
 

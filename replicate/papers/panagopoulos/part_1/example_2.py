@@ -19,7 +19,7 @@ example_2 = paper.table(
     rows=("w90", "w180", "k_1.4", "ki_1.4", "Ti_1.4", "w0_1.4", "k_2.0", "ki_2.0", "Ti_2.0", "w0_2.0"),
     columns=("value",),
     caption="The text gives $\\omega_{90} = 0$ and $\\omega_{180} = \\pi/2$ and refers to Table 2 for the controllers.",
-    labels=LABELS,
+    shared_labels=LABELS,
 )
 
 

@@ -32,7 +32,8 @@ example_3 = paper.table(
     caption="Frequencies at which the plant lags by 90, 150 and 180 degrees; the controllers are in Table 2. "
     "The last row is the gain in $k_i$ from $M_s = 1.4$ to 2, the text's “significant increase in "
     "performance”.",
-    labels={**LABELS, "ki_ratio": "$k_i(2.0)/k_i(1.4)$"},
+    shared_labels=LABELS,
+    labels={"ki_ratio": "$k_i(2.0)/k_i(1.4)$"},
 )
 
 

@@ -32,7 +32,8 @@ table_1 = paper.table(
     "unit load step and its ratio to the integrated absolute error, frequency at which the Nyquist curve "
     "touches the circle, settling time of the load response, and resonance peak. The paper's caption says "
     "$G_1$ to $G_7$.",
-    labels={**COLUMNS, **design_rows(ROWS)},
+    shared_labels=COLUMNS,
+    labels=design_rows(ROWS),
 )
 
 

@@ -20,7 +20,8 @@ table_2 = paper.table(
     columns=("k", "ki", "b", "w0", "Mp"),
     caption="A pure dead time, an integrator with dead time, the heat equation, and a plant with and without "
     "a slow mode (examples 1 to 4).",
-    labels={**COLUMNS, **design_rows(ROWS)},
+    shared_labels=COLUMNS,
+    labels=design_rows(ROWS),
 )
 
 

@@ -20,7 +20,8 @@ table_3 = paper.table(
     columns=("k", "ki", "w1", "w2"),
     caption="$G_{12}(s) = 9/((s+1)(s^2+as+9))$, relative damping $a/6$; $\\omega_1$ and $\\omega_2$ are the "
     "frequencies at which the Nyquist curve touches the circle.",
-    labels={**COLUMNS, **{row: f"${row.replace('=', ' = ')}$" for row in ROWS}},
+    shared_labels=COLUMNS,
+    labels={row: f"${row.replace('=', ' = ')}$" for row in ROWS},
 )
 
 

@@ -64,7 +64,8 @@ table_4 = paper.table(
     caption="The filter $1/(1+sT_f)$ has $T_f = 1/(m\\omega_0)$, and the design is repeated with it; "
     "$\\sigma$ is the standard deviation of the control signal for white noise through $s/(s+2)$. Without "
     "filter ($m = \\infty$) $\\sigma$ is infinite.",
-    labels={**COLUMNS, **{key: f"${key.replace('=', ' = ').replace('inf', INFINITY)}$" for key in FACTORS}},
+    shared_labels=COLUMNS,
+    labels={key: f"${key.replace('=', ' = ').replace('inf', INFINITY)}$" for key in FACTORS},
 )
 
 

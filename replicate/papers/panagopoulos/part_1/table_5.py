@@ -31,10 +31,8 @@ table_5 = paper.table(
     caption="Gains, maximum sensitivity, IAE and settling time of a unit load step, overshoot of a set-point "
     "step, resonance peak. Ziegler–Nichols is the frequency-response method, lambda tuning asks for three "
     "times the time constant, the new design for $M_s = 1.6$.",
-    labels={
-        **COLUMNS,
-        **{row: f"{label(plant)}, {METHOD_NAMES[method]}" for row, (plant, method) in ROWS.items()},
-    },
+    shared_labels=COLUMNS,
+    labels={row: f"{label(plant)}, {METHOD_NAMES[method]}" for row, (plant, method) in ROWS.items()},
     units={"o": "%"},
 )
 

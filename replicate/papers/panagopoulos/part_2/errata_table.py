@@ -77,7 +77,8 @@ tried = paper.table(
     caption="Integrated error $T_i/k$ of the optimum under each set of constraints, beside the printed one. An "
     "empty cell: "
     "no controller satisfies the constraints.",
-    labels=ROW_LABELS | _TRIED,
+    shared_labels=ROW_LABELS,
+    labels=_TRIED,
 )
 
 

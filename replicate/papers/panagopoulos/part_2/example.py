@@ -27,8 +27,8 @@ example = paper.table(
     columns=("IAE", "p", "zeta1", "omega1", "zeta2", "omega2"),
     caption=r"$G = 1/(s+1)^4$ with $(k, k_i, k_d) = (1.00, 0.50, 1.00)$ and $(1.00, 0.98, 3.00)$: integrated absolute "
     "error after a unit load step, the real closed-loop pole, and relative damping and frequency of the two pairs.",
-    labels=ROW_LABELS
-    | {
+    shared_labels=ROW_LABELS,
+    labels={
         "p": "real pole",
         "zeta1": r"$\zeta_1$",
         "omega1": r"$\omega_1$",
@@ -74,8 +74,8 @@ envelope = paper.table(
     "supplement's "
     "own choice with its true $M_s$ (1.4 is asked for). No number: no controller with this $k_d$ satisfies the "
     "constraint.",
-    labels=ROW_LABELS
-    | {
+    shared_labels=ROW_LABELS,
+    labels={
         "ki": "largest $k_i$",
         "k": "at $k$",
         "vertices": "vertex locus",

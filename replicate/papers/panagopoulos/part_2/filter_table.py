@@ -98,8 +98,8 @@ evidence = paper.table(
     r"asked for), the largest curvature with the latter, and the $\omega_0$ in $T_f$ that gives exactly $M_s = "
     r"1.4$ beside "
     r"the printed $\omega_0$ that the reconstruction takes.",
-    labels=LABELS
-    | {
+    shared_labels=LABELS,
+    labels={
         "Ms_text": "$M_s$, text",
         "Ms_used": "$M_s$, reconstruction",
         "curvature": r"largest $\kappa$",
