@@ -24,6 +24,8 @@ from replicate.papers.panagopoulos.part_2.tables import GAINS, REPLACEMENT, SUPE
 if TYPE_CHECKING:
     import pandas as pd
 
+    from replicate.exhibits import Table
+
 QUANTITIES: dict[str, Callable[[Plant, PID], float]] = {
     "IE": lambda _, c: 1.0 / c.ki,
     "IE/IAE": lambda plant, c: 1.0 / (c.ki * Loop(plant, c).load_step().iae()),
@@ -66,7 +68,7 @@ def gains_that_round(table: str, row: str) -> list[PID]:
     return [PID.ideal(*gains) for gains in product(*steps)]
 
 
-def _add(id: str, printed_in: str, name: str) -> None:
+def left_open_by(id: str, printed_in: str, name: str) -> Table:
     """Add the table of the columns that the gains printed in a table leave open."""
     labels = LABELS | {"Ms": "$M_s$"}
     cells = {f"{row} {quantity}": (row, quantity) for quantity, where in OPEN[printed_in].items() for row in where}
@@ -93,9 +95,11 @@ def _add(id: str, printed_in: str, name: str) -> None:
             rows[key] = {"low": min(values), "printed": text, "high": max(values)}
         return table.frame(rows)
 
+    return table
 
-_add("II-rounding", SUPERSEDED, "Table 1")
-_add("IIs-rounding", REPLACEMENT, "the errata")
+
+by_table_1 = left_open_by("II-rounding", SUPERSEDED, "Table 1")
+by_errata = left_open_by("IIs-rounding", REPLACEMENT, "the errata")
 
 
 TWO_PEAKS = "G8 Ms=1.4"
