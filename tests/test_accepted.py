@@ -87,10 +87,12 @@ def accepted(tmp_path: Path, data: Path) -> Path:
 def test_what_is_stored(accepted: Path) -> None:
     assert sorted(path.name for path in (accepted / "toy").iterdir()) == [
         "claims.csv",
+        "claims.json",
         "fig-1.csv",
         "fig-1.json",
         "fig-1.png",
         "table-1.csv",
+        "table-1.json",
     ]
     assert (accepted / "toy/table-1.csv").read_text().splitlines()[:2] == [
         "row,column,reading,computed,printed,verdict",
@@ -335,3 +337,45 @@ def test_check_wants_explanations_and_comparisons(accepted: Path, data: Path) ->
     assert any("has no ledger entry" in problem for problem in problems)
     assert any("verdict reproduced -> unexplained" in problem for problem in problems)
     assert check(Outcome([], {}, {}), data / "nothing") == ["no printed value was compared with a computed one"]
+
+
+@pytest.mark.parametrize("content", [b"", b"\x89PNG\r\n\x1a\n", PICTURE[:40], b"<svg/>"])
+def test_a_picture_that_cannot_be_shown_is_told_and_renewed(accepted: Path, data: Path, content: bytes) -> None:
+    path = accepted / "toy/fig-1.png"
+    good = path.read_bytes()
+    path.write_bytes(content)
+    assert compare(outcome(data), accepted) == [
+        "toy/fig-1: its picture, toy/fig-1.png, is damaged; 2 curves unchanged"
+    ]
+    accept(outcome(data), accepted, "drawn again")
+    assert path.read_bytes() == good
+
+
+@pytest.mark.parametrize(
+    ("field", "value", "said"),
+    [
+        ("thinned", {"output": 9}, "curve 'output' is accepted within 9 of its axes"),
+        ("loose", ["output"], "curve 'output' is accepted as one that labels interrupt, which it is not"),
+    ],
+)
+def test_an_accepted_file_cannot_widen_what_it_tolerates(
+    accepted: Path, data: Path, field: str, value: object, said: str
+) -> None:
+    path = accepted / "toy/fig-1.json"
+    content = json.loads(path.read_text())
+    content["panels"][0][field] = value
+    path.write_text(json.dumps(content))
+    (line,) = compare(outcome(data), accepted)
+    assert said in line
+    moved = {"output": (T, 1.01 - np.exp(-T)), "input": INPUT}
+    assert any("curve 'output' moved" in line for line in compare(outcome(data, figure(moved)), accepted))
+
+
+def test_the_order_of_panels_is_state(tmp_path: Path, data: Path) -> None:
+    two = [{**AXES[0], "panel": name} for name in ("left", "right")]
+    frames = [pd.DataFrame({"panel": name, "curve": "c", "x": T, "y": T / 10.0}) for name in ("left", "right")]
+    drawn = FigureResult("toy", "fig-1", "<svg/>", PICTURE, pd.concat(frames), two)
+    accept(outcome(data, drawn), tmp_path / "accepted", "first")
+    turned = replace(drawn, axes=two[::-1])
+    (line,) = compare(outcome(data, turned), tmp_path / "accepted")
+    assert "the panels now stand in the order 'right', 'left' (was 'left', 'right')" in line

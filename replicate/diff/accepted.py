@@ -2,8 +2,9 @@
 
 In the accepted folder, for each paper: ``<exhibit>.csv`` holds the computed values and verdicts of a table
 (``row,column,reading,computed,printed,verdict``), of the claims (``row,verdict,computed``), or the curves of
-a figure (``panel,curve,x,y``). A figure has its axes beside it in ``<exhibit>.json`` and a picture for people
-in ``<exhibit>.png``, small and never compared. Numbers have nine significant digits.
+a figure (``panel,curve,x,y``). Beside it ``<exhibit>.json`` has what is said of a table or of claims, or the axes of a
+figure. A figure also has a picture for people in ``<exhibit>.png``, small and never compared. Numbers have nine
+significant digits.
 """
 
 from __future__ import annotations
@@ -15,12 +16,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from replicate.diff.accepted_files import keyed, read_cells, read_curves, read_record
+from replicate.diff.words import Words, read_words, words_of, words_text
 from replicate.display.csv_text import csv_text, curves_text, number_text
 from replicate.errors import AcceptedStateError
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.figures.polylines import Points
 from replicate.figures.record import VERSION, Record, record_text
 from replicate.run.outcome import Outcome
+from replicate.verdicts.ledger import Ledger
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,9 +37,10 @@ CLAIM_COLUMNS = ("row", "verdict", "computed")
 
 @dataclass(frozen=True)
 class TableState:
-    """A table or claims: the other columns by (row, column, reading), or by (row,)."""
+    """A table or claims: the other columns by (row, column, reading), or by (row,), and what is said of them."""
 
     cells: Mapping[tuple[str, ...], Mapping[str, str]]
+    words: Words | None = None  # if nothing of the kind was accepted
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ def present_state(outcome: Outcome, result: Result) -> State:
     if isinstance(result, FigureResult):
         return figure_state(result.curves, result.axes, result.figure)
     columns, rows = _rows(outcome, result)
-    return TableState(dict(keyed(columns, row) for row in rows))
+    return TableState(dict(keyed(columns, row) for row in rows), _words(outcome, result))
 
 
 def figure_state(
@@ -93,7 +97,8 @@ def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> St
             return path.name
     if kind is FigureResult:
         return _read_figure(data, axes)
-    return TableState(read_cells(data, CLAIM_COLUMNS if kind is ClaimsResult else TABLE_COLUMNS))
+    cells = read_cells(data, CLAIM_COLUMNS if kind is ClaimsResult else TABLE_COLUMNS)
+    return TableState(cells, read_words(axes) if axes.is_file() else None)
 
 
 def _read_figure(data: Path, axes: Path) -> FigureState:
@@ -115,12 +120,27 @@ def files_of(folder: Path, exhibit: str) -> list[Path]:
 def state_files(outcome: Outcome, result: Result) -> dict[str, bytes]:
     """Return the files, by name, that describe the present state of an exhibit."""
     if not isinstance(result, FigureResult):
-        return {f"{result.exhibit}.csv": csv_text(*_rows(outcome, result)).encode()}
+        return {
+            f"{result.exhibit}.csv": csv_text(*_rows(outcome, result)).encode(),
+            f"{result.exhibit}.json": words_text(_words(outcome, result)).encode(),
+        }
     return {
         f"{result.exhibit}.csv": curves_text(result.curves).encode(),
         f"{result.exhibit}.json": record_text(result.figure, result.axes).encode(),
         f"{result.exhibit}.png": _small(result.png),
     }
+
+
+def is_picture(path: Path) -> bool:
+    """Whether a file is a picture that can be shown."""
+    from PIL import Image
+
+    try:
+        with Image.open(path) as picture:
+            picture.load()
+    except (OSError, ValueError, SyntaxError):  # all that Pillow says of damaged files
+        return False
+    return True
 
 
 def _small(png: bytes) -> bytes:
@@ -133,6 +153,13 @@ def _small(png: bytes) -> bytes:
     buffer = io.BytesIO()
     small.quantize(64, dither=Image.Dither.NONE).save(buffer, format="png", optimize=True)
     return buffer.getvalue()
+
+
+def _words(outcome: Outcome, result: Result) -> Words:
+    """Return what the paper's own files say of an exhibit."""
+    (paper,) = (paper for paper in outcome.papers if paper.id == result.paper)
+    ledger = outcome.inputs[paper.id].ledger if paper.id in outcome.inputs else Ledger()
+    return words_of(paper.exhibits[result.exhibit], ledger.of(result.exhibit))
 
 
 def _rows(outcome: Outcome, result: TableResult | ClaimsResult) -> tuple[Sequence[str], list[tuple[str, ...]]]:

@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-from replicate.diff.accepted import ENDINGS, FigureState, State, TableState, present_state, read_state
+from replicate.diff.accepted import ENDINGS, FigureState, State, TableState, is_picture, present_state, read_state
 from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
+from replicate.diff.words import compare_words
 from replicate.errors import AcceptedStateError
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, errors_of
 from replicate.figures.comparing import compare_records
@@ -177,12 +178,22 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         picture = f"{paper}/{exhibit}.png"
         if not (folder / picture).is_file():
             changes.append(Change(paper, exhibit, "new", f"its picture, {picture}, is missing", "picture"))
+        elif not is_picture(folder / picture):
+            changes.append(Change(paper, exhibit, "new", f"its picture, {picture}, is damaged", "picture"))
         old = before.version < after.version
         return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs, outdated=old)
     assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
     assert isinstance(after, TableState)  # noqa: S101
     cells, unchanged = compare_cells(before.cells, after.cells)
     changes = [cell.change(paper, exhibit) for cell in cells]
+    if before.words is None:
+        text = f"what is said of it has no accepted state: {paper}/{exhibit}.json is missing"
+        changes.append(Change(paper, exhibit, "new", text, "words"))
+    else:
+        changes += [
+            Change(paper, exhibit, "words", text, about, old, new)
+            for about, text, old, new in compare_words(before.words, after.words or {})
+        ]
     return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells)
 
 

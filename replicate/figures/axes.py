@@ -47,6 +47,10 @@ def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Differen
     matched = matched_panels(before, after)
     # Where a panel comes or goes the others make room for it.
     silent = _SILENT if all(old and new for old, new in matched) else _SILENT | {"position"}
+    names = [[str(panel["panel"]) for panel in panels] for panels in (before, after)]
+    if names[0] != names[1] and sorted(names[0]) == sorted(names[1]):
+        shown = [", ".join(f"'{name}'" for name in order) for order in names]
+        changes.append(Difference("axes", f"the panels now stand in the order {shown[1]} (was {shown[0]})", "panels"))
     for old, new in matched:
         panel = str((old or new or {})["panel"])
         if old is None or new is None:

@@ -70,6 +70,8 @@ def _compare(accepted: Record, new: Record) -> Comparison:
 def _figure(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Difference]:
     sizes = [side.get("size", []) for side in (one, other)]
     found = []
+    if bool(one.get("fitted")) != bool(other.get("fitted")):
+        found.append(Difference("axes", "whether the layout follows the size of texts has changed", "figure / fitted"))
     if len(sizes[0]) != len(sizes[1]) or not all(
         same_number(repr(a), repr(b)) for a, b in zip(sizes[0], sizes[1], strict=True)
     ):

@@ -24,6 +24,8 @@ from replicate.figures.wording import moved_words
 
 # A function of x that moved by less than this needs no second measure that says whether it moved sideways.
 _LITTLE = 10.0 * TOLERANCE
+# The error of thinning follows the last digits of a curve, but not by more than this factor.
+_SLACK = 2.0
 # Labels interrupt a contour by their width, which the font decides.
 _LOOSE = 0.02
 
@@ -77,6 +79,8 @@ class _Panel:
     def compare(self, one: dict[str, Points], other: dict[str, Points], found: CurveComparison) -> None:
         pairs = {name: self.pair(name, name, one[name], other[name]) for name in one if name in other}
         found.pairs += pairs.values()
+        for name in pairs:
+            self.slack(name, found)
         differ = [name for name, pair in pairs.items() if pair.moved]
         gone = [name for name in one if name not in other]
         fresh = [name for name in other if name not in one]
@@ -136,12 +140,13 @@ class _Panel:
             next((kind for kind in ("points", "areas") if name in axes.get(kind, ())), "line")
             for name, axes in ((old_name, self.old), (new_name, self.new))
         ]
+        # What an accepted file allows counts only as far as the figure itself needs it.
+        needed = self.thinned(new_name, self.new)
         coarse = sum(
-            max(0.0, axes.get("thinned", {}).get(name, 0.0) - THINNING)
-            for name, axes in ((old_name, self.old), (new_name, self.new))
+            max(0.0, error - THINNING) for error in (needed, min(self.thinned(old_name, self.old), _SLACK * needed))
         )
         tolerance = TOLERANCE + coarse + rounding(self.old, "y")
-        if any(name in axes.get("loose", ()) for name, axes in ((old_name, self.old), (new_name, self.new))):
+        if new_name in self.new.get("loose", ()):
             tolerance = _LOOSE
         told = self.dense(old_name, new_name)
         if told is not None:
@@ -166,6 +171,20 @@ class _Panel:
             apart = self.apart(before, after, tolerance)
             far = max(part.largest for part in apart) > tolerance
         return Pair(self.old, new_name, one, other, far, tolerance, None, apart)
+
+    @staticmethod
+    def thinned(name: str, axes: Axes) -> float:
+        """Return how far a thinned curve may lie from the one that was drawn, as a fraction of its axes."""
+        return max(THINNING, float(axes.get("thinned", {}).get(name, 0.0)))
+
+    def slack(self, name: str, found: CurveComparison) -> None:
+        """Say where an accepted record lets a curve move further than the figure needs: nothing may hide there."""
+        allowed, needed = self.thinned(name, self.old), self.thinned(name, self.new)
+        if not needed / _SLACK <= allowed <= needed * _SLACK:
+            text = f"curve '{name}' is accepted within {allowed:g} of its axes, needed: {needed:g}"
+            self.say(found, "axes", text, name)
+        if name in self.old.get("loose", ()) and name not in self.new.get("loose", ()):
+            self.say(found, "axes", f"curve '{name}' is accepted as one that labels interrupt, which it is not", name)
 
     def dense(self, old_name: str, new_name: str) -> tuple[str, float] | None:
         """Compare two curves, or clouds of points, of which only a digest is kept; ``None`` if all points are."""

@@ -27,6 +27,8 @@ class Outcome:
         Whether every exhibit of the papers was computed, not just a selection.
     broken
         By id: why a paper was left out.
+    inputs
+        By id: the data files of a paper as they were read.
     """
 
     papers: Sequence[Paper]
@@ -34,6 +36,7 @@ class Outcome:
     judgements: dict[str, Judgement]
     complete: bool = True
     broken: dict[str, str] = field(default_factory=dict)
+    inputs: dict[str, Inputs] = field(default_factory=dict)
 
     @property
     def judgement(self) -> Judgement:
@@ -87,4 +90,5 @@ def recompute(
     for paper in papers:
         exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]
         judgements[paper.id] = judge(paper, results, inputs[paper.id], exhibits=exhibits)
-    return Outcome(papers, results, judgements, selection is None, {id: str(error) for id, error in broken.items()})
+    why = {id: str(error) for id, error in broken.items()}
+    return Outcome(papers, results, judgements, selection is None, why, inputs)
