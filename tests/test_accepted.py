@@ -344,9 +344,7 @@ def test_a_picture_that_cannot_be_shown_is_told_and_renewed(accepted: Path, data
     path = accepted / "toy/fig-1.png"
     good = path.read_bytes()
     path.write_bytes(content)
-    assert compare(outcome(data), accepted) == [
-        "toy/fig-1: its picture, toy/fig-1.png, is damaged; 2 curves unchanged"
-    ]
+    assert compare(outcome(data), accepted) == ["toy/fig-1: its picture, toy/fig-1.png, is damaged; 2 curves unchanged"]
     accept(outcome(data), accepted, "drawn again")
     assert path.read_bytes() == good
 

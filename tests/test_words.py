@@ -22,7 +22,9 @@ from replicate.verdicts.ledger import Ledger, LedgerEntry
 ENTRY = LedgerEntry("table-1", ("B",), ("y",), "scan", "The page is torn: {{ value('table-1', 'B', 'y') }}.")
 
 
-def outcome(folder: Path, change: Callable[[Paper], Any] = lambda _: None, entry: LedgerEntry | None = ENTRY) -> Outcome:
+def outcome(
+    folder: Path, change: Callable[[Paper], Any] = lambda _: None, entry: LedgerEntry | None = ENTRY
+) -> Outcome:
     folder.mkdir(exist_ok=True)
     toy = synthetic.paper(folder)
     change(toy)
