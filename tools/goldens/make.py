@@ -1,0 +1,120 @@
+"""Write replicate/loops/goldens.json: exact values of hard control loops with dead time, from mpmath alone.
+
+    python tools/goldens/make.py [ID ...]
+
+Takes some minutes; with ids it prints these loops instead of writing the file. The package itself is not used.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests"))  # the reference formulas of the tests
+
+import mpmath as mp  # noqa: E402
+from case import DIGITS, Case, load  # noqa: E402
+from frequency import feedthrough, quantities  # noqa: E402
+from poles import Pole, poles  # noqa: E402
+from responses import Output, metrics  # noqa: E402
+
+SIGNIFICANT = 16
+LISTED = 6
+LICENSE = "CC0-1.0: no rights reserved. Any library may use, change and ship these numbers."
+
+
+def golden(case: Case) -> dict[str, Any]:
+    """Return the record of one loop."""
+    mp.mp.dps = DIGITS
+    complete = poles(case)
+    stable = complete[0].value.real < 0
+    record: dict[str, Any] = {
+        "id": case.id,
+        "kind": case.record["kind"],
+        "source": case.record["source"],
+        "plant": {"num": case.plant[0], "den": case.plant[1], "dead_time": case.dead_time},
+        "controller": {name: float(value) for name, value in case.numbers.items()},
+        "stable": bool(stable),
+        "poles": [
+            {"re": _number(p.value.real), "im": _number(p.value.imag), "multiplicity": p.multiplicity}
+            for p in _listed(case, complete)
+        ],
+    }
+    if stable:
+        record |= {name: _numbers(pair) for name, pair in quantities(case).items()}
+    record["responses"] = _responses(case, complete)
+    if stable and not _jumps(case):
+        record["metrics"] = _numbers(metrics(case, complete))
+    return record
+
+
+def _jumps(case: Case) -> bool:
+    """Whether the output jumps: at the step itself, or at each return of a jump of a neutral loop."""
+    poly = case.polynomials
+    return bool(feedthrough(case)) or len(poly["F"]) == len(poly["A"]) or len(poly["G"]) == len(poly["A"])
+
+
+def _listed(case: Case, complete: list[Pole]) -> list[Pole]:
+    """Return the poles that are the rightmost of all: those right of where a neutral loop's poles crowd."""
+    count = case.record.get("listed_poles", LISTED)
+    direct = feedthrough(case)
+    if not (direct and case.dead_time):
+        return complete[:count]
+    crowd = mp.log(direct) / case.dead_time
+    return [pole for pole in complete[:count] if pole.value.real > crowd * mp.mpf("0.99")]
+
+
+def _responses(case: Case, complete: list[Pole]) -> dict[str, Any]:
+    found: dict[str, Any] = {"times": case.record["times"]}
+    for name, signal, kind in (("step", "y", "F"), ("load_step", "load_y", "G")):
+        output = Output(case, complete, kind)
+        late = not case.dead_time or max(case.record["times"]) < 60 * case.dead_time
+        found[name] = [
+            _number(case.reference(t, signal) if late else output(mp.mpf(t))) for t in case.record["times"]
+        ]
+        if late and case.dead_time and complete[0].value.real < 0:
+            _agree(case, output, signal)
+    return found
+
+
+def _agree(case: Case, output: Output, signal: str) -> None:
+    """Raise unless the dead-time series and the sum of residues give the same value where both hold."""
+    t = max(output.late, max(case.record["times"]))
+    if t > 40 * case.dead_time or feedthrough(case):
+        return
+    series, early = case.reference(t, signal), case.reference(case.record["times"][0], signal)
+    # the poles are those of the closed form of a gain, the series has its double
+    if abs(series - output(mp.mpf(t))) > mp.mpf(10) ** -16 * (abs(output.final) + abs(series) + abs(early)):
+        msg = f"{case.id}: series and residues differ at t = {t}: {series} and {output(mp.mpf(t))}"
+        raise ArithmeticError(msg)
+
+
+def _numbers(values: dict[str, Any]) -> dict[str, float | None]:
+    return {name: _number(value) for name, value in values.items()}
+
+
+def _number(value: mp.mpf | None) -> float | None:
+    return None if value is None else float(mp.nstr(value, SIGNIFICANT + 1, strip_zeros=False))
+
+
+def main(ids: list[str]) -> None:
+    """Compute all loops, or print the given ones."""
+    cases = load()
+    chosen = [case for case in cases if not ids or case.id in ids]
+    with ProcessPoolExecutor(2) as pool:
+        records = list(pool.map(golden, chosen))
+    if ids:
+        sys.stdout.write(json.dumps(records, indent=1) + "\n")
+        return
+    rows = ",\n".join(json.dumps(record) for record in records)
+    head = json.dumps({"license": LICENSE, "about": "docs/goldens.md"})[:-1]
+    path = ROOT / "replicate" / "loops" / "goldens.json"
+    path.write_text(f'{head}, "loops": [\n{rows}\n]}}\n', encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
