@@ -26,6 +26,7 @@ class Case:
 
     @property
     def id(self) -> str:
+        """Its name."""
         return str(self.record["id"])
 
     @cached_property
@@ -36,10 +37,12 @@ class Case:
 
     @property
     def dead_time(self) -> float:
+        """The dead time, zero if there is none."""
         return float(self.record.get("dead_time", 0.0))
 
     @property
     def plant(self) -> tuple[list[float], list[float]]:
+        """Numerator and denominator, descending powers of s."""
         return self.record.get("num", [1.0]), self.record["den"]
 
     @cached_property

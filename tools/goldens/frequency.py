@@ -80,7 +80,7 @@ def _peak(function: Callable[[Any], Any], grid: np.ndarray, limit: Number) -> di
     return {"value": value, "frequency": at}
 
 
-def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str, dict[str, Number]]:  # noqa: N803
+def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str, dict[str, Number]]:
     value = L(grid)
     real_negative = [
         bracketed_root(lambda w: mp.im(L(w)), grid[i], grid[i + 1])
@@ -100,12 +100,19 @@ def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str,
         factors.append((1 / direct, None))
     lags = [(mp.fmod(mp.arg(L(w)) + mp.pi, 2 * mp.pi), w) for w in unit]
     lags = [(lag + 2 * mp.pi if lag < 0 else lag, w) for lag, w in lags]
+    none: tuple[Number, Number] = (None, None)
+    below = [(-value, w) for value, w in factors if value < 1]
+    reduction = min(below, default=(mp.mpf(0), None), key=_first)
     return {
-        "gain_margin": _named(min((f for f in factors if f[0] > 1), default=(None, None), key=lambda f: f[0])),
-        "gain_reduction_margin": _named(max((f for f in factors if f[0] < 1), default=(mp.mpf(0), None), key=lambda f: f[0])),
-        "phase_margin": _named(min(((mp.degrees(lag), w) for lag, w in lags), default=(None, None), key=lambda f: f[0])),
-        "delay_margin": _named(min(((lag / w, w) for lag, w in lags), default=(None, None), key=lambda f: f[0])),
-    }  # fmt: skip
+        "gain_margin": _named(min((f for f in factors if f[0] > 1), default=none, key=_first)),
+        "gain_reduction_margin": _named((-reduction[0], reduction[1])),
+        "phase_margin": _named(min(((mp.degrees(lag), w) for lag, w in lags), default=none, key=_first)),
+        "delay_margin": _named(min(((lag / w, w) for lag, w in lags), default=none, key=_first)),
+    }
+
+
+def _first(pair: tuple[mp.mpf, Number]) -> mp.mpf:
+    return pair[0]
 
 
 def _named(pair: tuple[Number, Number]) -> dict[str, Number]:

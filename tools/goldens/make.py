@@ -73,9 +73,7 @@ def _responses(case: Case, complete: list[Pole]) -> dict[str, Any]:
     for name, signal, kind in (("step", "y", "F"), ("load_step", "load_y", "G")):
         output = Output(case, complete, kind)
         late = not case.dead_time or max(case.record["times"]) < 60 * case.dead_time
-        found[name] = [
-            _number(case.reference(t, signal) if late else output(mp.mpf(t))) for t in case.record["times"]
-        ]
+        found[name] = [_number(case.reference(t, signal) if late else output(mp.mpf(t))) for t in case.record["times"]]
         if late and case.dead_time and complete[0].value.real < 0:
             _agree(case, output, signal)
     return found
@@ -83,7 +81,7 @@ def _responses(case: Case, complete: list[Pole]) -> dict[str, Any]:
 
 def _agree(case: Case, output: Output, signal: str) -> None:
     """Raise unless the dead-time series and the sum of residues give the same value where both hold."""
-    t = max(output.late, max(case.record["times"]))
+    t = max(output.late, *case.record["times"])
     if t > 40 * case.dead_time or feedthrough(case):
         return
     series, early = case.reference(t, signal), case.reference(case.record["times"][0], signal)

@@ -26,6 +26,7 @@ class Pole:
 
     @property
     def count(self) -> int:
+        """How many zeros of f it stands for, conjugates included."""
         return self.multiplicity * (2 if self.value.imag else 1)
 
 
@@ -44,7 +45,7 @@ def poles(case: Case) -> list[Pole]:
     return _complete(case, listed)
 
 
-def functions(case: Case):  # noqa: ANN201
+def functions(case: Case):
     """Return f and its derivative, for mpmath numbers."""
     A, B = case.polynomials["A"], case.polynomials["B"]
     dA, dB, delay = derivative(A), derivative(B), mp.mpf(case.dead_time)
@@ -77,7 +78,7 @@ def _starts(case: Case) -> list[complex]:
     return [s for s in starts if np.isfinite(s)]
 
 
-def _polished(f, slope, s: mp.mpc) -> mp.mpc | None:  # noqa: ANN001
+def _polished(f, slope, s: mp.mpc) -> mp.mpc | None:
     """Newton's method on f/f', which converges quadratically at multiple zeros, too."""
     for step in range(60):
         value, d = f(s), slope(s)
@@ -101,7 +102,7 @@ def _polished(f, slope, s: mp.mpc) -> mp.mpc | None:  # noqa: ANN001
     return mp.mpc(s.real, 0) if real else s
 
 
-def _multiplicity(f, pole: mp.mpc, others: list[mp.mpc]) -> int:  # noqa: ANN001
+def _multiplicity(f, pole: mp.mpc, others: list[mp.mpc]) -> int:
     """Count the turns of f on a small circle."""
     nearest = min([abs(pole - other) for other in others if other != pole] + [abs(pole)])
     if pole.imag:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cached_property
+from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
@@ -78,10 +78,12 @@ class Output:
                 found.append([(p, half * evaluate(top, p) * mp.exp(-p * delay) / (p * slope(p)))])
                 continue
             radius = abs(p) / 1000
-            ring = [(p + radius * mp.expjpi(2 * mp.mpf(j) / POINTS), mp.expjpi(2 * mp.mpf(j) / POINTS)) for j in range(POINTS)]  # noqa: E501
-            found.append([
-                (s, half * evaluate(top, s) * mp.exp(-s * delay) / (s * f(s)) * radius * turn / POINTS) for s, turn in ring
-            ])  # fmt: skip
+            ring = []
+            for j in range(POINTS):
+                turn = mp.expjpi(2 * mp.mpf(j) / POINTS)
+                s = p + radius * turn
+                ring.append((s, half * evaluate(top, s) * mp.exp(-s * delay) / (s * f(s)) * radius * turn / POINTS))
+            found.append(ring)
         return found
 
     # ---- where things happen ----------------------------------------------------------------------------------------
@@ -117,8 +119,16 @@ class Output:
         if not inner.size:
             return None
         i = max(inner, key=lambda j: sign * y[j])
+        for n in range(2, 8):  # a plateau that ends in a kink at a multiple of the dead time
+            kink = n * mp.mpf(self.case.dead_time)
+            if 0 < kink < t[-1] and sign * (self(kink) - self.final) >= sign * y[i] and self._is_kink(kink):
+                return self(kink), kink
         at = bracketed_root(lambda x: self(x, -1), t[i - 1], t[i + 1])
         return self(at), at
+
+    def _is_kink(self, at: mp.mpf) -> bool:
+        before, after = (self(at * (1 + e * mp.mpf(10) ** -9), -1) for e in (-1, 1))
+        return before * after < 0
 
     def first_reach(self, level: mp.mpf) -> mp.mpf:
         """Return when the response first reaches a level, coming from zero."""
@@ -140,12 +150,12 @@ class Output:
         t, error = self.samples
         clear = np.abs(error) > 1e-17 * np.abs(error).max()
         last = np.nonzero(clear)[0][-1]
-        changes = [i for i in range(last) if error[i] * error[i + 1] < 0]
+        changes = [i for i in range(1, last) if error[i] * error[i + 1] < 0]
         if len(changes) > MOST_ZEROS:
             return None
         zeros = [bracketed_root(lambda x: self(x) - self.final, t[i], t[i + 1]) for i in changes]
         levels = [mp.mpf(0), *(self(z, 1) for z in zeros), self.total]
-        return mp.fsum(abs(b - a) for a, b in zip(levels[:-1], levels[1:], strict=True))
+        return mp.fsum(abs(b - a) for a, b in pairwise(levels))
 
 
 def metrics(case: Case, poles: list[Pole]) -> dict[str, mp.mpf | None]:

@@ -1,0 +1,34 @@
+"""Responses as pandas data frames."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from replicate.loops.piecewise import Piecewise
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+POINTS = 501
+
+
+def signal_frame(signal: Piecewise, times: ArrayLike | None = None) -> pd.DataFrame:
+    """Return a signal at given times as a data frame with the index ``t`` and the column ``value``.
+
+    Parameters
+    ----------
+    times
+        Times of any order; by default 501 equally spaced ones from 0 to the horizon.
+
+    Raises
+    ------
+    LoopError
+        If a time lies beyond the horizon.
+    """
+    import pandas as pd
+
+    t = np.linspace(0.0, signal.horizon, POINTS) if times is None else np.atleast_1d(np.asarray(times, dtype=float))
+    return pd.DataFrame({"value": signal(t)}, index=pd.Index(t, name="t"))

@@ -1,0 +1,41 @@
+"""What there is to know of each callable rule: its source and what it is made for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType, ModuleType
+
+from replicate.loops.controller import PID
+from replicate.loops.tune import (
+    astrom_hagglund,
+    classical,
+    lambda_tuning,
+    margin_specifications,
+    skogestad,
+    ziegler_and_nichols,
+)
+
+
+@dataclass(frozen=True)
+class RuleCard:
+    """A callable tuning rule, its source, and the plants it is made for."""
+
+    rule: Callable[..., PID]
+    source: str
+    validity: str
+
+
+_HOMES: Mapping[Callable[..., PID], ModuleType] = {
+    skogestad.simc: skogestad,
+    astrom_hagglund.amigo: astrom_hagglund,
+    lambda_tuning.lambda_: lambda_tuning,
+    ziegler_and_nichols.ziegler_nichols: ziegler_and_nichols,
+    margin_specifications.gain_phase_margins: margin_specifications,
+    classical.by_name: classical,
+}
+
+#: The callable rules by the name of their function.
+RULES: Mapping[str, RuleCard] = MappingProxyType(
+    {rule.__name__: RuleCard(rule, home.SOURCE, home.VALIDITY) for rule, home in _HOMES.items()}
+)
