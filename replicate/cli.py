@@ -11,16 +11,16 @@ import io
 import signal
 import sys
 import threading
+import traceback
 from typing import Annotated
 
 import typer
 
-from replicate.commands import accepted, beginnings, handouts, papers, printed, report
+from replicate.commands import accepted, beginnings, cache, handouts, papers, printed, report
 from replicate.commands.options import BROKEN
-from replicate.errors import ReplicateError
+from replicate.errors import TERMINATED, ReplicateError
+from replicate.run.exits import only_ours
 from replicate.run.isolation import isolate_matplotlib
-
-TERMINATED = 143
 
 app = typer.Typer(
     name="replicate",
@@ -37,11 +37,19 @@ def main() -> None:
     debug = "--debug" in arguments
     _prepare()
     try:
-        status = app(
-            args=[argument for argument in arguments if argument != "--debug"],
-            prog_name="replicate",
-            standalone_mode=False,
-        )
+        with only_ours():
+            status = app(
+                args=[argument for argument in arguments if argument != "--debug"],
+                prog_name="replicate",
+                standalone_mode=False,
+            )
+    except SystemExit as error:
+        if error.code == TERMINATED:
+            raise
+        if debug:
+            traceback.print_exc()
+        print(f"replicate: code of a paper tries to end the program, with status {error.code}", file=sys.stderr)  # noqa: T201
+        sys.exit(BROKEN)
     except Exception as error:
         if debug:
             raise
@@ -100,3 +108,4 @@ app.command()(handouts.handout)
 app.command()(beginnings.init)
 app.command()(beginnings.new)
 app.add_typer(printed.app, name="printed")
+app.command()(cache.cache)

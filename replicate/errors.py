@@ -17,6 +17,9 @@ ReplicateError                 shown to the user as one line, exit status 2
 
 from __future__ import annotations
 
+#: Exit status of a run that was told to end (SIGTERM), as shells have it.
+TERMINATED = 143
+
 
 class ReplicateError(Exception):
     """Base of every error that is reported to the user as one line."""

@@ -154,7 +154,7 @@ def test_a_source_makes_results_stale_and_prose_does_not(
 
 def test_a_damaged_cache_is_computed_again(paper: Paper, tmp_path: Path) -> None:
     computed(paper, tmp_path)
-    for file in tmp_path.rglob("*.pickle"):
+    for file in tmp_path.rglob("*.result"):
         file.write_bytes(b"nonsense")
     results, steps = computed(paper, tmp_path)
     assert from_cache(steps) == set()

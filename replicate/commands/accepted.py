@@ -16,12 +16,15 @@ from replicate.commands.options import (
     NoCache,
     Out,
     PapersDir,
+    UnitTimeout,
+    Verbose,
     accepted_folder,
     exit_with,
     library,
     output_folder,
     recompute,
 )
+from replicate.run.limits import UNIT_TIMEOUT
 
 
 def diff(
@@ -31,6 +34,8 @@ def diff(
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
+    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
+    verbose: Verbose = False,
     accepted: Accepted = None,
 ) -> None:
     """Show what differs from the accepted state, in words and pictures.
@@ -48,7 +53,7 @@ def diff(
     papers, selection = within.select(names or ())
     baseline = accepted_folder(within, papers, accepted)
     with staged(folder, "diff", expects=("diff.json", "diff/index.html")) as fresh:
-        outcome = recompute(papers, selection, jobs, folder, no_cache)
+        outcome = recompute(papers, selection, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
         comparison = compare(outcome, baseline, within.ids())
         print_comparison(comparison, console())  # before anything else can go wrong
         write_diff(comparison, outcome, fresh, jobs)
@@ -65,6 +70,8 @@ def accept(
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
+    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
+    verbose: Verbose = False,
     accepted: Accepted = None,
 ) -> None:
     """Make the present state the accepted one."""
@@ -77,7 +84,9 @@ def accept(
     within = library(papers_dir, bundled)
     papers, selection = within.select(names or ())
     folder = accepted_folder(within, papers, accepted, writing=True)
-    outcome = recompute(papers, selection, jobs, output_folder(within, out), no_cache)
+    outcome = recompute(
+        papers, selection, jobs, output_folder(within, out), no_cache, unit_timeout=unit_timeout, verbose=verbose
+    )
     comparison = accept_state(outcome, folder, reason, within.ids())
     print_changes(comparison, console())
     changes = len(comparison.changes)

@@ -13,11 +13,14 @@ from replicate.commands.options import (
     Out,
     Papers,
     PapersDir,
+    UnitTimeout,
+    Verbose,
     exit_with,
     library,
     output_folder,
     recompute,
 )
+from replicate.run.limits import UNIT_TIMEOUT
 
 
 def handout(
@@ -31,6 +34,8 @@ def handout(
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
+    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
+    verbose: Verbose = False,
 ) -> None:
     """Build teaching handouts, with and without solutions."""
     from replicate.handout import build_handouts, checked_format, with_handout
@@ -42,7 +47,7 @@ def handout(
     file_format = checked_format(format)
     editions = (False, True) if solutions is None else (solutions,)
     with staged(place, "handouts", renews=lambda _: False) as fresh:  # those of other papers, and other editions, stay
-        outcome = recompute(chosen, None, jobs, place, no_cache)
+        outcome = recompute(chosen, None, jobs, place, no_cache, unit_timeout=unit_timeout, verbose=verbose)
         verdicts = outcome.judgement.verdicts
         written = build_handouts(
             outcome.papers, outcome.results, verdicts, fresh / "handouts", solutions=editions, file_format=file_format

@@ -22,6 +22,14 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", help="Folder for the results; default: the project's.", file_okay=False),
 ]
+UnitTimeout = Annotated[
+    float,
+    typer.Option("--unit-timeout", metavar="SECONDS", help="Stop a reading, figure or claim that takes longer."),
+]
+Verbose = Annotated[
+    bool,
+    typer.Option("--verbose", "-v", help="Show why each result is computed anew, and what its code writes."),
+]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Recompute everything and keep nothing.")]
 Accepted = Annotated[
     Path | None,
@@ -40,16 +48,25 @@ BUILD = Path("build")
 MOST_FAILURES = 12
 
 
-def recompute(papers: list[Paper], selection: Selection | None, jobs: int | None, out: Path, no_cache: bool) -> Outcome:
+def recompute(
+    papers: list[Paper],
+    selection: Selection | None,
+    jobs: int | None,
+    out: Path,
+    no_cache: bool,
+    *,
+    unit_timeout: float,
+    verbose: bool,
+) -> Outcome:
     """Compute and judge with progress on standard error."""
     from replicate.run.outcome import recompute
     from replicate.terminal.console import console
     from replicate.terminal.progress import progress_on
 
     errors = console(stderr=True)
-    with progress_on(errors) as progress:
+    with progress_on(errors, verbose=verbose) as progress:
         cache = None if no_cache else out / "cache"
-        return recompute(papers, selection, jobs=jobs, cache_dir=cache, progress=progress)
+        return recompute(papers, selection, jobs=jobs, cache_dir=cache, progress=progress, unit_timeout=unit_timeout)
 
 
 def tell_failures(outcome: Outcome) -> None:

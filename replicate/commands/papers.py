@@ -13,6 +13,8 @@ from replicate.commands.options import (
     NoCache,
     Out,
     PapersDir,
+    UnitTimeout,
+    Verbose,
     accepted_folder,
     exit_with,
     library,
@@ -20,6 +22,7 @@ from replicate.commands.options import (
     recompute,
 )
 from replicate.errors import ReplicateError, UnknownPaperError
+from replicate.run.limits import UNIT_TIMEOUT
 
 
 def list_(
@@ -53,6 +56,8 @@ def show(
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
+    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
+    verbose: Verbose = False,
 ) -> None:
     """Show one exhibit: prints, readings, verdicts, explanations."""
     from replicate.exhibits import Table
@@ -70,10 +75,12 @@ def show(
             msg = f"{paper}/{exhibit} has no reading '{reading}'; known: {', '.join(readings) or 'none'}"
             raise UnknownPaperError(msg)
         readings = [reading]
-    outcome = recompute([owner], [(owner.id, found.id)], jobs, folder, no_cache)
+    outcome = recompute(
+        [owner], [(owner.id, found.id)], jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose
+    )
     if outcome.judgement.problems and not outcome.failures:
         # An explanation may quote another exhibit; then the whole paper is needed.
-        outcome = recompute([owner], None, jobs, folder, no_cache)
+        outcome = recompute([owner], None, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
     print_exhibit(outcome, paper, found, readings, console())
     exit_with(within, outcome)
 

@@ -14,12 +14,15 @@ from replicate.commands.options import (
     Out,
     Papers,
     PapersDir,
+    UnitTimeout,
+    Verbose,
     accepted_folder,
     exit_with,
     library,
     output_folder,
     recompute,
 )
+from replicate.run.limits import UNIT_TIMEOUT
 
 
 def report(
@@ -29,6 +32,8 @@ def report(
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
+    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
+    verbose: Verbose = False,
 ) -> None:
     """Recompute every exhibit and write the report."""
     from replicate.report.data import expected_files, write_outputs
@@ -43,7 +48,7 @@ def report(
     chosen = within.papers(papers or ())
     about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in chosen))
     with staged(folder, "report", expects=expected_files(chosen)) as fresh:
-        outcome = recompute(chosen, None, jobs, folder, no_cache)
+        outcome = recompute(chosen, None, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         index = folder / "report" / pages[0].name
@@ -59,6 +64,8 @@ def check(
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
+    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
+    verbose: Verbose = False,
     accepted: Accepted = None,
 ) -> None:
     """Check that all is explained and as accepted.
@@ -71,7 +78,9 @@ def check(
     within = library(papers_dir, bundled)
     chosen = within.papers(papers or ())
     baseline = accepted_folder(within, chosen, accepted)
-    outcome = recompute(chosen, None, jobs, output_folder(within, out), no_cache)
+    outcome = recompute(
+        chosen, None, jobs, output_folder(within, out), no_cache, unit_timeout=unit_timeout, verbose=verbose
+    )
     comparison = compare(outcome, baseline, within.ids())
     problems = find_problems(outcome, comparison)
     for problem in problems:

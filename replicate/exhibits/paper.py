@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
 from importlib.resources.abc import Traversable
+from pathlib import Path, PurePosixPath
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -66,6 +67,7 @@ class Paper:
     exhibits: dict[str, Exhibit] = field(default_factory=dict)
     charts: dict[str, Chart] = field(default_factory=dict)
     _loaded: bool = False
+    _data_read: set[str] = field(default_factory=set, repr=False, compare=False)
 
     def load(self) -> Paper:
         """Import the modules that define the exhibits (once), put all in the paper's order, return the paper itself.
@@ -96,6 +98,46 @@ class Paper:
     def folder(self) -> Traversable:
         """Return the package's folder, for its data files."""
         return importlib.resources.files(self.package)
+
+    def data(self, name: str) -> Path:
+        """Return the path of a data file, and note that the paper's results depend on it.
+
+        Parameters
+        ----------
+        name
+            Relative to the paper's folder, with forward slashes: ``"x.csv"``, ``"../measured/run-3.csv"``.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If there is no such file.
+        """
+        path = self._data_place(name)
+        if not path.exists():
+            msg = f"{self.id}: there is no data file '{name}' in the paper's folder"
+            raise PaperDefinitionError(msg)
+        self._data_read.add(name)
+        return path
+
+    def data_of(self, exhibit: Exhibit) -> set[str]:
+        """Return the data files that an exhibit declares, and those that the paper has read so far."""
+        return self._data_read | set(getattr(exhibit, "depends", ()))
+
+    def _data_place(self, name: str) -> Path:
+        if not name or PurePosixPath(name).is_absolute() or Path(name).is_absolute():
+            msg = f"{self.id}: data file '{name}'; expected: a path relative to the paper's folder"
+            raise PaperDefinitionError(msg)
+        return Path(str(self.folder())) / name
+
+    def _declared(self, exhibit: str, depends: Sequence[str]) -> tuple[str, ...]:
+        if isinstance(depends, str):
+            msg = f"{self.id}: {exhibit}: depends is a text; expected: a list of file names"
+            raise PaperDefinitionError(msg)
+        for name in depends:
+            if not self._data_place(name).exists():
+                msg = f"{self.id}: {exhibit} depends on '{name}', which is not there"
+                raise PaperDefinitionError(msg)
+        return tuple(depends)
 
     def printed_cells(self, exhibit: str) -> Mapping[tuple[str, str], str]:
         """Return what the paper prints in a table, by row and column, for exhibits that weigh the print as evidence.
@@ -131,6 +173,7 @@ class Paper:
         notation: Notation | Mapping[str, Notation] = PLAIN,
         near: Near = USUAL,
         spans: Mapping[Key, Sequence[Key]] | None = None,
+        depends: Sequence[str] = (),
     ) -> Table:
         """Add a table, worked example or formula; ``printed=False`` where the paper prints no numbers in it.
 
@@ -165,6 +208,7 @@ class Paper:
             notation=notation,
             near=near,
             spans=spans or {},
+            depends=self._declared(id, depends),
         )
         exhibit.check()
         self._add(exhibit)
@@ -181,6 +225,7 @@ class Paper:
         size: tuple[float, float] = (6.4, 4.0),
         stands_for: str = "",
         points: bool = False,
+        depends: Sequence[str] = (),
     ) -> Callable[[Callable[[MatplotlibFigure], None]], Callable[[MatplotlibFigure], None]]:
         """Register the decorated function as a figure; it draws on an empty matplotlib figure.
 
@@ -199,14 +244,20 @@ class Paper:
         """
 
         def register(draw: Callable[[MatplotlibFigure], None]) -> Callable[[MatplotlibFigure], None]:
+            needs = self._declared(id, depends)
             if not points:
-                self._add(Figure(id, kind, title, draw, caption, alt, size, stands_for))
+                self._add(Figure(id, kind, title, draw, caption, alt, size, stands_for, needs))
                 return draw
             found = read_points(self.folder() / "printed" / f"{id}.csv")
-            self._add(Figure(id, kind, title, with_points(draw, found), caption, alt, size, stands_for))
+            self._add(Figure(id, kind, title, with_points(draw, found), caption, alt, size, stands_for, needs))
             ids = tuple(point.id for point in found)
             table = Table(
-                f"{id}-points", "table", f"{title}: points read off the original", rows=ids, columns=(COLUMN,)
+                f"{id}-points",
+                "table",
+                f"{title}: points read off the original",
+                rows=ids,
+                columns=(COLUMN,),
+                depends=needs,
             )
             table.points = found
             table.reading(AS_WRITTEN, "our curve, within the reading error of x")(partial(values_at, draw, found, size))
@@ -240,9 +291,11 @@ class Paper:
 
         return register
 
-    def claims(self, id: str = "claims", title: str = "Claims made in the text") -> Claims:
+    def claims(
+        self, id: str = "claims", title: str = "Claims made in the text", *, depends: Sequence[str] = ()
+    ) -> Claims:
         """Add a collection of claims."""
-        exhibit = Claims(id, title)
+        exhibit = Claims(id, title, depends=self._declared(id, depends))
         self._add(exhibit)
         return exhibit
 

@@ -80,6 +80,9 @@ class Table:
         Where one printed number stands for several cells: by the cell in which it is entered, the others.
     points
         Of the table that belongs to a figure: what was read off the original.
+    depends
+        Files and folders outside the paper's folder, relative to it, that the readings use without `Paper.data`: when
+        one of them changes, the exhibit is computed anew.
     """
 
     id: str
@@ -97,6 +100,7 @@ class Table:
     near: Near = USUAL
     spans: Mapping[Key, Sequence[Key]] = field(default_factory=dict)
     points: Sequence[Point] = ()
+    depends: tuple[str, ...] = ()
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def check(self) -> None:
@@ -191,6 +195,7 @@ class Figure:
     alt: str = ""
     size: tuple[float, float] = (6.4, 4.0)
     stands_for: str = ""  # set when a simulation stands in for a measurement; shown with the figure
+    depends: tuple[str, ...] = ()  # files and folders, as for a table
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
@@ -260,6 +265,7 @@ class Claims:
     title: str
     kind: Literal["claims"] = "claims"
     claims: dict[str, Claim] = field(default_factory=dict)
+    depends: tuple[str, ...] = ()  # files and folders, as for a table
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def claim(

@@ -1,39 +1,42 @@
-"""Results kept between runs, under a key that changes with everything they depend on.
+"""Results kept between runs, each with what it depends on.
 
-The key of a result is a hash of the sources of the numerical core, of the exhibit vocabulary, of the paper's
-own package with its data, and of the versions of the libraries. What only judges or explains
-(``ledger.toml``, ``notes.md``, ``handout.md``, ``handout.py``) is left out, so that editing prose does not recompute
-anything.
+An entry is a text file of three lines: what it is (form, unit, digest of the rest), what the result depends on, and the
+result. Nothing in it is ever run. An entry is used only if it is whole, is of this form, is that of the unit asked for
+and everything it depends on is as it was; otherwise the unit is computed again. A few entries of one unit stand beside
+each other, so that going back to an earlier state finds its results.
 """
 
 from __future__ import annotations
 
 import contextlib
 import hashlib
-import importlib.metadata
+import json
 import os
-import pickle
-import platform
-import re
-import sys
 import tempfile
 from collections.abc import Iterator
-from importlib.resources import files
-from importlib.resources.abc import Traversable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from replicate.exhibits import Paper
+from replicate.exhibits.results import Result
+from replicate.run.dependencies import Dependencies, Looked
+from replicate.run.limits import MOST_KEPT
+from replicate.run.storage import SCHEMA, from_text, to_text
+from replicate.run.units import Unit, fits
 
-_CORE = ("loops", "exhibits", "figures", "run")
-_LIBRARIES = ("control", "matplotlib", "numpy", "pandas", "schemdraw", "scipy")
-_PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)|handout\.py")
-# Settings that choose the numerical kernels, and with them the last bits of a result.
-_KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
+FORM = "replicate result"
+SUFFIX = ".result"
+
+_LONGEST_HEAD = 2**16
+_MOST_STATES = 4  # entries of one unit
+
+_NEVER = "it has not been computed before"
 
 
+@dataclass
 class Cache:
-    """A folder of pickled results; a result that cannot be read counts as missing.
+    """A folder of results.
 
     Parameters
     ----------
@@ -41,68 +44,145 @@ class Cache:
         Created on the first write. ``None`` keeps nothing.
     """
 
-    def __init__(self, folder: Path | None) -> None:
-        self.folder = folder
-        self._fingerprints: dict[str, str] = {}
+    folder: Path | None
+    _looked: Looked = field(default_factory=Looked)
 
-    def get(self, paper: Paper, name: str) -> Any:
-        """Return the result of that name, or ``None``."""
+    def get(self, paper: Paper, unit: Unit) -> tuple[Result | None, str]:
+        """Return the result of a unit, or why there is none that holds."""
         if self.folder is None:
-            return None
-        try:
-            return pickle.loads(self._path(paper, name).read_bytes())  # noqa: S301  -- written by `put` below
-        except Exception:  # noqa: BLE001  -- whatever is wrong with it, the result is computed again
-            return None
+            return None, "nothing is kept"
+        why = ""
+        for path in self._entries(unit):
+            result, reason = self._read(path, paper, unit)
+            if result is not None:
+                with contextlib.suppress(OSError):
+                    os.utime(path)  # used just now: the last to be removed
+                return result, ""
+            why = why or reason
+        return None, why or _NEVER
 
-    def put(self, paper: Paper, name: str, result: object) -> None:
+    def put(self, unit: Unit, result: Result, dependencies: Dependencies) -> None:
         """Keep a result. A full disk or a read-only folder costs the next run time, nothing else."""
         if self.folder is None:
             return
-        path = self._path(paper, name)
+        rest = f"{json.dumps(dependencies)}\n{to_text(result)}\n".encode()
+        digest = hashlib.sha256(rest).hexdigest()
+        state = hashlib.sha256(json.dumps(dependencies).encode()).hexdigest()[:16]
+        head = json.dumps({"form": FORM, "schema": SCHEMA, "unit": _named(unit), "digest": digest})
+        folder = self._folder(unit)
         with contextlib.suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
-            # Written aside and renamed: a reader sees the whole result or none.
-            with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as aside:
-                aside.write(pickle.dumps(result))
-            Path(aside.name).replace(path)
+            folder.mkdir(parents=True, exist_ok=True)
+            _write(folder / f"{state}{SUFFIX}", f"{head}\n".encode() + rest)
+            for old in self._entries(unit)[_MOST_STATES:]:
+                old.unlink(missing_ok=True)
 
-    def _path(self, paper: Paper, name: str) -> Path:
-        assert self.folder is not None  # noqa: S101  -- for the type checker; both callers have looked
-        if paper.package not in self._fingerprints:
-            self._fingerprints[paper.package] = fingerprint(paper)
-        key = hashlib.sha256(f"{self._fingerprints[paper.package]} {name}".encode()).hexdigest()
-        return self.folder / paper.id / f"{key[:32]}.pickle"
+    def trim(self, most: int = MOST_KEPT) -> int:
+        """Remove what has not been used for longest until the rest is small enough; return the bytes removed."""
+        removed = 0
+        entries = sorted(stored(self.folder), key=lambda entry: entry.used)
+        total = sum(entry.size for entry in entries)
+        for entry in entries:
+            if total - removed <= most:
+                break
+            with contextlib.suppress(OSError):
+                entry.path.unlink(missing_ok=True)
+                removed += entry.size
+        return removed
+
+    def clear(self) -> tuple[int, int]:
+        """Remove every entry, and nothing else in the folder; return how many there were and their bytes."""
+        entries = list(stored(self.folder))
+        for entry in entries:
+            entry.path.unlink(missing_ok=True)
+            for folder in (entry.path.parent, entry.path.parent.parent, entry.path.parent.parent.parent):
+                with contextlib.suppress(OSError):  # not empty
+                    folder.rmdir()
+        return len(entries), sum(entry.size for entry in entries)
+
+    def _folder(self, unit: Unit) -> Path:
+        assert self.folder is not None  # noqa: S101  -- for the type checker; all callers have looked
+        return self.folder / unit.paper / hashlib.sha256(json.dumps(_named(unit)).encode()).hexdigest()[:24]
+
+    def _entries(self, unit: Unit) -> list[Path]:
+        """Return the entries of a unit, those used last first."""
+        found = [entry for entry in stored(self._folder(unit)) if entry.path.suffix == SUFFIX]
+        return [entry.path for entry in sorted(found, key=lambda entry: (-entry.used, entry.path))]
+
+    def _read(self, path: Path, paper: Paper, unit: Unit) -> tuple[Result | None, str]:
+        try:
+            return self._whole(path, paper, unit), ""
+        except _UselessError as error:
+            return None, str(error)
+        except Exception:  # noqa: BLE001  -- whatever is wrong with it, the result is computed again
+            return None, "its entry in the cache is damaged"
+
+    def _whole(self, path: Path, paper: Paper, unit: Unit) -> Result:
+        with path.open("rb") as file:
+            head = json.loads(file.readline(_LONGEST_HEAD))
+            _demand(head["form"] == FORM and head["schema"] == SCHEMA, "its entry in the cache has another form")
+            _demand(head["unit"] == _named(unit), "its entry in the cache is that of another unit")
+            rest = file.read()
+        _demand(hashlib.sha256(rest).hexdigest() == head["digest"], "its entry in the cache is damaged")
+        said, text = rest.split(b"\n", 1)
+        difference = self._looked.difference(paper, _checked(json.loads(said)))
+        _demand(not difference, difference)
+        result = from_text(text)
+        _demand(fits(result, unit, paper.exhibits[unit.exhibit]), "its entry in the cache is that of another unit")
+        return result
 
 
-def fingerprint(paper: Paper) -> str:
-    """Return a hash of all that the results of a paper depend on."""
-    digest = hashlib.sha256()
-    for part in (*_environment(), *_sources(paper)):
-        digest.update(len(part).to_bytes(8, "big") + part)
-    return digest.hexdigest()
+class _UselessError(Exception):
+    """An entry cannot be used; the message says why."""
 
 
-def _environment() -> Iterator[bytes]:
-    yield f"python {sys.version_info[:3]} {platform.system()} {platform.machine()}".encode()
-    for library in _LIBRARIES:
-        yield f"{library} {importlib.metadata.version(library)}".encode()
-    for name in _KERNELS:
-        yield f"{name}={os.environ.get(name, '')}".encode()
+def _demand(holds: bool, otherwise: str) -> None:
+    if not holds:
+        raise _UselessError(otherwise)
 
 
-def _sources(paper: Paper) -> Iterator[bytes]:
-    core = files("replicate")
-    for name in _CORE:
-        yield from _content(core / name, name)
-    yield from _content(paper.folder(), paper.package)
+@dataclass(frozen=True)
+class Entry:
+    """A file of the cache: where it is, how large, and when it was used last (nanoseconds)."""
+
+    path: Path
+    size: int
+    used: int
 
 
-def _content(place: Traversable, name: str) -> Iterator[bytes]:
-    """Yield name and bytes of a file, or of every file in a folder in alphabetical order."""
-    if place.is_dir():
-        for entry in sorted(place.iterdir(), key=lambda entry: entry.name):
-            if entry.name != "__pycache__" and not _PROSE.fullmatch(entry.name):
-                yield from _content(entry, f"{name}/{entry.name}")
-    elif place.is_file():
-        yield name.encode()
-        yield place.read_bytes()
+def stored(folder: Path | None) -> Iterator[Entry]:
+    """Yield all entries in a folder, also those of earlier versions."""
+    for place, folders, names in os.walk(folder or os.devnull):  # which passes over what another run removes
+        folders.sort()
+        for name in sorted(names):
+            if name.endswith((SUFFIX, ".pickle")) or name.startswith(".aside-"):
+                with contextlib.suppress(OSError):
+                    stat = os.stat(os.path.join(place, name))  # noqa: PTH116, PTH118  -- `os.walk` gives texts
+                    yield Entry(Path(place, name), stat.st_size, stat.st_mtime_ns)
+
+
+def _named(unit: Unit) -> dict[str, str]:
+    return {"paper": unit.paper, "package": unit.package, "exhibit": unit.exhibit, "reading": unit.reading}
+
+
+def _checked(value: Any) -> Dependencies:
+    groups = {"python", "framework", "paper", "distribution", "module", "data"}
+    if not isinstance(value, dict) or set(value) != groups:
+        msg = "the dependencies are not complete"
+        raise ValueError(msg)
+    for group in value.values():
+        if not isinstance(group, dict) or not all(isinstance(digest, str) for digest in group.values()):
+            msg = "the dependencies are not names and digests"
+            raise TypeError(msg)
+    return value
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Write a file aside and rename it: a reader, also one in another run, sees the whole file or none."""
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".aside-")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        Path(name).replace(path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise

@@ -15,11 +15,14 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from replicate.errors import PaperDefinitionError, UnknownPaperError
+from replicate.errors import TERMINATED, PaperDefinitionError, UnknownPaperError
 from replicate.exhibits import Exhibit, Paper
 from replicate.exhibits.file_names import display_name
+from replicate.run import exits
+from replicate.run.exits import only_ours
 
 ENTRY_POINTS = "replicate.papers"
+_HERE = {__file__, exits.__file__}
 
 
 @dataclass(frozen=True)
@@ -91,17 +94,26 @@ def find_exhibit(paper: Paper, id: str) -> Exhibit:
 
 @contextmanager
 def importing(what: str) -> Iterator[None]:
-    """Report an exception in a paper's own code in one line, with the file and line that raised it."""
+    """Report whatever a paper's own code raises in one line, with the file and line; also that it ends the program.
+
+    The exit status is ours alone: a module that exits while it is imported must not end a run as if all were well.
+    """
     try:
-        yield
-    except PaperDefinitionError:
+        with only_ours():
+            yield
+    except (PaperDefinitionError, KeyboardInterrupt):
         raise
-    except Exception as error:
+    except BaseException as error:
+        if isinstance(error, SystemExit) and error.code == TERMINATED:
+            raise
         if isinstance(error, SyntaxError) and error.filename:
             file, line, reason = error.filename, error.lineno, error.msg
         else:
-            frames = traceback.extract_tb(error.__traceback__)
-            frame = next(frame for frame in reversed(frames) if not frame.filename.startswith("<frozen"))
-            file, line, reason = frame.filename, frame.lineno, f"{type(error).__name__}: {error}"
+            frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename not in _HERE]
+            frame = next((frame for frame in reversed(frames) if not frame.filename.startswith("<frozen")), None)
+            file, line = (frame.filename, frame.lineno) if frame else (what, 0)
+            text = " ".join(str(error).split())
+            ends = f"it tries to end the program, with status {text or 0}"
+            reason = ends if isinstance(error, SystemExit) else f"{type(error).__name__}: {text}"
         msg = f"{what} cannot be loaded: {display_name(Path(file))}:{line}: {reason}"
         raise PaperDefinitionError(msg) from error

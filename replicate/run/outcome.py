@@ -9,6 +9,7 @@ from pathlib import Path
 from replicate.errors import ReplicateError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
+from replicate.run.limits import UNIT_TIMEOUT
 from replicate.run.parallel import Progress, failures, run
 from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
@@ -59,6 +60,7 @@ def recompute(
     jobs: int | None = None,
     cache_dir: Path | None,
     progress: Callable[[Progress], None] | None = None,
+    unit_timeout: float = UNIT_TIMEOUT,
 ) -> Outcome:
     """Compute the exhibits of papers and judge them.
 
@@ -66,14 +68,14 @@ def recompute(
     ----------
     selection
         ``(paper, exhibit)`` pairs; all exhibits if not given.
-    jobs, cache_dir, progress
+    jobs, cache_dir, progress, unit_timeout
         As for `replicate.run.parallel.run`.
 
     Raises
     ------
     ReplicateError
-        If no paper is left whose data files can be read, or a worker process died. An exhibit that raises is a result,
-        a paper with a malformed data file is left out and named.
+        If no paper is left whose data files can be read. An exhibit that raises, or ends its process, is a result, a
+        paper with a malformed data file is left out and named.
     """
     inputs: dict[str, Inputs] = {}
     broken: dict[str, ReplicateError] = {}
@@ -85,7 +87,7 @@ def recompute(
     papers = [paper for paper in papers if paper.id in inputs]
     if not papers:
         raise next(iter(broken.values()))
-    results = run(papers, selection, jobs=jobs, cache_dir=cache_dir, progress=progress)
+    results = run(papers, selection, jobs=jobs, cache_dir=cache_dir, progress=progress, unit_timeout=unit_timeout)
     judgements = {}
     for paper in papers:
         exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]

@@ -1,38 +1,63 @@
-"""Compute and draw the exhibits of papers, in parallel processes, keeping results between runs.
+"""Compute and draw the exhibits of papers, in worker processes, keeping results between runs.
 
-The result does not depend on the number of workers: every unit of work is computed alone, by the same code,
-with one thread for linear algebra, and results are put together in the order of the paper.
+The result does not depend on the number of workers: every unit of work is computed alone, by the same code, in the same
+surroundings, with one thread for linear algebra, and results are put together in the order of the paper.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Protocol
 
 # Before numpy is imported anywhere: it reads these once. More threads would change the last bits of results.
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
-from replicate.errors import ReplicateError  # noqa: E402
+from replicate.errors import ReplicateError  # noqa: E402  -- after the environment is set, like the rest
 from replicate.exhibits import Exhibit, Paper  # noqa: E402
 from replicate.exhibits.results import Result, Results, TableResult, errors_of  # noqa: E402
-from replicate.run.cache import Cache  # noqa: E402  -- after the environment is set
-from replicate.run.units import Unit, compute, units_of  # noqa: E402
+from replicate.run.cache import Cache  # noqa: E402
+from replicate.run.costs import Costs, user_folder  # noqa: E402
+from replicate.run.limits import UNIT_TIMEOUT  # noqa: E402
+from replicate.run.performance import Performance  # noqa: E402
+from replicate.run.units import Unit, units_of  # noqa: E402
 
 CACHE_DIR = Path("build/cache")
 
 
+class Executor(Protocol):
+    """Something that does units: processes on this machine, or the workers of a cluster."""
+
+    def run(self, units: Mapping[Unit, Exhibit]) -> Generator[tuple[Unit, Performance], None, None]:
+        """Yield every unit once, as it is done; units are best begun in the given order."""
+
+
 @dataclass(frozen=True)
 class Progress:
-    """Reported after every unit: how far the run is, and what this unit came to."""
+    """Reported after every unit: how far the run is, and what this unit came to.
+
+    Attributes
+    ----------
+    why
+        Why the unit was computed; empty if its result was kept.
+    output
+        What the unit wrote to standard output and error.
+    changed
+        Names of what the unit left changed around it.
+    """
 
     done: int
     total: int
     unit: Unit
     errors: dict[str, str] = field(default_factory=dict)
     from_cache: bool = False
+    why: str = ""
+    output: str = ""
+    changed: tuple[str, ...] = ()
 
 
 def run(
@@ -42,6 +67,8 @@ def run(
     jobs: int | None = None,
     cache_dir: Path | None = CACHE_DIR,
     progress: Callable[[Progress], None] | None = None,
+    unit_timeout: float = UNIT_TIMEOUT,
+    executor: Executor | None = None,
 ) -> Results:
     """Compute exhibits.
 
@@ -57,20 +84,27 @@ def run(
         Where results are kept between runs; ``None`` computes everything anew.
     progress
         Called after every unit of work, in the order in which they finish.
+    unit_timeout
+        Seconds after which a unit (of claims: one of them) is stopped.
+    executor
+        Does the units; processes on this machine if not given.
 
     Returns
     -------
     dict
         By ``(paper, exhibit)``, in the papers' order; exhibits that are not computable have no entry. An
-        exhibit or reading that raised is there with its reason.
+        exhibit or reading that raised, ended its process or took too long is there with its reason.
 
     Raises
     ------
     ReplicateError
-        If `jobs` is not positive, or a worker process died.
+        If `jobs` or `unit_timeout` is not positive, or a unit is never reported.
     """
     if jobs is not None and jobs < 1:
         msg = f"the number of jobs must be at least 1, not {jobs}"
+        raise ReplicateError(msg)
+    if not unit_timeout > 0:
+        msg = f"the time limit of a unit must be more than 0 s, not {unit_timeout:g}"
         raise ReplicateError(msg)
     wanted = [
         (paper, exhibit)
@@ -78,29 +112,59 @@ def run(
         for exhibit in paper.load().exhibits.values()
         if exhibits is None or (paper.id, exhibit.id) in exhibits
     ]
-    cache = Cache(cache_dir)
     owner = {unit: paper for paper, exhibit in wanted for unit in units_of(paper, exhibit)}
+    cache = Cache(cache_dir)
     report = progress or (lambda _: None)
     finished: dict[Unit, Result] = {}
-
+    why: dict[Unit, str] = {}
     for unit, paper in owner.items():
-        kept = cache.get(paper, str(unit))
-        if kept is not None:
+        kept, reason = cache.get(paper, unit)
+        if kept is None:
+            why[unit] = reason
+        else:
             finished[unit] = kept
             report(Progress(len(finished), len(owner), unit, from_cache=True))
-    for unit, result in _compute_all([unit for unit in owner if unit not in finished], jobs or os.cpu_count() or 1):
-        finished[unit] = result
-        errors = errors_of(result)
-        if not errors:
-            cache.put(owner[unit], str(unit), result)
-        report(Progress(len(finished), len(owner), unit, errors))
+    if why:
+        if executor is None:
+            from replicate.run.pool import LocalPool
 
+            executor = LocalPool(jobs or os.cpu_count() or 1, unit_timeout)
+        for unit, done in _compute(owner, why, executor, cache):
+            finished[unit] = done.result
+            errors = errors_of(done.result)
+            report(
+                Progress(
+                    len(finished), len(owner), unit, errors, why=why[unit], output=done.output, changed=done.changed
+                )
+            )
+    missing = [unit for unit in owner if unit not in finished]
+    if missing:
+        msg = f"{missing[0]} has not been reported, and {len(missing) - 1} more"
+        raise ReplicateError(msg)
     together: Results = {}
     for paper, exhibit in wanted:
         parts = [finished[unit] for unit in units_of(paper, exhibit)]
         if parts:
             together[paper.id, exhibit.id] = _together(exhibit, parts)
     return together
+
+
+def _compute(
+    owner: Mapping[Unit, Paper], units: Collection[Unit], executor: Executor, cache: Cache
+) -> Iterator[tuple[Unit, Performance]]:
+    """Yield units with what came of them, the longest begun first; keep what did not fail."""
+    costs = Costs(user_folder())
+    ordered = costs.longest_first(units)
+    try:
+        with closing(executor.run({unit: owner[unit].exhibits[unit.exhibit] for unit in ordered})) as performances:
+            for unit, done in performances:
+                costs.add(unit, done.seconds)
+                if not errors_of(done.result):
+                    cache.put(unit, done.result, done.dependencies)
+                yield unit, done
+    finally:
+        costs.save()
+    cache.trim()
 
 
 def failures(results: Results) -> list[str]:
@@ -110,32 +174,6 @@ def failures(results: Results) -> list[str]:
         for part, why in errors_of(result).items():
             lines.append(f"{paper}/{exhibit}{f' ({part})' if part else ''}: {why}")
     return lines
-
-
-def _compute_all(units: Sequence[Unit], jobs: int) -> Iterator[tuple[Unit, Result]]:
-    """Yield units with their results as they finish."""
-    if jobs == 1 or len(units) < 2:
-        for unit in units:
-            yield unit, compute(unit)
-        return
-    from joblib import Parallel, delayed, parallel_config
-    from joblib.externals.loky.process_executor import TerminatedWorkerError
-
-    try:
-        with parallel_config(backend="loky", inner_max_num_threads=1):
-            workers = Parallel(n_jobs=min(jobs, len(units)), batch_size=1, return_as="generator_unordered")
-            yield from workers(delayed(_named)(unit) for unit in units)
-    except TerminatedWorkerError as error:
-        msg = f"a worker process died, perhaps because memory ran out; try fewer --jobs: {_first_line(error)}"
-        raise ReplicateError(msg) from error
-
-
-def _named(unit: Unit) -> tuple[Unit, Result]:
-    return unit, compute(unit)
-
-
-def _first_line(error: Exception) -> str:
-    return str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
 
 
 def _together(exhibit: Exhibit, parts: Iterable[Result]) -> Result:

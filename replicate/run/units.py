@@ -1,16 +1,24 @@
 """The unit of work of a run: one reading of a table, one figure, or the claims of a paper.
 
 A unit travels to a worker process as three names; the worker imports the paper's package and does the work
-there. An exhibit that raises is recorded with its reason and takes nothing else down.
+there. An exhibit that raises, or that tries to leave, is recorded with its reason and takes nothing else down.
 """
 
 from __future__ import annotations
 
 import importlib
+import inspect
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from pathlib import Path
+from typing import get_args
 
-from replicate.exhibits import Claims, Exhibit, Figure, Finding, Paper, Table
+from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, Paper, Table
+from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
+from replicate.exhibits.vocabulary import ClaimVerdict
+
+_LONGEST_REASON = 400
 
 
 @dataclass(frozen=True)
@@ -37,8 +45,15 @@ def units_of(paper: Paper, exhibit: Exhibit) -> list[Unit]:
     return []
 
 
-def compute(unit: Unit) -> Result:
+def compute(unit: Unit, without: Collection[str] = (), before: Callable[[str], object] = lambda _: None) -> Result:
     """Do the work of one unit; this is what runs in a worker process.
+
+    Parameters
+    ----------
+    without
+        Ids of claims to leave out.
+    before
+        Called with the id of every claim before it is checked.
 
     Returns
     -------
@@ -52,22 +67,56 @@ def compute(unit: Unit) -> Result:
     if isinstance(exhibit, Figure):
         return _draw(unit, exhibit)
     if isinstance(exhibit, Claims):
-        return _check_claims(unit, exhibit)
+        return _check_claims(unit, exhibit, without, before)
     msg = f"{unit} cannot be computed"
     raise TypeError(msg)
 
 
-def reason(error: Exception) -> str:
+def failed(unit: Unit, exhibit: Exhibit, why: str) -> Result:
+    """Return the record of a unit of which nothing is left but the reason."""
+    if isinstance(exhibit, Table):
+        return TableResult(unit.paper, unit.exhibit, errors={unit.reading: why})
+    if isinstance(exhibit, Claims):
+        return ClaimsResult(unit.paper, unit.exhibit, errors=dict.fromkeys(exhibit.claims, why))
+    from replicate.run.drawing import no_figure
+
+    return no_figure(unit.paper, unit.exhibit, why)
+
+
+def fits(result: Result, unit: Unit, exhibit: Exhibit) -> bool:
+    """Say whether a result is one of this unit: of its kind, and of all its parts."""
+    if (result.paper, result.exhibit) != (unit.paper, unit.exhibit):
+        return False
+    if isinstance(exhibit, Table):
+        return isinstance(result, TableResult) and {*result.frames, *result.errors} == {unit.reading}
+    if isinstance(exhibit, Claims):
+        return isinstance(result, ClaimsResult) and {*result.findings, *result.errors} == set(exhibit.claims)
+    return isinstance(exhibit, Figure) and isinstance(result, FigureResult)
+
+
+def reason(error: BaseException) -> str:
     """Return one line that says what was raised, and where in the paper's own code or the core."""
-    text = " ".join(str(error).split())
     frame = error.__traceback__
     place = ""
     while frame is not None:
         module = frame.tb_frame.f_globals.get("__name__", "")
-        if module != __name__ and "site-packages" not in frame.tb_frame.f_code.co_filename:
+        if module.rpartition(".")[0] != __package__ and "site-packages" not in frame.tb_frame.f_code.co_filename:
             place = f" ({module}, line {frame.tb_lineno})"
         frame = frame.tb_next
+    if isinstance(error, SystemExit):
+        return f"it tries to end the program, with status {_text(error.code)}{place}"
+    text = _text(error)
     return f"{type(error).__name__}: {text}{place}" if text else f"{type(error).__name__}{place}"
+
+
+def _text(value: object) -> str:
+    """Return a text of one line, whatever an exception carries."""
+    try:
+        text = str(value)
+    except Exception as error:  # noqa: BLE001  -- also the text of an exception is a paper's own code
+        text = f"(its text raises {type(error).__name__})"
+    line = " ".join("".join(sign if sign.isprintable() else " " for sign in text[: 4 * _LONGEST_REASON]).split())
+    return line if len(line) <= _LONGEST_REASON else f"{line[:_LONGEST_REASON]} ..."
 
 
 def _compute_reading(unit: Unit, table: Table) -> TableResult:
@@ -78,7 +127,7 @@ def _compute_reading(unit: Unit, table: Table) -> TableResult:
         if not isinstance(frame, pd.DataFrame):
             msg = f"the reading returns {type(frame).__name__}; expected: a pandas DataFrame"
             raise TypeError(msg)  # noqa: TRY301  -- reported like everything else the reading gets wrong
-    except Exception as error:  # noqa: BLE001  -- one exhibit must not take the others down
+    except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error)})
     return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame})
 
@@ -88,20 +137,44 @@ def _draw(unit: Unit, figure: Figure) -> FigureResult:
 
     try:
         return capture(unit.paper, figure)
-    except Exception as error:  # noqa: BLE001  -- one exhibit must not take the others down
+    except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return no_figure(unit.paper, unit.exhibit, reason(error))
 
 
-def _check_claims(unit: Unit, claims: Claims) -> ClaimsResult:
+def _check_claims(
+    unit: Unit, claims: Claims, without: Collection[str], before: Callable[[str], object]
+) -> ClaimsResult:
     findings: dict[str, Finding] = {}
     errors: dict[str, str] = {}
     for id, claim in claims.claims.items():
+        if id in without:
+            continue
+        before(id)
         try:
-            finding: object = claim.check()
-            if not isinstance(finding, Finding):
-                msg = f"the check returns {type(finding).__name__}; expected: a Finding"
-                raise TypeError(msg)  # noqa: TRY301  -- reported like everything else the check gets wrong
-            findings[id] = finding
-        except Exception as error:  # noqa: BLE001  -- one claim must not take the others down
+            findings[id] = _valid(claim, claim.check())
+        except BaseException as error:  # noqa: BLE001  -- one claim must not take the others down
             errors[id] = reason(error)
     return ClaimsResult(unit.paper, unit.exhibit, findings, errors)
+
+
+def _valid(claim: Claim, found: object) -> Finding:
+    """Return what a check found if it is a verdict with a number and a sentence."""
+    from replicate.run.storage import number
+
+    where = f"claim '{claim.id}' ({_place(claim.check)}): "
+    allowed = get_args(ClaimVerdict)
+    if not isinstance(found, Finding):
+        msg = f"{where}the check returns {type(found).__name__}; expected: a Finding"
+    elif found.verdict not in allowed:
+        msg = f"{where}the verdict is {found.verdict!r}; allowed: {', '.join(allowed)}"
+    elif type(found.evidence) is not str:
+        msg = f"{where}the evidence is {type(found.evidence).__name__}; expected: text"
+    else:
+        return Finding(found.verdict, number(found.value, f"{where}the value is"), found.evidence)
+    raise TypeError(msg)
+
+
+def _place(function: Callable[..., object]) -> str:
+    """Return file and line of a function."""
+    code = getattr(inspect.unwrap(function), "__code__", None)
+    return f"{display_name(Path(code.co_filename))}:{code.co_firstlineno}" if code else "place unknown"

@@ -13,12 +13,17 @@ from replicate.run.parallel import Progress
 
 
 @contextmanager
-def progress_on(console: Console) -> Iterator[Callable[[Progress], None]]:
+def progress_on(console: Console, *, verbose: bool = False) -> Iterator[Callable[[Progress], None]]:
     """Yield the function to give to a run as its ``progress``.
 
     Results that come out of the cache are counted, not named.
+
+    Parameters
+    ----------
+    verbose
+        Say also why each unit is computed, what it writes, and what it leaves changed around it.
     """
-    with _bar(console) if console.is_terminal else _lines(console) as report:
+    with _bar(console) if console.is_terminal and not verbose else _lines(console, verbose=verbose) as report:
         yield report
 
 
@@ -35,7 +40,7 @@ def _bar(console: Console) -> Iterator[Callable[[Progress], None]]:
 
 
 @contextmanager
-def _lines(console: Console) -> Iterator[Callable[[Progress], None]]:
+def _lines(console: Console, *, verbose: bool) -> Iterator[Callable[[Progress], None]]:
     kept = total = 0
 
     def report(step: Progress) -> None:
@@ -46,7 +51,20 @@ def _lines(console: Console) -> Iterator[Callable[[Progress], None]]:
             return
         outcome = "  FAILED" if step.errors else ""
         console.print(f"computed {step.done}/{step.total}  {step.unit}{outcome}", markup=False)
+        if verbose:
+            for line in _details(step):
+                console.print(f"    {line}", markup=False, highlight=False, soft_wrap=True)
 
     yield report
     if kept:
         console.print(f"{kept} of {total} results kept from an earlier run", markup=False)
+
+
+def _details(step: Progress) -> Iterator[str]:
+    yield f"because {step.why}"
+    for part, why in step.errors.items():
+        yield f"{part or 'the figure'}: {why}"
+    if step.changed:
+        yield f"left changed: {', '.join(step.changed)}"
+    for line in step.output.splitlines():
+        yield "| " + "".join(sign if sign.isprintable() else " " for sign in line)

@@ -1,0 +1,187 @@
+"""What surrounds a unit of work: random numbers, settings, folder, locale. The same for every unit.
+
+A result must not depend on what ran before in the same process. So everything that code can change without returning
+it is set before each unit, and looked at after it: a unit that leaves something changed is named.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import decimal
+import locale
+import os
+import random
+import signal
+import sys
+import threading
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+SEED = 0
+
+
+@dataclass(frozen=True)
+class _Aspect:
+    """One thing that code can change: how it is read, and how it is set to what was read."""
+
+    name: str
+    read: Callable[[], Any]
+    set: Callable[[Any], object]
+    module: str = ""  # only if this module has been imported
+
+
+def _environment() -> dict[str, str]:
+    return dict(os.environ)
+
+
+def _set_environment(variables: dict[str, str]) -> None:
+    if dict(os.environ) != variables:
+        os.environ.clear()
+        os.environ.update(variables)
+        if hasattr(time, "tzset"):
+            time.tzset()
+
+
+def _umask() -> int:
+    mask = os.umask(0o077)
+    os.umask(mask)
+    return mask
+
+
+def _folder() -> str:
+    try:
+        return os.getcwd()  # noqa: PTH109  -- the plain text; the folder may be gone
+    except FileNotFoundError:
+        return "(removed)"
+
+
+def _set_locale() -> None:
+    """Take the locale of no country, in which files are UTF-8 where the system knows that."""
+    locale.setlocale(locale.LC_ALL, "C")
+    for name in ("C.UTF-8", "UTF-8"):
+        with contextlib.suppress(locale.Error):
+            locale.setlocale(locale.LC_CTYPE, name)
+            return
+
+
+def _set_warnings() -> None:
+    warnings.resetwarnings()
+    warnings.simplefilter("default")
+
+
+def _handlers() -> dict[int, Any]:
+    return {number: signal.getsignal(number) for number in signal.valid_signals()}
+
+
+def _set_handlers(handlers: dict[int, Any]) -> None:
+    for number, handler in handlers.items():
+        if handler is not None and signal.getsignal(number) != handler:
+            signal.signal(number, handler)
+
+
+def _decimal() -> tuple[Any, ...]:
+    context = decimal.getcontext()
+    traps = tuple(sorted(signal.__name__ for signal, is_set in context.traps.items() if is_set))
+    return context.prec, context.rounding, context.Emin, context.Emax, context.capitals, context.clamp, traps
+
+
+def _numpy() -> Any:
+    return sys.modules["numpy"]
+
+
+def _random_state() -> tuple[Any, ...]:
+    name, keys, *rest = _numpy().random.get_state()
+    return (name, keys.tobytes(), *rest)
+
+
+def _matplotlib() -> Any:
+    return sys.modules["matplotlib"]
+
+
+def _pyplot() -> Any:
+    return sys.modules["matplotlib.pyplot"]
+
+
+def _set_rc(settings: dict[str, Any]) -> None:
+    dict.update(_matplotlib().rcParams, settings)  # not through its setter, which complains of deprecated settings
+
+
+_ASPECTS = (
+    _Aspect("the current folder", _folder, os.chdir),
+    _Aspect("environment variables", _environment, _set_environment),
+    _Aspect("the mask of new files (umask)", _umask, os.umask),
+    _Aspect("the search path of modules", lambda: list(sys.path), lambda path: sys.path.__setitem__(slice(None), path)),
+    _Aspect("the recursion limit", sys.getrecursionlimit, sys.setrecursionlimit),
+    _Aspect("handlers of signals", _handlers, _set_handlers),
+    _Aspect("Python's random state", random.getstate, random.setstate),
+    _Aspect("the locale", lambda: locale.setlocale(locale.LC_ALL), lambda name: locale.setlocale(locale.LC_ALL, name)),
+    _Aspect("the context of decimal", _decimal, lambda _: decimal.setcontext(decimal.Context())),
+    _Aspect(
+        "the filters of warnings",
+        lambda: [str(entry) for entry in warnings.filters],
+        lambda _: _set_warnings(),
+    ),
+    _Aspect("numpy's random state", _random_state, lambda _: _numpy().random.seed(SEED), "numpy"),
+    _Aspect("numpy's handling of errors", lambda: _numpy().geterr(), lambda how: _numpy().seterr(**how), "numpy"),
+    _Aspect(
+        "numpy's print options",
+        lambda: _numpy().get_printoptions(),
+        lambda options: _numpy().set_printoptions(**options),
+        "numpy",
+    ),
+    _Aspect("matplotlib's rcParams", lambda: dict(_matplotlib().rcParams), _set_rc, "matplotlib"),
+    _Aspect(
+        "figures of pyplot",
+        lambda: list(_pyplot().get_fignums()),
+        lambda _: _pyplot().close("all"),
+        "matplotlib.pyplot",
+    ),
+)
+
+
+class Ambience:
+    """Sets what surrounds a unit, and says what a unit has left changed.
+
+    Made once in a process, before any code of a paper runs there.
+    """
+
+    def __init__(self) -> None:
+        random.seed(SEED)
+        _set_locale()
+        decimal.setcontext(decimal.Context())
+        _set_warnings()
+        self._wanted: dict[str, Any] = {}
+        self._threads = set(threading.enumerate())
+        self._look()
+
+    def _look(self) -> None:
+        """Read the aspects of modules that were imported since; the first look is the one that counts."""
+        for aspect in _ASPECTS:
+            if aspect.name not in self._wanted and (not aspect.module or aspect.module in sys.modules):
+                if aspect.module == "numpy":
+                    _numpy().random.seed(SEED)
+                elif aspect.module == "matplotlib":
+                    _matplotlib().rcdefaults()
+                elif aspect.module == "matplotlib.pyplot":
+                    self._wanted[aspect.name] = []
+                    continue
+                self._wanted[aspect.name] = aspect.read()
+
+    def set(self) -> list[str]:
+        """Set everything as it was at first, and return the names of what had been changed."""
+        changed = []
+        self._look()
+        for aspect in _ASPECTS:
+            if aspect.name in self._wanted and aspect.read() != self._wanted[aspect.name]:
+                changed.append(aspect.name)
+                aspect.set(self._wanted[aspect.name])
+        if hasattr(signal, "alarm") and signal.alarm(0):
+            changed.append("an alarm that has not rung")
+        return changed
+
+    def threads(self) -> list[str]:
+        """Return the names of threads that still run, which nothing can stop from outside."""
+        return [thread.name for thread in threading.enumerate() if thread not in self._threads and thread.is_alive()]

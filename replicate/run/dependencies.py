@@ -1,0 +1,165 @@
+"""What a result depends on: recorded where it is computed, looked at again before it is used.
+
+A worker records what it has loaded when a unit is done:
+
+* the framework's own rooms, whole folders by content;
+* the paper's folder by content, without the prose that only judges or explains (``ledger.toml``, ``notes.md``,
+  ``handout.md``, ``handout.py``), so that editing prose recomputes nothing;
+* every other module that is not the standard library's: by content, or by the version of its distribution if it is
+  an installed one;
+* data files that the paper reads through `Paper.data` or that its exhibits declare with ``depends=``;
+* the versions of Python and of the machine, and the settings that choose numerical kernels.
+
+Names are relative (to the package, the paper's folder, the path of modules): a project can move.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.metadata
+import os
+import platform
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from replicate.exhibits import Exhibit, Paper
+from replicate.run.modules import distributions_of, file_of, is_standard
+
+Dependencies = dict[str, dict[str, str]]
+
+_PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)|handout\.py")
+# Settings that choose the numerical kernels, and with them the last bits of a result.
+_KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
+_ROOT = __name__.split(".")[0]
+_GONE = "missing"
+
+
+class Looked:
+    """Looks at what is there now, each thing once: results of one run share nearly everything."""
+
+    def __init__(self) -> None:
+        self._folders: dict[tuple[str, str], dict[str, str]] = {}
+        self._modules: dict[str, str] = {}
+        self._versions: dict[str, str] = {}
+        self._environment = {
+            "version": f"{platform.python_version()} {platform.system()} {platform.machine()}",
+            **{name: os.environ.get(name, "") for name in _KERNELS},
+        }
+
+    def record(self, paper: Paper, exhibit: Exhibit, modules: Iterable[str]) -> Dependencies:
+        """Return what the result of an exhibit depends on, by group and name.
+
+        Parameters
+        ----------
+        modules
+            Names of the modules that were loaded for it.
+        """
+        distributions: set[str] = set()
+        by_content: set[str] = set()
+        rooms: set[str] = set()
+        for name in modules:
+            if name == _ROOT or name.startswith(f"{_ROOT}."):
+                rooms.add(name.split(".")[1] if "." in name else "__init__")
+            elif not is_standard(name):
+                found = distributions_of(name)
+                distributions.update(found)
+                if not found and not _is_own(paper, name):
+                    by_content.add(name)
+        groups = {
+            "framework": dict.fromkeys(rooms - {"papers"}, ""),
+            "distribution": dict.fromkeys(distributions, ""),
+            "module": dict.fromkeys(by_content, ""),
+            "data": dict.fromkeys(paper.data_of(exhibit), ""),
+        }
+        return {group: dict(sorted(names.items())) for group, names in self.now(paper, groups).items()}
+
+    def now(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> Dependencies:
+        """Return the present state of everything that was recorded, and of files that came beside it."""
+        rooms = sorted({name.split("/")[0] for name in recorded["framework"]})
+        return {
+            "python": self._environment,
+            "framework": {name: digest for room in rooms for name, digest in self._room(room).items()},
+            "paper": self._folder("paper", paper.package, paper.folder()),
+            "distribution": {name: self._version(name) for name in recorded["distribution"]},
+            "module": {name: self._module(name) for name in recorded["module"]},
+            "data": {name: _digest_of_data(paper, name) for name in recorded["data"]},
+        }
+
+    def difference(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> str:
+        """Return what has changed since, in words; empty if nothing has."""
+        now = self.now(paper, recorded)
+        for group, present in now.items():
+            before = recorded.get(group, {})
+            if before == present:
+                continue
+            name = next(name for name in (*before, *present) if before.get(name) != present.get(name))
+            return _said(group, name, before.get(name), present.get(name), paper)
+        return ""
+
+    def _room(self, room: str) -> dict[str, str]:
+        place: Traversable = files(_ROOT) / room
+        return self._folder("room", room, place if place.is_dir() else files(_ROOT) / f"{room}.py")
+
+    def _folder(self, kind: str, name: str, place: Traversable) -> dict[str, str]:
+        key = (kind, name)
+        if key not in self._folders:
+            self._folders[key] = dict(_contents(place, name if kind == "room" else ""))
+        return self._folders[key]
+
+    def _version(self, distribution: str) -> str:
+        if distribution not in self._versions:
+            try:
+                self._versions[distribution] = importlib.metadata.version(distribution)
+            except importlib.metadata.PackageNotFoundError:
+                self._versions[distribution] = _GONE
+        return self._versions[distribution]
+
+    def _module(self, name: str) -> str:
+        if name not in self._modules:
+            path = file_of(name)
+            self._modules[name] = _digest(path.read_bytes()) if path is not None and path.is_file() else _GONE
+        return self._modules[name]
+
+
+def _is_own(paper: Paper, module: str) -> bool:
+    """Say whether a module's file counts with the paper's folder."""
+    inside = module == paper.package or module.startswith(f"{paper.package}.")
+    return inside and not _PROSE.fullmatch(f"{module.rpartition('.')[2]}.py")
+
+
+def _said(group: str, name: str, before: str | None, now: str | None, paper: Paper) -> str:
+    if group == "distribution":
+        return f"{name} was {before}, is {now}"
+    if group == "python":
+        subject = "Python" if name == "version" else name
+        return f"{subject} was '{before}', is '{now}'"
+    where = {"framework": f"{_ROOT}/{name}", "paper": f"{paper.id}/{name}", "module": f"module {name}"}.get(group, name)
+    if before is None:
+        return f"{where} is new"
+    return f"{where} {'is gone' if now in {None, _GONE} else 'has changed'}"
+
+
+def _contents(place: Traversable, name: str) -> Iterator[tuple[str, str]]:
+    """Yield name and digest of a file, or of every file in a folder in alphabetical order."""
+    if place.is_dir():
+        for entry in sorted(place.iterdir(), key=lambda entry: entry.name):
+            if entry.name != "__pycache__" and not entry.name.startswith(".") and not _PROSE.fullmatch(entry.name):
+                yield from _contents(entry, f"{name}/{entry.name}".lstrip("/"))
+    elif place.is_file():
+        yield name, _digest(place.read_bytes())
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:24]
+
+
+def _digest_of_data(paper: Paper, name: str) -> str:
+    """Return the digest of a data file, or of all files in a folder of data."""
+    place = Path(str(paper.folder())) / name
+    try:
+        return _digest(repr(list(_contents(place, place.name))).encode()) if place.exists() else _GONE
+    except OSError as error:
+        return f"cannot be read: {error.strerror}"

@@ -1,0 +1,137 @@
+"""The modules that a process has loaded: whose they are, and where their files lie."""
+
+from __future__ import annotations
+
+import ast
+import importlib.machinery
+import importlib.metadata
+import importlib.util
+import os
+import sys
+import sysconfig
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+
+
+def modules_of(package: str, others: Collection[str]) -> set[str]:
+    """Return the loaded modules that code of a package may use.
+
+    That is every loaded one, except those of other packages that the same process has served: they count only if
+    something that the package imports, directly or not, imports them.
+    """
+    loaded = set(sys.modules)
+    foreign = {name for name in loaded if any(_is_in(name, other) for other in others if other != package)}
+    start = {name for name in loaded - foreign if not is_standard(name) and not distributions_of(name)}
+    return loaded - foreign | (_reached(start) if foreign else set())
+
+
+def _is_in(module: str, package: str) -> bool:
+    return module == package or module.startswith(f"{package}.")
+
+
+def _reached(start: Iterable[str]) -> set[str]:
+    """Return what modules import, directly or not, of what is loaded; installed distributions are not looked into."""
+    found: set[str] = set()
+    waiting = list(start)
+    while waiting:
+        name = waiting.pop()
+        if name in found or name not in sys.modules:
+            continue
+        found.add(name)
+        if not is_standard(name) and not distributions_of(name):
+            waiting += imports_of(name)
+    return found
+
+
+@cache
+def imports_of(name: str) -> tuple[str, ...]:
+    """Return every name that may be a module in the import statements of a loaded module, wherever they stand."""
+    path = file_of(name)
+    if path is None or path.suffix != ".py":
+        return ()
+    try:
+        tree = ast.parse(path.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return ()
+    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+    return tuple(_imported(tree, package))
+
+
+def _imported(tree: ast.AST, package: str) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            try:
+                base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            except ImportError:
+                continue
+            yield base
+            yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def is_standard(name: str) -> bool:
+    """Say whether a module is of the standard library, or the program itself."""
+    top = name.partition(".")[0]
+    return top in sys.stdlib_module_names or top in {"__main__", "__mp_main__"}
+
+
+@cache
+def installed() -> Mapping[str, list[str]]:
+    """Return the distributions that hold each top-level module."""
+    return importlib.metadata.packages_distributions()
+
+
+@cache
+def _sites() -> tuple[str, ...]:
+    paths = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
+    return tuple(sorted({os.path.realpath(path) for path in paths if path}))
+
+
+@cache
+def distributions_of(name: str) -> tuple[str, ...]:
+    """Return the distributions that installed a module; none for one that lies in a folder of its author's.
+
+    A module of an editable installation lies outside the folder of installed packages and counts by content.
+    """
+    file = getattr(sys.modules.get(name), "__file__", None)
+    if file is not None:
+        path = os.path.realpath(file)
+        if not path.startswith(_sites()) and "site-packages" not in path and "dist-packages" not in path:
+            return ()
+        around = (os.path.realpath(entry) for entry in sys.path if entry)
+        beside = max((entry for entry in around if path.startswith(entry + os.sep)), key=len, default="")
+        if beside and beside not in _sites():
+            return _owners(name.partition(".")[0], beside)
+    return tuple(sorted(set(installed().get(name.partition(".")[0], []))))
+
+
+@cache
+def _owners(top: str, folder: str) -> tuple[str, ...]:
+    """Return the distributions in another folder of installed packages that hold a top-level module."""
+    return tuple(
+        sorted(
+            distribution.metadata["Name"]
+            for distribution in importlib.metadata.distributions(path=[folder])
+            if any(file.parts[0] in {top, f"{top}.py"} for file in distribution.files or ())
+        )
+    )
+
+
+def file_of(name: str) -> Path | None:
+    """Return the file of a module, found without running the packages that it lies in."""
+    module = sys.modules.get(name)
+    file = getattr(module, "__file__", None)
+    if file is not None:
+        return Path(file)
+    search: Iterable[str] | None = None
+    full = ""
+    spec = None
+    for part in name.split("."):
+        full = f"{full}.{part}".lstrip(".")
+        spec = importlib.machinery.PathFinder.find_spec(full, None if search is None else list(search))
+        if spec is None:
+            return None
+        search = spec.submodule_search_locations or ()
+    return Path(spec.origin) if spec is not None and spec.origin and spec.has_location else None

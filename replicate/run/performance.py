@@ -1,0 +1,109 @@
+"""One unit done in this process: its result, what it cost and depends on, and what it left changed."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import time
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field, replace
+
+from replicate.exhibits import Paper
+from replicate.exhibits.results import ClaimsResult, Result
+from replicate.run.ambience import Ambience
+from replicate.run.dependencies import Dependencies, Looked
+from replicate.run.modules import modules_of
+from replicate.run.storage import from_text, to_text
+from replicate.run.units import Unit, compute, failed, reason
+
+
+@dataclass(frozen=True)
+class Performance:
+    """What a worker sends back.
+
+    Attributes
+    ----------
+    seconds
+        From the beginning of the unit to its end.
+    changed
+        Names of what the unit left changed around it (random state, folder, settings); it has been set back.
+    is_last
+        Whether the process should do no more, because something in it cannot be set back.
+    output
+        What the unit wrote to standard output and error.
+    """
+
+    result: Result
+    dependencies: Dependencies
+    seconds: float = 0.0
+    changed: tuple[str, ...] = ()
+    is_last: bool = False
+    output: str = ""
+
+    def to_bytes(self) -> bytes:
+        """Return this as two lines of JSON; the output travels otherwise, since it must outlive the process."""
+        head = {
+            "dependencies": self.dependencies,
+            "seconds": self.seconds,
+            "changed": self.changed,
+            "is_last": self.is_last,
+        }
+        return f"{json.dumps(head)}\n{to_text(self.result)}".encode()
+
+    @classmethod
+    def from_bytes(cls, content: bytes, output: str = "") -> Performance:
+        """Return what `to_bytes` wrote."""
+        head, text = content.split(b"\n", 1)
+        given = json.loads(head)
+        return cls(
+            from_text(text), given["dependencies"], given["seconds"], tuple(given["changed"]), given["is_last"], output
+        )
+
+
+@dataclass
+class Performer:
+    """Does units one after the other in this process, each in the same surroundings."""
+
+    ambience: Ambience = field(default_factory=Ambience)
+    _loaded: dict[str, Paper] = field(default_factory=dict)
+    _looked: Looked = field(default_factory=Looked)
+
+    def perform(
+        self, unit: Unit, without: Collection[str] = (), before: Callable[[str], object] = lambda _: None
+    ) -> Performance:
+        """Do one unit; nothing that it raises leaves here.
+
+        Parameters
+        ----------
+        without, before
+            As for `replicate.run.units.compute`.
+        """
+        begun = time.monotonic()
+        changed = []
+        if unit.package not in self._loaded:
+            # Before anything is set: what a module changes when it is imported must not depend on which unit is first.
+            self._loaded[unit.package] = importlib.import_module(unit.package).paper.load()
+            changed += [f"{name} (when {unit.paper} is imported)" for name in self.ambience.set()]
+        paper = self._loaded[unit.package]
+        self.ambience.set()
+        result = _whole(unit, paper, compute(unit, without, before))
+        changed += self.ambience.set()
+        threads = self.ambience.threads()
+        if threads:
+            changed.append(f"a thread that still runs ({', '.join(threads)})")
+        dependencies = self._looked.record(paper, paper.exhibits[unit.exhibit], modules_of(unit.package, self._loaded))
+        return Performance(result, dependencies, time.monotonic() - begun, tuple(changed), is_last=bool(threads))
+
+
+def _whole(unit: Unit, paper: Paper, result: Result) -> Result:
+    """Return the result as it is when it has been written and read, or the reason why it cannot be written."""
+    try:
+        to_text(result)
+    except (TypeError, ValueError) as error:
+        return failed(unit, paper.exhibits[unit.exhibit], reason(error))
+    return result
+
+
+def with_errors(result: Result, errors: dict[str, str]) -> Result:
+    """Return the claims of a result with those that could not be checked."""
+    return replace(result, errors={**result.errors, **errors}) if isinstance(result, ClaimsResult) else result

@@ -1,0 +1,273 @@
+"""A pool of worker processes in which a worker that dies takes nothing with it but the unit that it was at.
+
+Each worker has a pipe of its own. In the pools of the standard library, joblib and pebble all workers share one: there,
+one that is killed while it sends its result leaves the others and the main process waiting for the rest.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import re
+import signal
+import sys
+import tempfile
+import time
+from collections import deque
+from collections.abc import Generator, Iterator, Mapping
+from dataclasses import dataclass, field
+from multiprocessing import forkserver
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from typing import Any
+
+from replicate.errors import ReplicateError
+from replicate.exhibits import Claims, Exhibit
+from replicate.run.limits import MOST_OUTPUT
+from replicate.run.performance import Performance, with_errors
+from replicate.run.units import Unit, failed
+from replicate.run.worker import BEGUN, FAILED, Surroundings, Task, serve
+
+_TICK = 0.5
+_PATIENCE = 2.0  # seconds in which a worker that is stopped may say where it was
+_SHOWN_OUTPUT = 20_000
+_HEAVY = (
+    "numpy",
+    "pandas",
+    "matplotlib.figure",
+    "matplotlib.backends.backend_agg",
+    "matplotlib.backends.backend_svg",
+    "scipy.integrate",
+    "scipy.interpolate",
+    "scipy.linalg",
+    "scipy.optimize",
+    "control",
+    "schemdraw",
+    "replicate.loops",
+)
+_UNKNOWN = 255  # the process that watches over the workers is gone, too
+_FRAME = re.compile(r'File "([^"]+)", line (\d+) in ')
+
+
+@dataclass
+class _Worker:
+    process: Any
+    connection: Connection
+    output: Path
+    task: Task | None = None
+    begun: float = 0.0
+    claim: str = ""
+    failed: str = ""
+
+
+@dataclass
+class LocalPool:
+    """Does units in processes on this machine.
+
+    Parameters
+    ----------
+    jobs
+        Number of processes.
+    unit_timeout
+        Seconds after which a unit is stopped.
+    """
+
+    jobs: int
+    unit_timeout: float
+    _errors: dict[Unit, dict[str, str]] = field(default_factory=dict)
+
+    def run(self, units: Mapping[Unit, Exhibit]) -> Generator[tuple[Unit, Performance], None, None]:
+        """Yield units as they are done; they are begun in the given order.
+
+        Raises
+        ------
+        ReplicateError
+            If no worker can be started.
+        """
+        waiting = deque(Task(unit) for unit in units)
+        workers: list[_Worker] = []
+        with tempfile.TemporaryDirectory(prefix="replicate-", ignore_cleanup_errors=True) as folder:
+            started = 0
+            try:
+                while waiting or any(worker.task for worker in workers):
+                    workers[:] = [worker for worker in workers if worker.task or worker.process.is_alive()]
+                    while len(workers) < self.jobs and sum(not worker.task for worker in workers) < len(waiting):
+                        workers.append(_start(Path(folder) / f"output-{started}"))
+                        started += 1
+                    for worker in workers:
+                        if worker.task is None and waiting:
+                            self._give(worker, waiting.popleft())
+                    yield from self._harvest(workers, waiting, units)
+            finally:
+                for worker in workers:
+                    _kill(worker)
+
+    def _give(self, worker: _Worker, task: Task) -> None:
+        worker.task, worker.begun, worker.claim = task, time.monotonic(), ""
+        with contextlib.suppress(OSError):  # it has died this moment: noticed below
+            worker.connection.send(task)
+
+    def _harvest(
+        self, workers: list[_Worker], waiting: deque[Task], units: Mapping[Unit, Exhibit]
+    ) -> Iterator[tuple[Unit, Performance]]:
+        ready = wait([entry for worker in workers for entry in (worker.connection, worker.process.sentinel)], _TICK)
+        for worker in list(workers):
+            task = worker.task
+            if task is None:
+                continue
+            done, gone = None, False
+            if worker.connection in ready:
+                done, gone = _received(worker)
+            elif worker.process.sentinel in ready:
+                gone = True
+            why = (worker.failed or _left(worker)) if gone else "" if done else self._overdue(worker)
+            if done is not None:
+                worker.task = None
+                yield task.unit, self._finished(task.unit, done)
+            if gone or why or (done is not None and done.is_last):
+                workers.remove(worker)
+                place = _kill(worker)
+                if done is None:
+                    yield from self._lost(worker, task, f"{why}{place}", units[task.unit], waiting)
+
+    def _overdue(self, worker: _Worker) -> str:
+        if time.monotonic() - worker.begun > self.unit_timeout:
+            return f"stopped after {self.unit_timeout:g} s (--unit-timeout allows more)"
+        if _size(worker.output) > MOST_OUTPUT:
+            return f"stopped because it has written more than {MOST_OUTPUT // 2**20} MB of output"
+        return ""
+
+    def _finished(self, unit: Unit, done: Performance) -> Performance:
+        errors = self._errors.pop(unit, {})
+        return Performance(
+            with_errors(done.result, errors), done.dependencies, done.seconds, done.changed, done.is_last, done.output
+        )
+
+    def _lost(
+        self, worker: _Worker, task: Task, why: str, exhibit: Exhibit, waiting: deque[Task]
+    ) -> Iterator[tuple[Unit, Performance]]:
+        """Report a unit that has ended its worker; of claims only the one it was at, and the others are tried again."""
+        if isinstance(exhibit, Claims) and worker.claim:
+            self._errors.setdefault(task.unit, {})[worker.claim] = why
+            waiting.appendleft(Task(task.unit, (*task.without, worker.claim)))
+            return
+        seconds = time.monotonic() - worker.begun
+        lost = Performance(failed(task.unit, exhibit, why), {}, seconds, output=_output(worker))
+        yield task.unit, self._finished(task.unit, lost)
+
+
+def _start(output: Path) -> _Worker:
+    method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+    context: Any = multiprocessing.get_context(method)
+    here, there = context.Pipe(duplex=True)
+    try:
+        if method == "forkserver":
+            _start_server()
+        surroundings = Surroundings(_folder(), dict(os.environ), output)
+        process = context.Process(target=serve, args=(there, surroundings), name="replicate worker")
+        process.start()
+    except (OSError, EOFError) as error:
+        msg = f"a worker process cannot be started: {str(error) or type(error).__name__}"
+        raise ReplicateError(msg) from error
+    there.close()
+    return _Worker(process, here, output)
+
+
+def _start_server() -> None:
+    """Start the process that workers are forked from, if there is none: with what this process has imported, too."""
+    forkserver.set_forkserver_preload([f"{__package__}.preload", *(name for name in _HEAVY if name in sys.modules)])
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"  # a numpy.py of the user's in the current folder is not numpy
+    try:
+        forkserver.ensure_running()
+    finally:
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
+
+
+def _folder() -> str:
+    try:
+        return str(Path.cwd())
+    except FileNotFoundError as error:
+        msg = "the current folder has been removed"
+        raise ReplicateError(msg) from error
+
+
+def _received(worker: _Worker) -> tuple[Performance | None, bool]:
+    """Return what a worker has sent if it is a result, and whether the worker is lost."""
+    try:
+        message = worker.connection.recv_bytes()
+    except (OSError, EOFError):
+        return None, True
+    if message[:1] == FAILED:
+        worker.failed = message[1:].decode(errors="replace")
+        return None, True
+    if message[:1] == BEGUN:
+        worker.claim, worker.begun = message[1:].decode(errors="replace"), time.monotonic()  # each has the whole time
+        return None, False
+    try:
+        return Performance.from_bytes(message[1:], _output(worker)), False
+    except (ValueError, KeyError, TypeError):  # a unit has written to the pipe
+        return None, True
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except OSError:
+        return 0
+
+
+def _output(worker: _Worker) -> str:
+    """Return the end of what a unit has written."""
+    try:
+        with worker.output.open("rb") as file:
+            file.seek(max(0, _size(worker.output) - _SHOWN_OUTPUT))
+            return file.read().decode(errors="replace")
+    except OSError:
+        return ""
+
+
+def _kill(worker: _Worker) -> str:
+    """End a worker and all that it has started; return where it was, as `` (file, line)``, if it says so."""
+    worker.connection.close()
+    pid = worker.process.pid
+    place = ""
+    if worker.task is not None and not worker.failed:
+        if worker.process.is_alive():
+            with contextlib.suppress(OSError):
+                os.kill(pid, signal.SIGABRT)  # its fault handler writes where it is, and it ends
+            wait([worker.process.sentinel], _PATIENCE)
+        place = _place(_output(worker))
+    with contextlib.suppress(OSError):
+        if hasattr(os, "killpg"):
+            os.killpg(pid, signal.SIGKILL)
+    if worker.process.is_alive():
+        worker.process.kill()
+    worker.process.join(_PATIENCE)
+    return place
+
+
+def _place(output: str) -> str:
+    """Return the innermost line of a fault handler's report that is not in a library or here."""
+    report = output.partition("Fatal Python error")[2]
+    for file, line in _FRAME.findall(report.partition("Current thread")[2] or report):
+        if "site-packages" not in file and not file.startswith((sys.base_prefix, "<", str(Path(__file__).parent))):
+            return f" ({'/'.join(Path(file).parts[-2:])}, line {line})"
+    return ""
+
+
+def _left(worker: _Worker) -> str:
+    """Say how a worker has gone that nobody has ended."""
+    wait([worker.process.sentinel], _PATIENCE)
+    code = worker.process.exitcode
+    if code is None:
+        return "it has closed the pipe of its worker process"
+    if code >= 0:
+        return f"it has ended its worker process{'' if code == _UNKNOWN else f' with status {code}'}"
+    name = signal.Signals(-code).name if -code in set(signal.Signals) else f"signal {-code}"
+    hint = "; perhaps for want of memory: try fewer --jobs" if -code == signal.SIGKILL else ""
+    return f"its worker process was ended by {name}{hint}"

@@ -1,0 +1,14 @@
+"""Imported once by the process that workers are forked from, so that none of them need do it again."""
+
+from __future__ import annotations
+
+from replicate.run.isolation import isolate_matplotlib
+
+isolate_matplotlib()
+
+from replicate.run import performance  # noqa: E402  -- which may import matplotlib
+from replicate.run.modules import installed  # noqa: E402
+
+__all__ = ["performance"]
+
+installed()

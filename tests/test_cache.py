@@ -1,0 +1,464 @@
+"""Results that are kept: what their key covers, that they are data and nothing else, and that no wrong one is used."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import installed_paper
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import replicate as package
+from replicate.exhibits import Finding, Paper
+from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
+from replicate.run.cache import Cache, stored
+from replicate.run.costs import Costs
+from replicate.run.dependencies import Looked
+from replicate.run.library import Library
+from replicate.run.modules import modules_of
+from replicate.run.parallel import Progress, run
+from replicate.run.storage import from_text, to_text
+from replicate.run.units import Unit
+
+UNITS = {"lab/table-1 (as-written)", "lab/table-1 (decimal)", "lab/fig-1", "lab/claims"}
+
+#: A paper that needs files around it: siblings that it imports in every way, data, a distribution.
+AROUND = {
+    "lab_siblings/__init__.py": "",
+    "lab_siblings/direct.py": "from lab_siblings import indirect\nVALUE = indirect.VALUE\n",
+    "lab_siblings/indirect.py": "VALUE = 1\n",
+    "lab_lazy.py": "VALUE = 2\n",
+    "lab_dynamic.py": "VALUE = 3\n",
+    "lab_unused.py": "VALUE = 4\n",
+    "lab_distribution/__init__.py": "VALUE = 5\n",
+    "lab_distribution-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: lab-distribution\nVersion: 1.0\n",
+    "lab_distribution-1.0.dist-info/RECORD": "lab_distribution/__init__.py,,\n",
+    "measured/run-1.csv": "1\n",
+    "declared/one.dat": "1\n",
+    "lab_paper/data/inside.csv": "1\n",
+}
+
+USING = """
+
+import importlib
+from lab_siblings import direct
+
+more = paper.table("table-2", "Numbers", rows=("a",), columns=("x",), printed=False, depends=["../declared"])
+
+
+@more.reading("as-written", "As written")
+def _more():
+    import lab_lazy
+    import lab_distribution
+
+    dynamic = importlib.import_module("lab_" + "dynamic")
+    total = direct.VALUE + lab_lazy.VALUE + dynamic.VALUE + lab_distribution.VALUE
+    total += float(paper.data("../measured/run-1.csv").read_text()) + float(paper.data("data/inside.csv").read_text())
+    return pd.DataFrame({"x": [total]}, index=["a"])
+"""
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Iterator[Path]:
+    with installed_paper.installed(tmp_path / "site-packages") as folder:
+        for name, text in AROUND.items():
+            path = folder.parent / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        with (folder / "exhibits.py").open("a", encoding="utf-8") as file:
+            file.write(USING)
+        yield folder.parent
+    for name in [name for name in sys.modules if name.startswith("lab_")]:
+        del sys.modules[name]
+
+
+def fresh() -> Paper:
+    """The paper, imported anew as in another run."""
+    for name in [name for name in sys.modules if name.startswith("lab_")]:
+        del sys.modules[name]
+    return Library().paper("lab")
+
+
+def why(cache: Path, exhibits: list[tuple[str, str]] | None = None) -> dict[str, str]:
+    """Run, and return why each unit was computed."""
+    steps: list[Progress] = []
+    run([fresh()], exhibits, jobs=1, cache_dir=cache, progress=steps.append)
+    assert not any(step.errors for step in steps)
+    return {str(step.unit): step.why for step in steps if not step.from_cache}
+
+
+TABLE_2 = [("lab", "table-2")]
+OF_TABLE_2 = "lab/table-2 (as-written)"
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("lab_siblings/direct.py", "module lab_siblings.direct has changed"),
+        ("lab_siblings/indirect.py", "module lab_siblings.indirect has changed"),
+        ("lab_siblings/__init__.py", "module lab_siblings has changed"),
+        ("lab_lazy.py", "module lab_lazy has changed"),
+        ("lab_dynamic.py", "module lab_dynamic has changed"),
+        ("measured/run-1.csv", "../measured/run-1.csv has changed"),
+        ("declared/one.dat", "../declared has changed"),
+        ("declared/two.dat", "../declared has changed"),
+        ("lab_paper/data/inside.csv", "lab/data/inside.csv has changed"),
+        ("lab_paper/new.py", "lab/new.py is new"),
+        ("lab_paper/printed/table-1.csv", "lab/printed/table-1.csv has changed"),
+        ("lab_unused.py", ""),
+        ("lab_paper/notes.md", ""),
+    ],
+)
+def test_whatever_a_result_depends_on_makes_it_stale_and_is_named(
+    site: Path, tmp_path: Path, name: str, said: str
+) -> None:
+    assert why(tmp_path / "cache", TABLE_2) == {OF_TABLE_2: "it has not been computed before"}
+    assert why(tmp_path / "cache", TABLE_2) == {}
+    with (site / name).open("a", encoding="utf-8") as file:
+        file.write("\n")
+    assert why(tmp_path / "cache", TABLE_2) == ({OF_TABLE_2: said} if said else {})
+
+
+def test_another_version_of_a_library_makes_results_stale(site: Path, tmp_path: Path) -> None:
+    why(tmp_path / "cache", TABLE_2)
+    metadata = site / "lab_distribution-1.0.dist-info" / "METADATA"
+    metadata.write_text(metadata.read_text().replace("1.0", "1.1"))
+    assert why(tmp_path / "cache", TABLE_2) == {OF_TABLE_2: "lab-distribution was 1.0, is 1.1"}
+
+
+def test_a_file_that_is_gone_makes_results_stale(site: Path, tmp_path: Path) -> None:
+    why(tmp_path / "cache", TABLE_2)
+    (site / "lab_paper" / "data" / "extra.csv").write_text("")
+    why(tmp_path / "cache", TABLE_2)
+    (site / "lab_paper" / "data" / "extra.csv").unlink()
+    assert why(tmp_path / "cache", TABLE_2) == {}, "the entry of the earlier state is still there"
+
+
+def test_the_same_module_elsewhere_is_another_module(
+    site: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    why(tmp_path / "cache", TABLE_2)
+    shadow = tmp_path / "shadow"
+    shadow.mkdir()
+    (shadow / "lab_lazy.py").write_text("VALUE = 20\n")
+    monkeypatch.syspath_prepend(str(shadow))
+    assert site.is_dir()
+    assert why(tmp_path / "cache", TABLE_2) == {OF_TABLE_2: "module lab_lazy has changed"}
+
+
+def test_a_folder_that_moves_keeps_its_results(site: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    why(tmp_path / "cache", TABLE_2)
+    moved = tmp_path / "moved"
+    site.rename(moved)
+    monkeypatch.syspath_prepend(str(moved))
+    assert why(tmp_path / "cache", TABLE_2) == {}
+
+
+@pytest.mark.parametrize("id", ["khan", "krajewski", "bayhan", "ali", "panagopoulos"])
+def test_every_file_that_a_bundled_paper_loads_is_in_the_key(id: str) -> None:
+    code = (
+        "import sys; from replicate.run.library import Library; before = set(sys.modules);"
+        f"paper = Library(bundled=True).paper('{id}');"
+        "print('\\n'.join(str(sys.modules[name].__file__) for name in set(sys.modules) - before"
+        " if getattr(sys.modules[name], '__file__', None)))"
+    )
+    root = Path(package.__file__).parent
+    listed = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    loaded = {Path(line).relative_to(root).as_posix() for line in listed if line.startswith(str(root))}
+    paper = Library(bundled=True).paper(id)
+    exhibit = next(iter(paper.exhibits.values()))
+    key = Looked().record(paper, exhibit, modules_of(paper.package, [paper.package]))
+    own = f"papers/{id}/"
+    covered = {*key["framework"], *(f"{own}{name}" for name in key["paper"])}
+    # Other papers are imported to be found, not to be used; what a package's face holds is in its own room.
+    needed = {name for name in loaded if not name.startswith("papers/") or name.startswith(own)}
+    assert len([name for name in needed if name.startswith(own)]) > 3
+    assert not needed - covered - {"papers/__init__.py"}
+    assert {"numpy", "pandas", "scipy"} <= key["distribution"].keys()
+
+
+# ------------------------------------------------------------------------------------------------------ storage
+
+numbers = st.one_of(
+    st.floats(), st.integers(-(10**300), 10**300), st.none(), st.booleans(), st.text("ab é", max_size=5)
+)  # fmt: skip
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.lists(st.lists(numbers, min_size=2, max_size=2), max_size=4))
+def test_every_cell_comes_back_as_it_was(cells: list[list[Any]]) -> None:
+    rows = [f"r{i}" for i in range(len(cells))]
+    frame = pd.DataFrame(cells, index=pd.Index(rows, dtype=object), columns=["a", "b"], dtype=object)
+    result = from_text(to_text(TableResult("lab", "t", {"as-written": frame}, {"other": "why"})))
+    assert isinstance(result, TableResult)
+    back = result.frames["as-written"]
+    assert list(back.index) == rows
+    assert result.errors == {"other": "why"}
+    for line, same in zip(cells, back.to_numpy(dtype=object).tolist(), strict=True):
+        for before, after in zip(line, same, strict=True):
+            if before is None or before != before:  # noqa: PLR0124  -- NaN
+                assert after is None or after != after  # noqa: PLR0124
+            else:
+                assert after == before
+
+
+@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(st.lists(st.tuples(st.sampled_from("ab"), st.floats(), st.floats()), max_size=20), st.binary(max_size=50))
+def test_a_figure_comes_back_as_it_was(points: list[tuple[str, float, float]], png: bytes) -> None:
+    curves = pd.DataFrame(
+        {
+            "panel": pd.Series(["p" for _ in points], dtype=object),
+            "curve": pd.Series([curve for curve, _, _ in points], dtype=object),
+            "x": np.array([x for _, x, _ in points], dtype=float),
+            "y": np.array([y for _, _, y in points], dtype=float),
+        }
+    )
+    figure = FigureResult("lab", "f", "<svg>\u2028é</svg>", png, curves, [{"xlim": [0.1, 0.2]}], "", {"size": [1, 2]})
+    back = from_text(to_text(figure))
+    assert isinstance(back, FigureResult)
+    pd.testing.assert_frame_equal(back.curves, curves, check_exact=True)
+    assert (back.svg, back.png, back.axes, back.figure) == (figure.svg, figure.png, figure.axes, figure.figure)
+
+
+@pytest.mark.parametrize("value", [0.1, 5e-324, 1.7976931348623157e308, -0.0, math.inf, 3])
+def test_the_value_of_a_claim_comes_back_as_it_was(value: float) -> None:
+    result = from_text(to_text(ClaimsResult("lab", "claims", {"a": Finding("holds", value, "So.")})))
+    assert isinstance(result, ClaimsResult)
+    assert repr(result.findings["a"].value) == repr(value)
+
+
+# ------------------------------------------------------------------------------------------------- wrong entries
+
+
+def entries(cache: Path) -> dict[str, Path]:
+    return {json.loads(path.read_bytes().splitlines()[0])["unit"]["exhibit"]: path for path in cache.rglob("*.result")}
+
+
+def rewritten(path: Path, change: Callable[[dict[str, Any]], None], line: int) -> None:
+    """Change one of the three lines of an entry as someone would who knows the form: the digest fits again."""
+    lines = [json.loads(text) for text in path.read_text(encoding="utf-8").splitlines()]
+    change(lines[line])
+    rest = "".join(f"{json.dumps(text)}\n" for text in lines[1:])
+    if line:
+        lines[0]["digest"] = hashlib.sha256(rest.encode()).hexdigest()
+    path.write_text(f"{json.dumps(lines[0])}\n{rest}", encoding="utf-8")
+
+
+FIELDS = {"table-2": ("frames", "errors"), "fig-1": ("svg", "png", "curves", "axes", "figure", "error")}
+FIELDS["claims"] = ("findings", "errors")
+WRONG: list[tuple[str, str, Any]] = [
+    (exhibit, field, wrong) for exhibit, names in FIELDS.items() for field in names for wrong in (None, 7, "x", [1])
+]
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Paper, Path]]:
+    with installed_paper.installed(tmp_path_factory.mktemp("site")) as folder:
+        for name, text in AROUND.items():
+            path = folder.parent / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        with (folder / "exhibits.py").open("a", encoding="utf-8") as file:
+            file.write(USING)
+        paper = fresh()
+        cache = tmp_path_factory.mktemp("cache")
+        run([paper], jobs=2, cache_dir=cache)
+        yield paper, cache
+
+
+def unit_of(exhibit: str) -> Unit:
+    return Unit("lab", "lab_paper", exhibit, "as-written" if exhibit.startswith("table") else "")
+
+
+def refused(kept: tuple[Paper, Path], exhibit: str, damage: Callable[[Path], object]) -> str:
+    """Damage an entry, return why it is not used, and mend it."""
+    paper, cache = kept
+    path = entries(cache)[exhibit]
+    content = path.read_bytes()
+    try:
+        damage(path)
+        result, reason = Cache(cache).get(paper, unit_of(exhibit))
+        assert result is None
+        return reason
+    finally:
+        path.write_bytes(content)
+        assert Cache(cache).get(paper, unit_of(exhibit))[0] is not None
+
+
+@pytest.mark.parametrize(("exhibit", "field", "wrong"), WRONG)
+def test_a_field_of_another_type_is_recognised(
+    kept: tuple[Paper, Path], exhibit: str, field: str, wrong: object
+) -> None:
+    if field in {"svg", "error"} and isinstance(wrong, str):
+        pytest.skip("that is a text")
+    reason = refused(kept, exhibit, lambda path: rewritten(path, lambda fields: fields.update({field: wrong}), 2))
+    assert reason == "its entry in the cache is damaged"
+
+
+@pytest.mark.parametrize(("exhibit", "field"), [(id, field) for id, names in FIELDS.items() for field in names])
+def test_a_missing_field_is_recognised(kept: tuple[Paper, Path], exhibit: str, field: str) -> None:
+    reason = refused(kept, exhibit, lambda path: rewritten(path, lambda fields: fields.pop(field), 2))
+    assert reason == "its entry in the cache is damaged"
+
+
+@pytest.mark.parametrize("field", ["form", "schema", "unit", "digest"])
+def test_a_missing_field_of_the_head_is_recognised(kept: tuple[Paper, Path], field: str) -> None:
+    assert refused(kept, "claims", lambda path: rewritten(path, lambda head: head.pop(field), 0))
+
+
+@pytest.mark.parametrize("group", ["python", "framework", "paper", "distribution", "module", "data"])
+def test_missing_dependencies_are_recognised(kept: tuple[Paper, Path], group: str) -> None:
+    assert refused(kept, "claims", lambda path: rewritten(path, lambda groups: groups.pop(group), 1))
+    assert refused(kept, "claims", lambda path: rewritten(path, lambda groups: groups.update({group: {"x": "y"}}), 1))
+
+
+@pytest.mark.parametrize("exhibit", FIELDS)
+@pytest.mark.parametrize("other", FIELDS)
+def test_an_entry_in_another_place_is_recognised(kept: tuple[Paper, Path], exhibit: str, other: str) -> None:
+    if exhibit == other:
+        return
+    there = entries(kept[1])[other]
+    assert "another unit" in refused(kept, exhibit, lambda path: path.write_bytes(there.read_bytes()))
+
+    def disguised(path: Path) -> None:
+        head, rest = there.read_bytes().split(b"\n", 1)
+        unit = json.loads(path.read_bytes().splitlines()[0])["unit"]
+        path.write_bytes(json.dumps(json.loads(head) | {"unit": unit}).encode() + b"\n" + rest)
+
+    assert "another unit" in refused(kept, exhibit, disguised)
+
+
+def shorten(path: Path, length: int) -> None:
+    path.write_bytes(path.read_bytes()[:length])
+
+
+def test_every_shorter_entry_is_recognised(kept: tuple[Paper, Path]) -> None:
+    size = entries(kept[1])["claims"].stat().st_size
+    for length in range(0, size, max(1, size // 40)):
+        assert refused(kept, "claims", partial(shorten, length=length))
+
+
+def test_nothing_in_the_cache_is_run(kept: tuple[Paper, Path], tmp_path: Path) -> None:
+    class Bomb:
+        def __reduce__(self) -> tuple[Any, ...]:
+            return os.mkdir, (str(tmp_path / "exploded"),)
+
+    assert refused(kept, "claims", lambda path: path.write_bytes(pickle.dumps(Bomb())))
+    assert not (tmp_path / "exploded").exists()
+
+
+def test_a_deep_or_huge_text_is_recognised(kept: tuple[Paper, Path]) -> None:
+    assert refused(kept, "claims", lambda path: path.write_bytes(b"[" * 10**6))
+    assert refused(kept, "claims", lambda path: path.write_bytes(b'{"form": ' + b"9" * 10**5 + b"}"))
+
+
+# ---------------------------------------------------------------------------------------------------- the folder
+
+
+def test_a_folder_that_cannot_be_written_costs_time_only(site: Path, tmp_path: Path) -> None:
+    assert site.is_dir()
+    (tmp_path / "cache").write_text("a file")
+    assert set(why(tmp_path / "cache", TABLE_2)) == {OF_TABLE_2}
+
+
+def test_clearing_removes_results_and_nothing_else(kept: tuple[Paper, Path], tmp_path: Path) -> None:
+    paper, cache = kept
+    own = tmp_path / "cache"
+    run([paper], TABLE_2, jobs=1, cache_dir=own)
+    (own / "mine.txt").write_text("mine")
+    count, size = Cache(own).clear()
+    assert count == 1
+    assert size > 0
+    assert [path.name for path in own.rglob("*")] == ["mine.txt"]
+    assert len(list(stored(cache))) == len(UNITS) + 1
+
+
+def test_what_has_not_been_used_for_longest_goes_first(kept: tuple[Paper, Path], tmp_path: Path) -> None:
+    paper, _ = kept
+    cache = Cache(tmp_path)
+    for age, exhibit in enumerate(["claims", "fig-1", "table-1", "table-2"]):
+        run([paper], [("lab", exhibit)], jobs=1, cache_dir=tmp_path)
+        for path in tmp_path.rglob("*.result"):
+            if json.loads(path.read_bytes().splitlines()[0])["unit"]["exhibit"] == exhibit:
+                os.utime(path, (1000 + age, 1000 + age))
+    assert cache.get(paper, unit_of("claims"))[0] is not None  # used just now
+    assert cache.trim(entries(tmp_path)["claims"].stat().st_size) > 0
+    assert set(entries(tmp_path)) == {"claims"}
+
+
+def test_two_runs_share_a_cache(kept: tuple[Paper, Path], tmp_path: Path) -> None:
+    paper, _ = kept
+    failures: list[BaseException] = []
+
+    def one() -> None:
+        try:
+            for _ in range(3):
+                run([paper], TABLE_2, jobs=1, cache_dir=tmp_path / "cache")
+                Cache(tmp_path / "cache").clear()
+        except BaseException as error:  # noqa: BLE001  -- a thread's error must not get lost
+            failures.append(error)
+
+    threads = [threading.Thread(target=one) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failures
+    assert not list(tmp_path.rglob(".aside-*"))
+
+
+def test_nothing_is_started_when_everything_is_kept(kept: tuple[Paper, Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    paper, cache = kept
+
+    def refuse(*_: object) -> None:
+        msg = "a pool was started"
+        raise AssertionError(msg)
+
+    monkeypatch.setattr("replicate.run.pool.LocalPool.__init__", refuse)
+    results = run([paper], jobs=2, cache_dir=cache)
+    assert len(results) == 4
+
+
+# -------------------------------------------------------------------------------------------------- order of work
+
+
+def test_the_longest_comes_first(tmp_path: Path) -> None:
+    units = [Unit("lab", "lab_paper", id) for id in ("short", "long", "unknown", "middle")]
+    costs = Costs(tmp_path)
+    for unit, seconds in zip(units, (1.0, 9.0, None, 5.0), strict=True):
+        if seconds is not None:
+            costs.add(unit, seconds)
+    costs.save()
+    again = Costs(tmp_path).longest_first(units)
+    assert [unit.exhibit for unit in again] == ["unknown", "long", "middle", "short"]
+
+
+@pytest.mark.parametrize("content", ["", "[]", '{"lab/short": "much"}', "\x00"])
+def test_a_damaged_file_of_costs_is_no_loss(tmp_path: Path, content: str) -> None:
+    (tmp_path / "costs.json").write_text(content)
+    units = [Unit("lab", "lab_paper", id) for id in ("a", "b")]
+    assert Costs(tmp_path).longest_first(units) == units
+
+
+def test_a_run_notes_what_units_cost(kept: tuple[Paper, Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    run([kept[0]], TABLE_2, jobs=1, cache_dir=None)
+    noted = json.loads((tmp_path / "replicate" / "costs.json").read_text())
+    assert list(noted) == [OF_TABLE_2]
+    assert noted[OF_TABLE_2] > 0
