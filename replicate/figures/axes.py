@@ -15,7 +15,7 @@ Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
 
 #: Said elsewhere, by what is compared curve by curve or part by part, or by the tick labels.
-_SILENT = {"panel", "parts", "dense", "clouds", "loose", "thinned", "units", "curves"}
+_SILENT = {"panel", "parts", "dense", "clouds", "loose", "thinned", "units", "curves", "fitted"}
 _FIRST = {
     *("title", "xlabel", "ylabel", "xscale", "yscale", "xlim", "ylim", "legend", "texts", "aspect", "hidden"),
     *("points", "areas", "figure_title", "figure_texts", "figure_legend"),

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from replicate.errors import FigureError
+from replicate.figures.describe import said_titles
 from replicate.figures.drawing import recorded
 from replicate.figures.fields import read_field
 from replicate.figures.marks import Box, marks_of
@@ -19,6 +19,7 @@ from replicate.figures.recorder import Drawn
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from replicate.figures.polylines import Points
@@ -33,6 +34,9 @@ def record_of(figure: Figure) -> Record:
     if root is not figure or not hasattr(figure, "savefig"):
         msg = f"a matplotlib figure is needed, not {type(figure).__name__}"
         raise FigureError(msg)
+    # After `tight_layout()` was called, places follow the sizes of texts.
+    engine = type(figure.get_layout_engine()).__name__
+    fitted = {"fitted": True} if engine == "PlaceHolderLayoutEngine" else {}
     with recorded(figure) as drawn:
         panels = list(_panels(figure))
         read = {id(axes): read_panel(name, axes) for name, axes in panels}
@@ -42,9 +46,9 @@ def record_of(figure: Figure) -> Record:
         title = getattr(figure, "_suptitle", None)
         if title is not None and panels:
             texts[id(title)] = "figure title"
-        whole = Namer(figure, {}, texts)
+        whole = Namer(figure, {}, texts, placed=True)
         for call in drawn:
-            _owner(call, namers, whole, figure)
+            _owner(call, namers, whole)
         described = []
         curves: dict[tuple[str, str], Points] = {}
         for _, axes in panels:
@@ -55,15 +59,12 @@ def record_of(figure: Figure) -> Record:
             curves |= {key: np.array(value) for key, value in places.items()}
             box = Box.of(axes.bbox.extents)
             parts = [_entry(part, box) for part in namers[id(axes)].parts.values()]
-            described.append(panel.description | {"position": _position(axes, figure)} | {"parts": parts})
+            described.append(panel.description | {"position": _position(axes, figure)} | fitted | {"parts": parts})
         if described:
             described[0] |= outside
         frame = Box.of(figure.bbox.extents)
         parts = [_entry(part, frame) for part in whole.parts.values()]
-    engine = figure.get_layout_engine()
-    about: dict[str, Any] = {"size": [round(float(side), 3) for side in figure.get_size_inches()]}
-    if type(engine).__name__ == "PlaceHolderLayoutEngine":  # `tight_layout()` was called: places follow texts
-        about["fitted"] = True
+    about: dict[str, Any] = {"size": [round(float(side), 3) for side in figure.get_size_inches()]} | fitted
     return Record(about | {"parts": parts}, described, curves)
 
 
@@ -74,7 +75,7 @@ def _panels(figure: Figure) -> Iterator[tuple[str, Axes]]:
     """
     used: dict[str, int] = {}
     for place, axes in enumerate(_all_axes(figure), start=1):
-        title = axes.get_title() or axes.get_title(loc="left") or axes.get_title(loc="right")
+        title = next(iter(said_titles(axes)), "")
         name = " ".join(title.split())
         if not name or len(name) > _LONGEST_NAME or "$" in name:
             name = f"panel {place}"
@@ -90,23 +91,17 @@ def _all_axes(figure: Figure) -> list[Axes]:
     return found
 
 
-def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer, figure: Figure) -> None:
+def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer) -> None:
     """Hand a mark to the panel it was drawn in, or to the figure."""
     chain: tuple[Artist, ...] = call.artists
     inner = max((i for i, artist in enumerate(chain) if id(artist) in namers), default=None)
     if inner is not None:
         axes = chain[inner]
-        box: Any = axes.bbox if isinstance(axes, Axes) else figure.bbox
-        namers[id(axes)].add(call, _flat(chain[inner + 1 :], box))
+        namers[id(axes)].add(call, chain[inner + 1 :])
     else:
         # Sub-figures are no parts themselves.
         below = [artist for artist in chain[1:] if not hasattr(artist, "subplots")]
         whole.add(call, tuple(below))
-
-
-def _flat(chain: tuple[Artist, ...], _: Any) -> tuple[Artist, ...]:
-    """Leave out the artist that newer versions of matplotlib put around the frame and the lines of an inset."""
-    return chain[1:] if len(chain) > 1 and type(chain[0]).__name__ == "InsetIndicator" else chain
 
 
 def _described_texts(axes: Axes) -> dict[int, str]:
@@ -130,13 +125,19 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
     field = read_field(part.owner)
     if field:
         entry["field"] = field
-    marks = marks_of(part.drawn, box, where=part.placed)
+    marks = marks_of(part.drawn, box, where=part.placed or part.told)
     for mark in marks if field else ():  # its colours follow from its values
         for name in ("image", "face", *(("at",) if "extent" in field else ()), *_edges(mark)):
             mark.pop(name, None)
-    if part.told and part.named:  # what it says, and where, is compared by name
+    if part.told:  # what it says, and where, is compared by name
+        lines = any(mark["draws"] == "path" for mark in marks)
         for mark in marks:
             mark.pop("texts", None)
+            mark.pop("outline", None)
+            if not (lines and mark["draws"] == "markers"):  # which points of a line are marked is not
+                mark.pop("places", None)
+            if not part.placed:
+                mark.pop("at", None)
     if part.name.startswith(("tick labels of the x", "tick labels of the y", "minor tick labels")):
         _along_the_axis(marks, part)
     entry["marks"] = marks

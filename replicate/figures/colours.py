@@ -8,13 +8,15 @@ from collections.abc import Sequence
 #: Steps of 255 that nobody sees; a colour map has no finer ones.
 SAME = 4
 
+# The colours that matplotlib itself begins with, and the ones that people write by name.
 _NAMES = {
-    "black": "#000000", "white": "#ffffff", "grey": "#808080", "light grey": "#d3d3d3", "dark grey": "#404040",
-    "red": "#d62728", "bright red": "#ff0000", "dark red": "#8b0000", "orange": "#ff7f0e", "yellow": "#ffff00",
-    "olive": "#bcbd22", "green": "#2ca02c", "bright green": "#00ff00", "dark green": "#006400",
-    "cyan": "#17becf", "bright cyan": "#00ffff", "blue": "#1f77b4", "bright blue": "#0000ff", "dark blue": "#00008b",
-    "light blue": "#87cefa", "purple": "#9467bd", "dark purple": "#440154", "magenta": "#ff00ff",
-    "pink": "#e377c2", "brown": "#8c564b", "gold": "#daa520",
+    "black": "#000000", "white": "#ffffff", "grey": "#808080 #7f7f7f #b0b0b0", "light grey": "#d3d3d3 #e6e6e6",
+    "dark grey": "#404040", "red": "#d62728 #ff0000", "dark red": "#8b0000", "orange": "#ff7f0e #ffa500",
+    "yellow": "#ffff00", "light yellow": "#ffffe0", "olive": "#bcbd22 #808000", "lime": "#00ff00",
+    "green": "#2ca02c #008000", "dark green": "#006400", "cyan": "#17becf #00ffff", "light blue": "#87cefa #add8e6",
+    "blue": "#1f77b4 #0000ff", "dark blue": "#00008b #000080", "purple": "#9467bd #800080",
+    "dark purple": "#440154", "magenta": "#ff00ff", "pink": "#e377c2 #ffc0cb", "brown": "#8c564b #a52a2a",
+    "gold": "#daa520 #ffd700", "wheat": "#f5deb3",
 }  # fmt: skip
 
 _DASHES = {"dashed": (3.7, 1.6), "dash-dotted": (6.4, 1.6, 1.0, 1.6), "dotted": (1.0, 1.65)}
@@ -65,14 +67,14 @@ def alphas(one: str, other: str) -> tuple[float, float] | None:
 def _name(colour: str) -> str:
     red, green, blue, _ = channels(colour)
     distances = {
-        # The mean of red decides how much red and blue count (Riemersma, "Colour metric").
-        name: _apart((red, green, blue), channels(code)[:3])
-        for name, code in _NAMES.items()
+        name: min(_apart((red, green, blue), channels(code)[:3]) for code in codes.split())
+        for name, codes in _NAMES.items()
     }
     return min(distances, key=lambda name: distances[name])
 
 
 def _apart(one: Sequence[int], other: Sequence[int]) -> float:
+    # The mean of red decides how much red and blue count (Riemersma, "Colour metric").
     mean = (one[0] + other[0]) / 2.0
     red, green, blue = (a - b for a, b in zip(one, other, strict=True))
     return math.sqrt((2.0 + mean / 256.0) * red**2 + 4.0 * green**2 + (2.0 + (255.0 - mean) / 256.0) * blue**2)

@@ -10,7 +10,7 @@ import numpy as np
 
 from replicate.errors import FigureRecordError
 from replicate.figures.axes import Axes, compare_axes, matched_panels, same
-from replicate.figures.curves import compare_curves
+from replicate.figures.curves import CurveComparison, compare_curves
 from replicate.figures.differences import Difference, same_number
 from replicate.figures.looks import Frame
 from replicate.figures.pair import Pair
@@ -63,7 +63,7 @@ def _compare(accepted: Record, new: Record) -> Comparison:
     found = [*compare_axes(accepted.panels, new.panels), *curves.changes]
     if accepted.version > 1 and new.version > 1:  # the first version knew no parts
         found += _figure(accepted.figure, new.figure)
-        found += _parts(accepted, new, curves.renamed)
+        found += _parts(accepted, new, curves)
     return Comparison(_once(found), curves.pairs)
 
 
@@ -80,15 +80,16 @@ def _figure(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Difference
     return found + compare_parts(one.get("parts", []), other.get("parts", []), {}, "figure")
 
 
-def _parts(accepted: Record, new: Record, renamed: Mapping[tuple[str, str], str]) -> list[Difference]:
+def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Difference]:
     several = len(accepted.panels) > 1 or len(new.panels) > 1
     fitted = bool(accepted.figure.get("fitted") or new.figure.get("fitted"))
+    moved = [(str(pair.axes["panel"]), pair.name) for pair in curves.pairs if pair.moved]
     found = []
     for old, fresh in matched_panels(accepted.panels, new.panels):
         if old is None or fresh is None:
             continue
         panel = str(old["panel"])
-        names = {name: was for (owner, name), was in renamed.items() if owner == panel}
+        names = {name: was for (owner, name), was in curves.renamed.items() if owner == panel}
         own = frozenset(name for owner, name in accepted.curves if owner == panel)
         prefix = f"'{panel}': " if several else ""
         ticks = [axis for axis in "xyz" if any(not same(old, fresh, f"{axis}{what}") for what in ("lim", "scale"))]
@@ -101,6 +102,7 @@ def _parts(accepted: Record, new: Record, renamed: Mapping[tuple[str, str], str]
             curves=own,
             frame=_frame(old, fresh, _FITTED if fitted else 1.0),
             other_ticks=ticks,
+            moved=frozenset(name for owner, name in moved if owner == panel),
         )
     return found
 

@@ -232,6 +232,8 @@ def _box(points: Points) -> Points:
 
 def _view(old: Axes, new: Axes) -> Array:
     """Return the part of the accepted axes that both states show, as ``[[left, right], [bottom, top]]``."""
+    if "polar" in old or old.get("units") == "box":
+        return np.array([[0.0, 1.0], [0.0, 1.0]])
     limits = np.column_stack([np.asarray(new[f"{axis}lim"], dtype=float) for axis in "xy"])
     low, high = np.sort(in_units(limits, old), axis=0)
     view = np.column_stack([np.fmax(low, 0.0), np.fmin(high, 1.0)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from matplotlib.category import StrCategoryConverter
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
 
 _DIGITS = 9
-_SIDES = ("left", "center", "right")
+_SIDES: tuple[Literal["left"], Literal["center"], Literal["right"]] = ("left", "center", "right")
 # Steps of a table that gives the place of a value on an axis that is neither linear nor logarithmic.
 _STEPS = 192
 
@@ -32,9 +32,8 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         (where values lie on an axis that is neither linear nor logarithmic), ``xkind`` ("date", "categories"),
         ``xcategories``, ``polar``, ``view`` and what belongs to the third axis.
     """
-    legend = axes.get_legend()
-    titles = {side: axes.get_title(loc=side) for side in _SIDES}  # type: ignore[arg-type]
-    said = [title for title in (titles["center"], titles["left"], titles["right"]) if title]
+    legend = axes.get_legend() if hasattr(axes, "get_legend") else None
+    said = said_titles(axes)
     found: dict[str, Any] = {
         "panel": panel,
         "title": said[0] if said else "",
@@ -48,7 +47,7 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         "texts": [_text(text, axes) for text in axes.texts if text.get_text() and text.get_visible()],
     }
     if len(said) > 1:
-        found["titles"] = [titles[side] for side in _SIDES]
+        found["titles"] = [axes.get_title(loc=side) for side in _SIDES]
     if axes.get_aspect() != "auto":
         found["aspect"] = "equal" if axes.get_aspect() == 1.0 else number(axes.get_aspect())
     if not axes.axison:
@@ -63,6 +62,13 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         for place, name in enumerate("xy"):
             found |= _axis(axes, name, place)
     return found
+
+
+def said_titles(axes: Axes) -> list[str]:
+    """Return the titles of axes, the one in the centre first; an axis that was added to others can have none."""
+    if not hasattr(axes, "get_title"):
+        return []
+    return [title for side in ("center", "left", "right") if (title := axes.get_title(loc=side))]
 
 
 def number(value: Any) -> Any:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.text import Annotation, Text
 
+from replicate.figures.placing import without_layout
 from replicate.figures.recorder import DPI, Drawn, RecordingRenderer
 
 if TYPE_CHECKING:
@@ -40,6 +41,8 @@ def _on_canvas(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
         if engine is not None:
             stack.callback(figure.set_layout_engine, engine)
             figure.set_layout_engine("none")
+            if type(engine).__name__ != "PlaceHolderLayoutEngine":
+                stack.enter_context(without_layout(figure))
         stack.callback(figure._set_dpi, dpi, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001
         figure._set_dpi(DPI, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001  -- no window changes its size
         # Artists may ask the canvas for a renderer, and animations begin unless a file is being saved.

@@ -127,21 +127,28 @@ def _worst(one: Mapping[str, Array], other: Mapping[str, Array]) -> tuple[str, f
     # A curve may end where a column does.
     if _runs(gone) > 1:
         return "is now elsewhere,", 1.0, float(np.argmax(gone)) / COLUMNS
-    best: tuple[str, float, float] | None = None
-    for name, words in (("low", "its lower end moved"), ("high", "its upper end moved"), ("mean", "its mean moved")):
-        apart = np.nan_to_num(np.abs(other[name] - one[name]))
-        worst = int(np.argmax(apart))
-        if apart[worst] > TOLERANCE and (best is None or apart[worst] > best[1]):
-            best = f"{words} by at most {100.0 * apart[worst]:.2g} % of the axis,", float(apart[worst]), worst / COLUMNS
-    if best is not None:
-        return best
+    found = _moved(one, other, (("low", "its lower end moved"), ("high", "its upper end moved")))
+    if found is not None:
+        return found
     travel = np.nan_to_num(np.abs(other["travel"] - one["travel"]))
     allowed = _TRAVEL * np.nan_to_num(one["travel"]) + 4.0 * TOLERANCE
     worst = int(np.argmax(travel - allowed))
     if travel[worst] > allowed[worst]:
         change = other["travel"][worst] / max(one["travel"][worst], _UNIT)
         return f"oscillates {change:.3g} times as much,", float(travel[worst]), worst / COLUMNS
-    return None
+    return _moved(one, other, (("mean", "its mean moved"),))
+
+
+def _moved(
+    one: Mapping[str, Array], other: Mapping[str, Array], parts: Sequence[tuple[str, str]]
+) -> tuple[str, float, float] | None:
+    best: tuple[str, float, float] | None = None
+    for name, words in parts:
+        apart = np.nan_to_num(np.abs(other[name] - one[name]))
+        worst = int(np.argmax(apart))
+        if apart[worst] > TOLERANCE and (best is None or apart[worst] > best[1]):
+            best = f"{words} by at most {100.0 * apart[worst]:.2g} % of the axis,", float(apart[worst]), worst / COLUMNS
+    return best
 
 
 def _runs(flags: NDArray[np.bool_]) -> int:

@@ -261,13 +261,9 @@ def _symbols(one: Mark, other: Mark) -> Iterator[str]:
     before, after = one.get("symbol"), other.get("symbol")
     if before is None or after is None:
         return
-    if len(before) != len(after):
-        yield "{} has other markers now"
-        return
-    extents = [_extent(symbols) for symbols in (before, after)]
-    ratio = extents[1] / extents[0] if extents[0] else 1.0
-    scaled = [_scaled(symbol, 1.0 / ratio) for symbol in after]
-    if any(outlines_apart(a, b, _SYMBOL) for a, b in zip(before, scaled, strict=True)):
+    extents = [_extent(symbol) for symbol in (before, after)]
+    ratio = (extents[1] / extents[0] if extents[0] else 1.0) or 1.0
+    if outlines_apart(before, _scaled(after, 1.0 / ratio), _SYMBOL):
         yield "markers of {} have another shape now"
     elif abs(ratio - 1.0) > 0.01:
         yield f"markers of {{}} are {ratio:.3g} times as large now"
@@ -282,8 +278,8 @@ def _symbols(one: Mark, other: Mark) -> Iterator[str]:
         yield "sizes of the markers of {} changed"
 
 
-def _extent(symbols: Sequence[Mapping[str, Any]]) -> float:
-    points = [point for symbol in symbols for point in symbol.get("points", ()) if point is not None]
+def _extent(symbol: Mapping[str, Any]) -> float:
+    points = [point for point in symbol.get("points", ()) if point is not None]
     return float(np.abs(np.asarray(points)).max()) if points else 0.0
 
 

@@ -5,7 +5,7 @@ A mark says what is drawn (``draws``), how it looks and where it lies. Its field
 - ``edge``, ``face``: colours, ``#rrggbb`` or ``#rrggbbaa``; left out where there is no line or no fill
 - ``width``, ``dash``, ``cap``, ``join``: of the line, lengths in points
 - ``hatch``, ``sketch``, ``clip`` (left out if clipped to the axes, ``none`` if not clipped)
-- ``outline``: where its lines run; ``symbol``: the shapes of a marker in inches, ``places`` where it is drawn and
+- ``outline``: where its lines run; ``symbol``: the shape of a marker in inches, ``places`` where it is drawn and
   ``scale`` how large
 - ``texts``, ``size``, ``angle``, ``align``, ``weight``, ``slant`` of texts and ``at``, where they are anchored;
   ``image``, the mean colours of its blocks, and the corners of a picture
@@ -31,7 +31,6 @@ Mark = dict[str, Any]
 _SAME_BOX = 1e-3
 _DECIMALS = 3
 _BLOCKS = 8
-_SYMBOLS = 6
 # The box that the outline of a marker is a fraction of, in points.
 _INCH = 72.0
 # A tenth of a point.
@@ -76,8 +75,13 @@ def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True) -> list[Ma
         corners = drawn.kind in {"mesh", "triangles"} or drawn.offsets is not None
         if drawn.kind in {"text", "image"}:
             points = np.asarray(drawn.extra["place" if drawn.kind == "text" else "corners"], dtype=float).reshape(-1, 2)
+        elif drawn.offsets is None:
+            points = joined([flattened(path) for path in drawn.paths])
+        elif len(drawn.paths) > 1:  # shapes of their own, each at its place
+            corners = False
+            points = joined([flattened(drawn.paths[i % len(drawn.paths)]) + at for i, at in enumerate(drawn.offsets)])
         else:
-            points = drawn.offsets if drawn.offsets is not None else joined([flattened(path) for path in drawn.paths])
+            points = drawn.offsets
         if not (marks and marks[-1]["look"] == look and drawn.kind != "image"):
             marks.append({"look": look, "corners": corners, "texts": []})
             lines.append([])
@@ -117,7 +121,7 @@ def _look(drawn: Drawn, box: Box) -> Mark:
         mark["face"] = faces
     if drawn.kind == "mesh":
         mark["size"] = list(drawn.extra["size"])
-    if drawn.offsets is not None:
+    if drawn.offsets is not None and len(drawn.paths) == 1:
         mark |= _symbols(drawn)
     return mark
 
@@ -160,18 +164,13 @@ def _clip(drawn: Drawn, box: Box) -> Mark:
 
 
 def _symbols(drawn: Drawn) -> Mark:
-    """Describe the shape of markers in points, of unit size if they have many sizes."""
+    """Describe the shape of a marker in inches, of unit size if it has many sizes."""
     scales = drawn.scales if drawn.scales is not None and len(drawn.scales) else np.ones(1)
-    shapes = []
-    for place, path in enumerate(drawn.paths[:_SYMBOLS]):
-        size = float(scales[place % len(scales)]) or 1.0
-        points = flattened(path) / size * (1.0 if drawn.scales is not None else 72.0 / DPI)
-        shapes.append(outline(points / _INCH, tolerance=_FINE))
-    mark: Mark = {"symbol": shapes}
+    points = flattened(drawn.paths[0]) / (float(scales[0]) or 1.0)
+    points *= 1.0 if drawn.scales is not None else 72.0 / DPI
+    mark: Mark = {"symbol": outline(points / _INCH, tolerance=_FINE)}
     if drawn.scales is not None:
         mark["scale"] = _values(scales * 72.0 / DPI)
-    if len(drawn.paths) > _SYMBOLS:
-        mark["symbols"] = len(drawn.paths)
     return mark
 
 

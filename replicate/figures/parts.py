@@ -84,10 +84,14 @@ class Namer:
         The names of the artists that are compared as curves, by identity.
     described
         The texts whose words and places are compared by name, by identity.
+    placed
+        Whether just their words are, and not their places.
     """
 
-    def __init__(self, owner: Any, curves: Mapping[int, str], described: Mapping[int, str]) -> None:
-        self.owner, self.curves, self.described = owner, curves, described
+    def __init__(
+        self, owner: Any, curves: Mapping[int, str], described: Mapping[int, str], *, placed: bool = False
+    ) -> None:
+        self.owner, self.curves, self.described, self.placed = owner, curves, described, placed
         self.parts: dict[str, Part] = {}
         self._numbers: dict[str, int] = {}
         self._given: dict[tuple[int, str], str] = {}
@@ -162,10 +166,20 @@ class Namer:
         if chain[-1] is not text or drawn.kind != "text":
             box = text.get_bbox_patch()
             if box is None or chain[-1] is not box:
-                return Part(f"arrow of {name}", chain[-1], loose=True)
+                return Part(
+                    f"arrow of {name}", chain[-1], loose=bool(text.get_text()), properties=_arrow_style(chain[-1])
+                )
             style = {"style": type(box.get_boxstyle()).__name__}
             return Part(f"box of {name}", box, loose=True, properties=style)
-        return Part(name, text, told=told, placed=not told)
+        return Part(name, text, told=told, placed=not told or self.placed)
+
+
+def _arrow_style(arrow: Any) -> dict[str, Any]:
+    """Return what an arrow looks like; its head may be smaller than what its place may follow the text."""
+    styles = [getattr(arrow, f"get_{name}", lambda: None)() for name in ("arrowstyle", "connectionstyle")]
+    names = [type(style).__name__ for style in styles if style is not None]
+    size = getattr(arrow, "get_mutation_scale", lambda: 1.0)()
+    return {"style": names, "head": round(float(size), 2)} if names else {}
 
 
 def _of_axis(axis: Axis, chain: tuple[Artist, ...]) -> Part:
@@ -217,7 +231,8 @@ def _texts_in(box: Artist) -> list[Text]:
 
 def _word(artist: Artist) -> str | None:
     kind = type(artist)
-    if not kind.__module__.startswith("matplotlib."):
+    # Arrows and barbs are polygons to matplotlib, but no areas.
+    if not kind.__module__.startswith("matplotlib.") or kind.__module__ == "matplotlib.quiver":
         return None
     return next((word for known, word in _WORDS if isinstance(artist, known)), None)
 

@@ -27,6 +27,7 @@ def compare_parts(
     curves: frozenset[str] = frozenset(),
     frame: Frame | None = None,
     other_ticks: Collection[str] = (),
+    moved: Collection[str] = (),
 ) -> list[Difference]:
     """Compare the parts of one panel, or of the figure itself.
 
@@ -44,6 +45,8 @@ def compare_parts(
         How places are to be compared.
     other_ticks
         The axes that have other limits or another scale now: their ticks follow from that.
+    moved
+        The curves that have moved: the markers on them have moved with them.
     """
     old = {str(part["name"]): part for part in before}
     # The entries of a legend follow the names of their curves.
@@ -55,7 +58,7 @@ def compare_parts(
     for name, part in old.items():
         if name in new:
             net = bool(part.get("net") or new[name].get("net"))
-            follows = _ticks_of(name, other_ticks)
+            follows = _ticks_of(name, other_ticks) or name in moved
             for words, size in _differ(part, new[name], frame or Frame(), follows=follows):
                 parts = sentences.setdefault((words, net), {})
                 parts[name] = size if size is None else max(size, parts.get(name) or 0.0)

@@ -23,6 +23,7 @@ from replicate.figures.describe import describe
 from replicate.figures.envelope import envelope
 from replicate.figures.outlines import joined, scattered
 from replicate.figures.polylines import THINNING, Points, simplify
+from replicate.figures.scaling import finite
 from replicate.figures.values import is_function
 
 if TYPE_CHECKING:
@@ -42,6 +43,8 @@ CHORDS = 64
 
 _DIGITS = 9
 _FINE = 1e-8
+# A curve that is longer than this, in axes, cannot be drawn with so few points; one that is drawn this well can.
+_LONG, _COARSE = 60.0, 3e-4
 _ALONG = np.linspace(0.0, 1.0, CHORDS + 1)[1:]
 _END = np.array([1.0])
 
@@ -163,12 +166,30 @@ def _scattered(artist: Artist, name: str, points: Points, axes: Axes) -> _Curve:
 
 
 def _thinned_curve(artist: Artist, name: str, kind: Kind, points: Points, axes: Axes) -> _Curve:
-    thin, error = _thinned(points, axes)
-    if error <= THINNING:
-        return _Curve(artist, name, kind, thin, error)
     units = _in_axes_units(points, axes)
+    with np.errstate(invalid="ignore"):
+        steps = np.abs(np.diff(np.clip(units, -1.0, 2.0), axis=0)).sum(axis=1)
+    if len(points) > 4 * MOST_POINTS and np.nansum(steps) > _LONG:
+        thin, error = _sample(points, units), 1.0  # there is no use in looking for the best few points
+    else:
+        thin, error = _thinned(points, axes)
+    if error <= _COARSE:
+        return _Curve(artist, name, kind, thin, error)
     function = kind == "line" and not isinstance(axes, PolarAxes) and is_function(units)
     return _Curve(artist, name, kind, thin, error, {"dense": envelope(units, function=function)})
+
+
+def _sample(points: Points, units: Points) -> Points:
+    """Return the lowest and the highest of every so many points, for a picture of a curve that is too dense."""
+    step = -(-2 * len(points) // MOST_POINTS)
+    with np.errstate(invalid="ignore"):
+        heights = np.where(finite(units), units[:, 1], np.nan)
+    kept = []
+    for start in range(0, len(points), step):
+        part = heights[start : start + step]
+        if np.isfinite(part).any():
+            kept += sorted({start + int(np.nanargmin(part)), start + int(np.nanargmax(part))})
+    return points[kept]
 
 
 def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Curve]:

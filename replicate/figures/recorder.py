@@ -77,7 +77,7 @@ class RecordingRenderer(RendererBase):
 
     def __init__(self, width: float, height: float) -> None:
         super().__init__()
-        self.width, self.height = width, height
+        self.width, self.height, self.dpi = width, height, DPI
         self.drawn: list[Drawn] = []
         self.artists: list[Artist] = []
         self._groups: list[list[str]] = [[]]
