@@ -1,5 +1,6 @@
 """How a paper describes itself: the words for its exhibits, its printed values, and what computing them gives."""
 
+from replicate.exhibits.claims import Claim, Claims, ClaimVerdict, Consequence, Finding
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.notation import Notation
 from replicate.exhibits.paper import Paper
@@ -7,14 +8,9 @@ from replicate.exhibits.printed import Near
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
     Chart,
-    Claim,
-    Claims,
-    ClaimVerdict,
-    Consequence,
     Exhibit,
     Figure,
     FigureKind,
-    Finding,
     NotComputable,
     Reading,
     Table,

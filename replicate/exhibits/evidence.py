@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from replicate.exhibits.vocabulary import ClaimVerdict
+from replicate.exhibits.claims import ClaimVerdict
 
 
 def number(value: float, digits: int = 4) -> str:

@@ -24,6 +24,13 @@ Answer = Mapping[str, float | str]
 class Exercises:
     """Answers and figures of one handout, by name.
 
+    Attributes
+    ----------
+    answers
+        Functions that compute an answer.
+    figures
+        Figures drawn for the handout.
+
     Examples
     --------
     >>> exercises = Exercises()
@@ -39,6 +46,11 @@ class Exercises:
 
     def answer(self, name: str) -> Callable[[Callable[[], Answer]], Callable[[], Answer]]:
         """Register the decorated function as an answer: named numbers (or words) for the text.
+
+        Parameters
+        ----------
+        name
+            By which the text asks for it.
 
         Raises
         ------
@@ -62,8 +74,10 @@ class Exercises:
 
         Parameters
         ----------
+        name
+            By which the text asks for it.
         title
-            What the file of the drawing is called inside.
+            The title inside the file of the drawing.
         alt
             What the figure shows, in words, for those who cannot see it.
         size

@@ -131,11 +131,22 @@ class Notation:
         return not (self.words or self.date or self.interval == "ends" or self.uncertainty)
 
     def is_blank(self, text: str) -> bool:
-        """Whether a cell holds no printed value."""
+        """Whether a cell holds no printed value.
+
+        Parameters
+        ----------
+        text
+            The cell.
+        """
         return not text or text in self.none
 
     def read(self, text: str) -> Statement:
         """Read a printed text.
+
+        Parameters
+        ----------
+        text
+            The cell, not blank.
 
         Raises
         ------
@@ -154,7 +165,13 @@ class Notation:
         return found
 
     def states(self, text: str) -> Statement | None:
-        """Return what a number or an interval states; ``None`` if the text is neither."""
+        """Return what a number or an interval states; ``None`` if the text is neither.
+
+        Parameters
+        ----------
+        text
+            The cell, without spaces around it.
+        """
         return (self._interval(text) if self.interval else None) or self._number(text)
 
     @property

@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.claims import Claims
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
 from replicate.exhibits.printed import USUAL, Key, Near, read_transcription
@@ -20,7 +21,6 @@ from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_poi
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
     Chart,
-    Claims,
     Exhibit,
     Figure,
     FigureKind,
@@ -47,9 +47,15 @@ class Paper:
     modules
         Modules of the package that define exhibits, in the paper's order. Exhibits, claims and charts appear in this
         order, those of one module as it defines them, whichever module imports which.
+    title, authors, citation, year
+        As the paper gives them; the citation in one line.
     numbered
         Ids of every numbered table, figure and example of the paper: `replicate check` demands that each is in the
         inventory.
+    summary
+        What holds, what does not, and what a reader should use, in one or two sentences of Markdown.
+    exhibits
+        By id, in the paper's order once `load` has been called.
     charts
         Figures for parameters of the reader's choice; the first is the one that ``replicate chart`` draws if none is
         named.
@@ -120,7 +126,7 @@ class Paper:
         return path
 
     def data_of(self, exhibit: Exhibit) -> set[str]:
-        """Return the data files that an exhibit declares, and those that the paper has read so far."""
+        """Return the data files that ``exhibit`` declares, and those that the paper has read so far."""
         return self._data_read | set(getattr(exhibit, "depends", ()))
 
     def _data_place(self, name: str) -> Path:
@@ -143,11 +149,12 @@ class Paper:
         """Return what the paper prints in a table, by row and column, for exhibits that weigh the print as evidence.
 
         Blank cells are left out. The file is not validated here; `replicate.exhibits.printed.read_printed` does that.
+        ``exhibit`` is the table's id.
         """
         return _printed_cells(self.package, exhibit)
 
     def printed_numbers(self, exhibit: str) -> dict[tuple[str, str], float]:
-        """Return the printed cells of a table as numbers."""
+        """Return the printed cells of the table ``exhibit`` as numbers."""
         return {key: float(cell) for key, cell in self.printed_cells(exhibit).items()}
 
     def _add(self, exhibit: Exhibit) -> None:
@@ -179,6 +186,8 @@ class Paper:
 
         Parameters
         ----------
+        id, title, rows, columns, kind, caption, units, significant_digits, printed, notation, near, spans, depends
+            As for `Table`.
         labels
             Display text of row and column keys of this table.
         shared_labels
@@ -231,6 +240,8 @@ class Paper:
 
         Parameters
         ----------
+        id, title, kind, caption, alt, size, stands_for, depends
+            As for `Figure`.
         points
             Whether ``printed/<id>.csv`` holds points read off the original. They are drawn over the figure and make a
             table of their own, ``<id>-points``, judged within their reading error.
@@ -276,6 +287,11 @@ class Paper:
     ) -> Callable[[Callable[..., None]], Callable[..., None]]:
         """Register the decorated function as a chart; it draws on an empty figure, given the parameters by name.
 
+        Parameters
+        ----------
+        id, title, parameters, size
+            As for `Chart`.
+
         Raises
         ------
         PaperDefinitionError
@@ -294,13 +310,25 @@ class Paper:
     def claims(
         self, id: str = "claims", title: str = "Claims made in the text", *, depends: Sequence[str] = ()
     ) -> Claims:
-        """Add a collection of claims."""
+        """Add a collection of claims.
+
+        Parameters
+        ----------
+        id, title, depends
+            As for `Claims`.
+        """
         exhibit = Claims(id, title, depends=self._declared(id, depends))
         self._add(exhibit)
         return exhibit
 
     def not_computable(self, id: str, title: str, reason: str, *, kind: TableKind | FigureKind = "figure") -> None:
-        """Add an exhibit that cannot be recomputed, with the reason."""
+        """Add an exhibit that cannot be recomputed, with the reason.
+
+        Parameters
+        ----------
+        id, title, reason, kind
+            As for `NotComputable`.
+        """
         self._add(NotComputable(id, kind, title, reason))
 
 

@@ -35,7 +35,15 @@ Key = tuple[str, str]
 
 @dataclass(frozen=True)
 class Near:
-    """What is near a print: so many units of its last digit, or such a fraction of it, whichever is more."""
+    """What is near a printed value: within some units of its last digit or a fraction of it, whichever is more.
+
+    Attributes
+    ----------
+    units
+        Units of the last printed digit.
+    fraction
+        Fraction of the printed value.
+    """
 
     units: float = 2.0
     fraction: float = 0.01

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from replicate.exhibits.claims import Finding
 from replicate.exhibits.frames import FrameCells, read_frame
-from replicate.exhibits.vocabulary import Finding
 
 if TYPE_CHECKING:
     import pandas as pd

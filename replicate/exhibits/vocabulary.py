@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.claims import Claims
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
 from replicate.exhibits.printed import USUAL, Key, Near
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
 
 TableKind = Literal["table", "example", "formula"]
 FigureKind = Literal["figure", "diagram"]
-ClaimVerdict = Literal["holds", "fails", "holds-partly", "undecided"]
-Consequence = Literal["none", "comparison", "safety", "formula"]
 
 AS_WRITTEN = "as-written"
 
@@ -48,6 +47,8 @@ class Reading:
         Returns the whole exhibit; rows and columns carry the keys of the printed CSV.
     note
         What is assumed and why, in Markdown; may be empty.
+    module
+        The module in which it is defined; set by itself.
     """
 
     id: str
@@ -63,6 +64,12 @@ class Table:
 
     Attributes
     ----------
+    id
+        The paper's own numbering: ``table-1``, ``example-2-1``, ``eq-7a``.
+    kind
+        ``table``, ``example`` or ``formula``.
+    title, caption
+        One line, and what a reader should know besides, in Markdown.
     rows, columns
         The keys, in the paper's order. With a printed CSV they must agree with it exactly.
     labels
@@ -72,6 +79,10 @@ class Table:
     significant_digits
         Set where the paper prints a fixed number of significant digits and strips trailing zeros ("6.968" then
         means 6.96800). ``None``: the printed string itself tells the precision.
+    printed
+        Whether the paper prints numbers in it, so that there is a printed CSV.
+    readings
+        By id, ``as-written`` first.
     notation
         How values are printed, for the table or by column; plain numbers where nothing is said.
     near
@@ -83,6 +94,8 @@ class Table:
     depends
         Files and folders outside the paper's folder, relative to it, that the readings use without `Paper.data`: when
         one of them changes, the exhibit is computed anew.
+    module
+        The module in which it is defined; set by itself.
     """
 
     id: str
@@ -125,7 +138,13 @@ class Table:
                     raise PaperDefinitionError(msg)
 
     def notation_of(self, column: str) -> Notation:
-        """Return how a column prints its values."""
+        """Return how a column prints its values.
+
+        Parameters
+        ----------
+        column
+            The column's key.
+        """
         return self.notation if isinstance(self.notation, Notation) else self.notation.get(column, PLAIN)
 
     def frame(self, rows: Mapping[str, Row]) -> pd.DataFrame:
@@ -168,7 +187,18 @@ class Table:
     def reading(
         self, id: str, title: str, note: str = ""
     ) -> Callable[[Callable[[], pd.DataFrame]], Callable[[], pd.DataFrame]]:
-        """Register the decorated function as a reading; the first must be ``as-written``."""
+        """Register the decorated function as a reading; the first must be ``as-written``.
+
+        Parameters
+        ----------
+        id, title, note
+            As for `Reading`.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If the id is taken, or the first reading is not ``as-written``.
+        """
 
         def register(compute: Callable[[], pd.DataFrame]) -> Callable[[], pd.DataFrame]:
             if not self.readings and id != AS_WRITTEN:
@@ -185,7 +215,29 @@ class Table:
 
 @dataclass
 class Figure:
-    """A figure or block diagram; ``draw(fig)`` draws on an empty matplotlib figure of the given size in inches."""
+    """A figure or block diagram.
+
+    Attributes
+    ----------
+    id
+        The paper's own numbering: ``fig-4``.
+    kind
+        ``figure`` or ``diagram``.
+    title, caption
+        One line, and what a reader should know besides, in Markdown.
+    draw
+        Draws on an empty matplotlib figure: ``draw(fig)``.
+    alt
+        What it shows, in words, for those who cannot see it.
+    size
+        Width and height in inches.
+    stands_for
+        Set when a simulation stands in for a measurement; shown with the figure.
+    depends
+        Files and folders, as for `Table`.
+    module
+        The module in which it is defined; set by itself.
+    """
 
     id: str
     kind: FigureKind
@@ -194,22 +246,28 @@ class Figure:
     caption: str = ""
     alt: str = ""
     size: tuple[float, float] = (6.4, 4.0)
-    stands_for: str = ""  # set when a simulation stands in for a measurement; shown with the figure
-    depends: tuple[str, ...] = ()  # files and folders, as for a table
+    stands_for: str = ""
+    depends: tuple[str, ...] = ()
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Chart:
-    """A figure that a reader orders for parameters of his own choice (``replicate chart``).
+    """A figure for parameters of the reader's choice (``replicate chart``).
 
     Attributes
     ----------
+    id, title
+        Its name, and one line.
     draw
         Draws on an empty matplotlib figure: ``draw(fig, **values)``; raises `ValueError` with a sentence for a value
         that makes no sense.
     parameters
-        Name of every parameter and what it is, in the order in which they are told. All are numbers.
+        Name and meaning of every parameter, in the order in which they are listed. All are numbers.
+    size
+        Width and height in inches.
+    module
+        The module in which it is defined; set by itself.
     """
 
     id: str
@@ -221,78 +279,22 @@ class Chart:
 
 
 @dataclass(frozen=True)
-class Finding:
-    """What a claim's check found: the verdict, the number that decides it, and the evidence in one or two sentences.
-
-    Attributes
-    ----------
-    verdict
-        ``undecided`` where what the paper gives does not suffice to call the sentence true or false; the evidence
-        says what is missing.
-    """
-
-    verdict: ClaimVerdict
-    value: float
-    evidence: str
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A sentence of the paper that can be true or false.
-
-    Attributes
-    ----------
-    consequence
-        What follows if it is not true: ``comparison`` (a ranking or an inequality of the paper flips), ``safety`` (a
-        statement on stability or robustness does), ``formula`` (who types the printed formula gets a wrong
-        controller), or ``none``.
-    """
-
-    id: str
-    text: str
-    check: Callable[[], Finding]
-    where: str = ""
-    printed: str = ""
-    consequence: Consequence = "none"
-    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
-
-
-@dataclass
-class Claims:
-    """All checkable sentences of a paper (or of one part of it)."""
-
-    id: str
-    title: str
-    kind: Literal["claims"] = "claims"
-    claims: dict[str, Claim] = field(default_factory=dict)
-    depends: tuple[str, ...] = ()  # files and folders, as for a table
-    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
-
-    def claim(
-        self, id: str, text: str, *, where: str = "", printed: str = "", consequence: Consequence = "none"
-    ) -> Callable[[Callable[[], Finding]], Callable[[], Finding]]:
-        """Register the decorated function as the check of a claim.
-
-        Parameters
-        ----------
-        text
-            The claim in our own words. where: section or page. printed: the number the sentence names, if it names one.
-        consequence: what follows if it is not true, as for `Claim`.
-        """
-
-        def register(check: Callable[[], Finding]) -> Callable[[], Finding]:
-            if id in self.claims:
-                msg = f"{self.id}: claim '{id}' is defined twice"
-                raise PaperDefinitionError(msg)
-            self.claims[id] = Claim(id, text, check, where, printed, consequence)
-            return check
-
-        return register
-
-
-@dataclass(frozen=True)
 class NotComputable:
-    """A numbered exhibit of the paper that cannot be recomputed, and why."""
+    """A numbered exhibit of the paper that cannot be recomputed, and why.
+
+    Attributes
+    ----------
+    id
+        The paper's own numbering.
+    kind
+        What it is: ``table``, ``example``, ``formula``, ``figure`` or ``diagram``.
+    title
+        One line.
+    reason
+        Why it cannot be recomputed.
+    module
+        The module in which it is defined; set by itself.
+    """
 
     id: str
     kind: TableKind | FigureKind

@@ -37,7 +37,7 @@ def capture(figure: Figure) -> Record:
     Raises
     ------
     FigureError
-        If it is no figure.
+        If it is not a figure.
 
     Examples
     --------
@@ -54,6 +54,11 @@ def capture(figure: Figure) -> Record:
 
 def compare(accepted: Record, new: Record) -> Comparison:
     """Compare two records of a figure.
+
+    Parameters
+    ----------
+    accepted, new
+        What the figure showed, and what it shows now.
 
     Returns
     -------

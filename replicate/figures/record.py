@@ -61,10 +61,15 @@ class Record:
     def from_json(cls, text: str) -> Record:
         """Read a record.
 
+        Parameters
+        ----------
+        text
+            As `to_json` writes it.
+
         Raises
         ------
         FigureRecordError
-            If the text is no record, or one that a newer version wrote.
+            If the text is not a record, or a newer version wrote it.
         """
         content = _parsed(text)
         version = 1 if isinstance(content, list) else content.get("version") if isinstance(content, dict) else None

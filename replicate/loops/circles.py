@@ -13,7 +13,13 @@ from replicate.loops.errors import LoopError
 
 @dataclass(frozen=True)
 class Circle:
-    """A circle with center ``-center`` on the negative real axis and radius ``radius``; it contains the point -1."""
+    """A circle with center ``-center`` on the negative real axis and radius ``radius``; it contains the point -1.
+
+    Attributes
+    ----------
+    center, radius
+        Distance of the centre from the origin, to the left, and radius; both positive.
+    """
 
     center: float
     radius: float

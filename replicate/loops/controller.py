@@ -87,7 +87,17 @@ class PID:
         measurement_filter_order: int = 1,
         setpoint_filter: float | tuple[tuple[float, ...], tuple[float, ...]] = 0.0,
     ) -> PID:
-        r"""Return :math:`K (1 + 1/(sT_i) + s T_d)`; ``integral_time=inf`` switches the integral part off."""
+        r"""Return :math:`K (1 + 1/(sT_i) + s T_d)`; ``integral_time=inf`` switches the integral part off.
+
+        Parameters
+        ----------
+        gain
+            K, the proportional gain.
+        integral_time, derivative_time
+            Ti and Td.
+        b, c, derivative_filter, measurement_filter, measurement_filter_order, setpoint_filter
+            As for `PID`.
+        """
         return cls(
             gain,
             gain / _checked_time("integral_time", integral_time),
@@ -115,6 +125,17 @@ class PID:
 
         With alpha > 0 the parallel form has a derivative filter :math:`\alpha T_d` and the two are the same transfer
         function; b = c = 1 makes the controller act on the error, as a series controller does.
+
+        Parameters
+        ----------
+        gain
+            K, the gain of the series form.
+        integral_time, derivative_time
+            Ti and Td of the series form.
+        alpha
+            Time constant of the filter of the lead, as a fraction of Td; 0 for none.
+        b, c
+            Set-point weights of the parallel form, as for `PID`.
 
         Examples
         --------
@@ -183,13 +204,25 @@ class PID:
         return np.array([1.0]), np.array([1.0])
 
     def feedback(self, s: ArrayLike) -> ComplexArray:
-        """Evaluate the transfer function from -y to u, measurement filter included."""
+        """Evaluate the transfer function from -y to u, measurement filter included.
+
+        Parameters
+        ----------
+        s
+            Complex frequencies, any shape.
+        """
         s = np.asarray(s, dtype=complex)
         num, den = self.feedback_polynomials()
         return np.asarray(np.polyval(num, s) / np.polyval(den, s))
 
     def feedforward(self, s: ArrayLike) -> ComplexArray:
-        """Evaluate the transfer function from r to u, set-point filter included."""
+        """Evaluate the transfer function from r to u, set-point filter included.
+
+        Parameters
+        ----------
+        s
+            Complex frequencies, any shape.
+        """
         s = np.asarray(s, dtype=complex)
         num, den = self.setpoint_filter_polynomials()
         integral = self.ki / s if self.ki else 0.0
@@ -226,7 +259,17 @@ def _checked_time(name: str, value: float) -> float:
 
 
 class PI(PID):
-    """A PI controller ``u = k (b r - y) + ki * integral(r - y)``, with the optional filters of `PID`."""
+    """A PI controller ``u = k (b r - y) + ki * integral(r - y)``, with the optional filters of `PID`.
+
+    Parameters
+    ----------
+    k, ki
+        Proportional and integral gain.
+    b
+        Set-point weight of the proportional part.
+    measurement_filter, measurement_filter_order, setpoint_filter
+        As for `PID`.
+    """
 
     def __init__(
         self,
@@ -250,5 +293,15 @@ class PI(PID):
 
     @classmethod
     def from_integral_time(cls, gain: float, integral_time: float, b: float = 1.0) -> PI:
-        """Return the PI controller ``K (1 + 1/(s Ti))``."""
+        """Return the PI controller ``K (1 + 1/(s Ti))``.
+
+        Parameters
+        ----------
+        gain
+            K, the proportional gain.
+        integral_time
+            Ti > 0; ``inf`` switches the integral part off.
+        b
+            Set-point weight of the proportional part.
+        """
         return cls(gain, gain / _checked_time("integral_time", integral_time), b)

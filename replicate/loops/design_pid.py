@@ -98,6 +98,13 @@ def search_range(plant: Plant, k: float, ki: float) -> tuple[float, float]:
 
     Half the frequency of the PI design's sensitivity peak, to the middle between the frequencies at which that loop has
     phases of -180 and -270 degrees; ``inf`` where it never gets there.
+
+    Parameters
+    ----------
+    plant
+        The plant.
+    k, ki
+        Gains of the PI design for it.
     """
     loop = Loop(plant, PI(k, ki))
     low = 0.5 * loop.sensitivity_peak().frequency

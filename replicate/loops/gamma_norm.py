@@ -41,7 +41,15 @@ UNBOUNDED = 1e4  # growth between the end of the band and the limit that means "
 
 @dataclass(frozen=True)
 class Weight:
-    """The magnitude of a frequency weight, and its slope d(log |W|)/dw, both over positive frequencies."""
+    """The magnitude of a frequency weight, and its slope d(log |W|)/dw, both over positive frequencies.
+
+    Attributes
+    ----------
+    magnitude
+        |W| over positive frequencies, in rad per unit of time.
+    log_slope
+        d(log |W|)/dw over the same frequencies.
+    """
 
     magnitude: Callable[[Array], Array]
     log_slope: Callable[[Array], Array]
@@ -49,6 +57,11 @@ class Weight:
     @classmethod
     def constant(cls, value: float) -> Weight:
         """Return a constant weight.
+
+        Parameters
+        ----------
+        value
+            |W| > 0.
 
         Raises
         ------
@@ -62,7 +75,13 @@ class Weight:
 
     @classmethod
     def balancing(cls, plant: Plant, controller: PID) -> Weight:
-        r"""Return :math:`|W| = \sqrt{|G_c|/|G|}`, the weight that makes gamma smallest at every frequency (8)."""
+        r"""Return :math:`|W| = \sqrt{|G_c|/|G|}`, the weight that makes gamma smallest at every frequency (8).
+
+        Parameters
+        ----------
+        plant, controller
+            G and Gc.
+        """
         loop = Loop(plant, controller)
 
         def magnitude(w: Array) -> Array:
@@ -161,7 +180,15 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
 
 
 def stability_margin(plant: Plant, controller: PID, weight: Weight | None = None) -> float:
-    """Return the generalised stability margin b = 1/gamma, between 0 and 1; 0 for an unstable loop."""
+    """Return the generalised stability margin b = 1/gamma, between 0 and 1; 0 for an unstable loop.
+
+    Parameters
+    ----------
+    plant, controller
+        The loop.
+    weight
+        As for `gamma_norm`.
+    """
     if not Loop(plant, controller).is_stable():
         return 0.0
     return 1.0 / gamma_norm(plant, controller, weight).value

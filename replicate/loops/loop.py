@@ -26,7 +26,15 @@ SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rou
 
 @dataclass(frozen=True)
 class Response:
-    """Output and control signal of one experiment."""
+    """Output and control signal of one experiment.
+
+    Attributes
+    ----------
+    output
+        The plant output y.
+    control
+        The control signal u.
+    """
 
     output: Signal
     control: Signal
@@ -169,7 +177,13 @@ class Loop:
         return self.respond(until=until).output
 
     def load_step(self, until: float | None = None) -> Signal:
-        """Return the output after a unit step at the plant input, before the dead time, at t = 0."""
+        """Return the output after a unit step at the plant input, before the dead time, at t = 0.
+
+        Parameters
+        ----------
+        until
+            Time until which the response is computed; default: when it has settled.
+        """
         return self.respond(setpoint=0.0, load=1.0, until=until).output
 
     def respond(
@@ -179,6 +193,15 @@ class Loop:
 
         Impulses in the control signal (an ideal derivative acting on the set-point step, weight c) act on the plant but
         are not part of the returned control signal.
+
+        Parameters
+        ----------
+        setpoint, load
+            Heights of the two steps; 0 for none.
+        load_at
+            Time of the load step, at the plant input before the dead time.
+        until
+            Time until which the responses are computed; default: when they have settled.
 
         Raises
         ------
@@ -215,7 +238,13 @@ class Loop:
         )
 
     def steady_state(self, setpoint: float, load: float) -> tuple[float, float]:
-        """Return the steady-state values of output and control signal for the given set-point and load steps."""
+        """Return the steady-state values of output and control signal for the given set-point and load steps.
+
+        Parameters
+        ----------
+        setpoint, load
+            Heights of the two steps.
+        """
         gain = self.plant.gain
         num, den = self.controller.setpoint_filter_polynomials()
         reference = setpoint * float(num[-1] / den[-1])
@@ -270,6 +299,17 @@ def step_responses(
     """Return the outputs of one rational plant under many controllers that differ only in their gains.
 
     With dead time all loops advance together: one matrix product per dead-time interval for the whole sweep.
+
+    Parameters
+    ----------
+    plant
+        A rational plant.
+    controllers
+        The controllers.
+    until
+        Time until which the responses are computed.
+    setpoint, load
+        Heights of the steps of the set point and, at the plant input, of the load.
 
     Raises
     ------

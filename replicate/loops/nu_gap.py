@@ -35,7 +35,13 @@ DECADES = 6  # how far the search goes beyond the corners of the plants, towards
 
 @dataclass(frozen=True)
 class WindingCount:
-    """The winding condition: right half-plane zeros found, and how many there must be."""
+    """The winding condition: right half-plane zeros found, and how many there must be.
+
+    Attributes
+    ----------
+    found, needed
+        Numbers of zeros.
+    """
 
     found: int
     needed: int
@@ -48,6 +54,11 @@ class WindingCount:
 
 def winding_count(first: Plant, second: Plant) -> WindingCount:
     """Count the right half-plane zeros of B1(s) B2(-s) + A1(s) A2(-s), dead times included.
+
+    Parameters
+    ----------
+    first, second
+        The plants, rational up to their dead times.
 
     Raises
     ------
@@ -68,6 +79,15 @@ def chordal_distance(first: Plant, second: Plant, w: Array, weight: Weight | Non
     """Return the chordal distance of two frequency responses at frequencies ``w`` > 0, between 0 and 1.
 
     ``weight`` multiplies both plants, as it does in `gamma_norm`; default none.
+
+    Parameters
+    ----------
+    first, second
+        The plants.
+    w
+        Frequencies, in rad per unit of time.
+    weight
+        Multiplies both plants; default: none.
     """
     w = np.asarray(w, dtype=float)
     scale = np.ones_like(w) if weight is None else weight.magnitude(w)

@@ -27,6 +27,13 @@ class _Located(float):
 class Peak(_Located):
     """The value of an extremum of a time response; a float that also knows when it is reached.
 
+    Parameters
+    ----------
+    value
+        The extremum itself.
+    where
+        Its time.
+
     Attributes
     ----------
     value : float
@@ -43,6 +50,13 @@ class Peak(_Located):
 
 class FrequencyPeak(_Located):
     """The peak of a frequency response; a float that also knows its frequency.
+
+    Parameters
+    ----------
+    value
+        The peak itself.
+    where
+        Its frequency.
 
     Attributes
     ----------

@@ -64,12 +64,29 @@ class Plant:
 
     @classmethod
     def foptd(cls, gain: float, time_constant: float, dead_time: float) -> Plant:
-        r"""Return the first-order plant :math:`K e^{-sL} / (Ts + 1)`; a negative time constant is an unstable one."""
+        r"""Return the first-order plant :math:`K e^{-sL} / (Ts + 1)`; a negative time constant is an unstable one.
+
+        Parameters
+        ----------
+        gain
+            K, the steady-state gain.
+        time_constant
+            T.
+        dead_time
+            L >= 0.
+        """
         return cls([gain], [time_constant, 1.0], dead_time)
 
     @classmethod
     def from_control(cls, system: control.TransferFunction | control.StateSpace, dead_time: float = 0.0) -> Plant:
         """Return the plant of a single-input, single-output python-control system, times a dead time.
+
+        Parameters
+        ----------
+        system
+            The system, in continuous time.
+        dead_time
+            L >= 0.
 
         Raises
         ------
@@ -94,6 +111,13 @@ class Plant:
         ``function`` must accept complex arrays and not overflow where it is small. Time responses continue it into
         the plane cut along the negative real axis where that is possible (as for :math:`e^{-\\sqrt s}`) and check
         that this is so.
+
+        Parameters
+        ----------
+        function
+            f, for arrays of complex numbers.
+        dead_time
+            L >= 0.
         """
         plant = cls([1.0], [1.0], dead_time)
         plant.function = function
@@ -117,7 +141,13 @@ class Plant:
         return np.asarray(self.delay_free(s) * np.exp(-s * self.dead_time))
 
     def log_derivative(self, s: ArrayLike) -> ComplexArray:
-        """Evaluate G'(s)/G(s), dead time included: exact for rational plants, by a sixth-order difference otherwise."""
+        """Evaluate G'(s)/G(s), dead time included: exact for rational plants, by a sixth-order difference otherwise.
+
+        Parameters
+        ----------
+        s
+            Complex frequencies, any shape.
+        """
         s = np.asarray(s, dtype=complex)
         if self.function is None:
             rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(

@@ -20,6 +20,17 @@ ROUNDING = 5e-14  # a response that exceeds its final value by less does so by r
 class Signal(Piecewise):
     """A time response: the piecewise function, and what one asks of a response.
 
+    Parameters
+    ----------
+    breaks
+        Ends of the pieces, increasing, shape (n + 1,).
+    coefficients
+        Chebyshev coefficients of each piece, shape (n, degree + 1).
+    final
+        The value that the response approaches; ``nan`` if there is none.
+    stable
+        Says on request whether the loop is stable; default: it is taken to be.
+
     Notes
     -----
     Times count from the step, dead time included. Overshoot is a fraction of the final value. Where the final value is

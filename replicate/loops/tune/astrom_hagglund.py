@@ -27,6 +27,13 @@ def amigo(plant: Plant, *, derivative: bool = False) -> PI | PID:
 
     with set-point weight b = 0 where the lag dominates, L <= T, else 1. Integrating plants are the limits.
 
+    Parameters
+    ----------
+    plant
+        First order, or integrating, with dead time.
+    derivative
+        Whether the controller is a PID.
+
     Raises
     ------
     LoopError

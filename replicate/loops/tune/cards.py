@@ -19,7 +19,17 @@ from replicate.loops.tune import (
 
 @dataclass(frozen=True)
 class RuleCard:
-    """A callable tuning rule, its source, and the plants it is made for."""
+    """A callable tuning rule, its source, and the plants it is made for.
+
+    Attributes
+    ----------
+    rule
+        Takes a plant and returns a controller.
+    source
+        Where it was published.
+    validity
+        The plants for which it is made, in words.
+    """
 
     rule: Callable[..., PID]
     source: str

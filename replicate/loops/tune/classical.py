@@ -17,6 +17,8 @@ def by_name(plant: Plant, rule: str, variant: str = PRINTED) -> PI:
 
     Parameters
     ----------
+    plant
+        First order with dead time.
     rule
         Its id: ``ziegler-nichols``, ``cohen-coon``, ``itae-setpoint``, ``ise-setpoint``.
     variant

@@ -20,6 +20,8 @@ def lambda_(plant: Plant, tau_cl: float | None = None) -> PI:
 
     Parameters
     ----------
+    plant
+        First order, or integrating, with dead time.
     tau_cl
         Desired closed-loop time constant; by default the lag, for an integrating plant the dead time.
 

@@ -28,6 +28,8 @@ def gain_phase_margins(plant: Plant, gain_margin: float = 3.0, phase_margin: flo
 
     Parameters
     ----------
+    plant
+        Any plant.
     gain_margin
         Factor > 1.
     phase_margin

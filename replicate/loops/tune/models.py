@@ -41,6 +41,11 @@ class LagModel:
 def lag_model(plant: Plant) -> LagModel:
     r"""Return a plant as gain, lags and dead time; zeros in the right half-plane are dead time, :math:`1 - Ts`.
 
+    Parameters
+    ----------
+    plant
+        Rational up to its dead time, with real stable poles and integrators.
+
     Raises
     ------
     LoopError
@@ -61,6 +66,13 @@ def half_rule(plant: Plant, order: int = 1) -> LagModel:
 
     Half of the largest neglected time constant is added to the smallest kept one, the other half and all smaller ones
     to the dead time; with nothing but integrators kept, all of it is dead time.
+
+    Parameters
+    ----------
+    plant
+        As for `lag_model`.
+    order
+        The number of lags.
 
     Raises
     ------

@@ -126,5 +126,11 @@ def _required(record: Mapping[str, Any], name: str) -> Any:
 
 @cache
 def classical_rules(variant: str = PRINTED) -> Mapping[str, TuningRule]:
-    """Return the rules of the literature that more than one paper uses; symbols ``K``, ``tau``, ``L``."""
+    """Return the rules of the literature that more than one paper uses; symbols ``K``, ``tau``, ``L``.
+
+    Parameters
+    ----------
+    variant
+        Which version of each rule; the printed one where a rule has no such version.
+    """
     return load_rules(importlib.resources.files("replicate.loops.tune") / CLASSICAL, variant)

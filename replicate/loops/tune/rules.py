@@ -12,7 +12,15 @@ from replicate.loops.tune.formulas import Formula, Number
 
 @dataclass(frozen=True)
 class Gains:
-    """Gains of a PI controller: proportional gain and integral time of ``kp (1 + 1/(s ti))``."""
+    """Gains of a PI controller: proportional gain and integral time of ``kp (1 + 1/(s ti))``.
+
+    Attributes
+    ----------
+    kp
+        Proportional gain.
+    ti
+        Integral time; ``inf`` without integral action.
+    """
 
     kp: Number
     ti: Number
@@ -24,20 +32,40 @@ class Gains:
 
     @classmethod
     def parallel(cls, kp: Number, ki: Number) -> Gains:
-        """Return the gains of the parallel form ``kp + ki/s``; without integral action ``ti`` is infinite."""
+        """Return the gains of the parallel form ``kp + ki/s``; without integral action ``ti`` is infinite.
+
+        Parameters
+        ----------
+        kp, ki
+            Proportional and integral gain.
+        """
         return cls(kp, kp / ki if ki else math.inf)
 
 
 @dataclass(frozen=True)
 class Range:
-    """The processes for which one of several cases of a rule was made: those with low <= quantity <= high."""
+    """The processes for which one of several cases of a rule was made: those with low <= quantity <= high.
+
+    Attributes
+    ----------
+    quantity
+        Formula of the parameters of a process.
+    low, high
+        Its least and largest value.
+    """
 
     quantity: Formula
     low: float
     high: float
 
     def contains(self, **symbols: Number) -> bool:
-        """Whether the case was made for a process with these parameters."""
+        """Whether the case was made for a process with these parameters.
+
+        Parameters
+        ----------
+        symbols
+            Parameters of the process by name.
+        """
         return self.low <= self.quantity(symbols) <= self.high
 
 
@@ -78,6 +106,11 @@ class TuningRule:
 
     def evaluate(self, **symbols: Number) -> Gains:
         """Return the gains for the given parameters, exactly if parameters and formulas are exact.
+
+        Parameters
+        ----------
+        symbols
+            Parameters of the process by name.
 
         Raises
         ------

@@ -21,6 +21,8 @@ def simc(plant: Plant, tau_c: float | None = None, *, derivative: bool = False) 
 
     Parameters
     ----------
+    plant
+        Gain, real lags, integrators and dead time, as for `lag_model`.
     tau_c
         Desired closed-loop time constant; by default the dead time of the reduced model.
     derivative

@@ -28,6 +28,8 @@ def ziegler_nichols(plant: Plant, kind: Kind = "PI", *, method: Literal["step", 
 
     Parameters
     ----------
+    plant
+        As the method demands.
     kind
         ``P``, ``PI`` or ``PID`` (ideal form).
     method
@@ -62,6 +64,11 @@ def ziegler_nichols(plant: Plant, kind: Kind = "PI", *, method: Literal["step", 
 
 def ultimate(plant: Plant) -> tuple[float, float]:
     """Return gain and period at which proportional control brings a stable or integrating plant to its limit.
+
+    Parameters
+    ----------
+    plant
+        Any stable or integrating plant.
 
     Raises
     ------

@@ -1,0 +1,117 @@
+"""The sentences of a paper that can be true or false, and what checking them finds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Literal
+
+from replicate.errors import PaperDefinitionError
+from replicate.exhibits.order import module_being_imported
+
+ClaimVerdict = Literal["holds", "fails", "holds-partly", "undecided"]
+Consequence = Literal["none", "comparison", "safety", "formula"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What a claim's check found: the verdict, the number that decides it, and the evidence in one or two sentences.
+
+    Attributes
+    ----------
+    verdict
+        ``undecided`` where the paper gives too little to call the sentence true or false; the evidence says what is
+        missing.
+    value
+        The computed number that decides it.
+    evidence
+        One or two sentences, in Markdown.
+    """
+
+    verdict: ClaimVerdict
+    value: float
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A sentence of the paper that can be true or false.
+
+    Attributes
+    ----------
+    id
+        A short ASCII slug.
+    text
+        The claim in our own words, in Markdown.
+    check
+        Returns the finding.
+    where
+        Section or page.
+    printed
+        The number that the sentence names, if it names one.
+    consequence
+        What follows if it is not true: ``comparison`` (a ranking or an inequality of the paper flips), ``safety`` (a
+        statement about stability or robustness does), ``formula`` (the printed formula gives a wrong controller), or
+        ``none``.
+    module
+        The module in which it is defined; set by itself.
+    """
+
+    id: str
+    text: str
+    check: Callable[[], Finding]
+    where: str = ""
+    printed: str = ""
+    consequence: Consequence = "none"
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+
+@dataclass
+class Claims:
+    """All checkable sentences of a paper (or of one part of it).
+
+    Attributes
+    ----------
+    id, title
+        Name of the exhibit, and one line.
+    kind
+        Always ``claims``.
+    claims
+        By id.
+    depends
+        Files and folders, as for `Table`.
+    module
+        The module in which it is defined; set by itself.
+    """
+
+    id: str
+    title: str
+    kind: Literal["claims"] = "claims"
+    claims: dict[str, Claim] = field(default_factory=dict)
+    depends: tuple[str, ...] = ()
+    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+    def claim(
+        self, id: str, text: str, *, where: str = "", printed: str = "", consequence: Consequence = "none"
+    ) -> Callable[[Callable[[], Finding]], Callable[[], Finding]]:
+        """Register the decorated function as the check of a claim.
+
+        Parameters
+        ----------
+        id, text, where, printed, consequence
+            As for `Claim`.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If the id is taken.
+        """
+
+        def register(check: Callable[[], Finding]) -> Callable[[], Finding]:
+            if id in self.claims:
+                msg = f"{self.id}: claim '{id}' is defined twice"
+                raise PaperDefinitionError(msg)
+            self.claims[id] = Claim(id, text, check, where, printed, consequence)
+            return check
+
+        return register
