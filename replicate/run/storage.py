@@ -14,10 +14,9 @@ from collections.abc import Callable, Iterable
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
-from replicate.exhibits import Finding
+from replicate.exhibits import ClaimVerdict, Finding
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.exhibits.statements import given_text
-from replicate.exhibits.vocabulary import ClaimVerdict
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,10 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import get_args
 
-from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, Paper, Table
+from replicate.exhibits import Claim, Claims, ClaimVerdict, Exhibit, Figure, Finding, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
-from replicate.exhibits.vocabulary import ClaimVerdict
 
 _LONGEST_REASON = 400
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from replicate.loops import frequency_response as response
 W = np.geomspace(1e-3, 1e3, 61)
 
 
-def test_the_phase_of_a_lag_with_dead_time_goes_on_below_minus_180():
+def test_the_phase_of_a_lag_with_dead_time_goes_on_below_minus_180() -> None:
     loop = Loop(Plant.foptd(2.0, 3.0, 0.7), PI(0.6, 0.5))
     # P = 2 e^{-0.7s}/(3s+1), C = (0.6 s + 0.5)/s
     bode = response.bode(loop, W)
@@ -32,24 +34,24 @@ def test_the_phase_of_a_lag_with_dead_time_goes_on_below_minus_180():
         (Plant([-2.0, 1.0], [1.0, 3.0, 3.0, 1.0]), PI(0.1, 0.1), -90.0),
     ],
 )
-def test_the_phase_starts_at_minus_90_for_each_integrator(plant, controller, phase):
+def test_the_phase_starts_at_minus_90_for_each_integrator(plant: Plant, controller: PID, phase: float) -> None:
     assert response.bode(Loop(plant, controller), [1e-9]).phase == pytest.approx([phase], abs=1e-5)
 
 
-def test_a_sharp_resonance_turns_the_phase_once():
+def test_a_sharp_resonance_turns_the_phase_once() -> None:
     # 1/(s^2 + 2e-9 s + 1): the phase falls by 180 degrees within 1e-8 of w = 1
     loop = Loop(Plant([1.0], [1.0, 2e-9, 1.0]), PI(0.1))
     assert response.bode(loop, [0.5, 2.0]).phase == pytest.approx([0.0, -180.0], abs=1e-6)
 
 
-def test_frequencies_may_come_in_any_order_and_twice():
+def test_frequencies_may_come_in_any_order_and_twice() -> None:
     loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.6, 0.5))
     forward, backward = response.bode(loop, W), response.bode(loop, [*W[::-1], W[0]])
     np.testing.assert_allclose(backward.phase[:-1][::-1], forward.phase, rtol=1e-13)
     assert backward.phase[-1] == pytest.approx(forward.phase[0], rel=1e-13)
 
 
-def test_the_four_transfer_functions():
+def test_the_four_transfer_functions() -> None:
     loop = Loop(Plant.foptd(2.0, 3.0, 0.7), PI(0.6, 0.5, measurement_filter=0.2))
     s = 1j * W
     P, C = 2 * np.exp(-0.7 * s) / (3 * s + 1), (0.6 + 0.5 / s) / (0.2 * s + 1)
@@ -61,7 +63,7 @@ def test_the_four_transfer_functions():
 
 
 @pytest.mark.parametrize("w", [0.0, -1.0, np.nan, np.inf, "a", None, [1.0, 0.0]])
-def test_what_is_no_frequency(w):
+def test_what_is_no_frequency(w: Any) -> None:
     loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.6, 0.5))
     with pytest.raises(LoopError, match="frequencies must be positive finite numbers"):
         response.bode(loop, w)

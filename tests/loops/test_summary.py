@@ -17,7 +17,7 @@ FIRST_ORDER = Loop(Plant([1.0], [1.0, 1.0]), PI(1.0))  # y = (1 - e^{-2t})/2, u 
 OSCILLATING = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.9, 0.7))
 
 
-def test_the_summary_of_a_first_order_response_is_its_closed_form():
+def test_the_summary_of_a_first_order_response_is_its_closed_form() -> None:
     y = summarize_signal(FIRST_ORDER.step())
     assert y.final == 0.5
     assert (y.overshoot, y.undershoot, y.trough_time) == (0.0, 0.0, 0.0)
@@ -31,25 +31,25 @@ def test_the_summary_of_a_first_order_response_is_its_closed_form():
     assert y.total_variation == pytest.approx(0.5, rel=1e-12)
 
 
-def test_the_control_signal_of_a_first_order_loop_jumps_and_falls_back():
+def test_the_control_signal_of_a_first_order_loop_jumps_and_falls_back() -> None:
     u = FIRST_ORDER.respond().control
     assert total_variation(u) == pytest.approx(1.5, rel=1e-12)
 
 
-def test_the_total_variation_of_a_critically_damped_loop_is_twice_its_gain():
+def test_the_total_variation_of_a_critically_damped_loop_is_twice_its_gain() -> None:
     # e^{-s}/s under k <= 1/e: y rises to 1 without overshoot, u = k (1 - y) jumps to k and falls to zero
     u = Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(1 / np.e)).respond().control
     assert total_variation(u) == pytest.approx(2 / np.e, rel=1e-11)
 
 
-def test_the_total_variation_of_a_ringing_loop_is_a_geometric_series():
+def test_the_total_variation_of_a_ringing_loop_is_a_geometric_series() -> None:
     # 1/(s(s+1)) under unit feedback: extrema 1 +- q^n, q = exp(-pi/sqrt(3)); ups and downs 1 + 2 (q + q^2 + ...)
     y = Loop(Plant([1.0], [1.0, 1.0, 0.0]), PI(1.0)).step()
     q = float(mp.exp(-mp.pi / mp.sqrt(3)))
     assert total_variation(y) == pytest.approx(1 + 2 * q / (1 - q), rel=1e-11)
 
 
-def test_a_summary_holds_the_single_metrics():
+def test_a_summary_holds_the_single_metrics() -> None:
     y = OSCILLATING.step()
     found = summarize_signal(y)
     assert (found.overshoot, found.settling_time, found.iae) == (y.overshoot(), y.settling_time(), y.iae())
@@ -61,19 +61,19 @@ def test_a_summary_holds_the_single_metrics():
     assert found._repr_html_().startswith("<table><tr><th>final</th>")
 
 
-def test_what_a_load_response_does_not_have_is_nan():
+def test_what_a_load_response_does_not_have_is_nan() -> None:
     d = summarize_signal(OSCILLATING.load_step())
     assert np.isnan([d.overshoot, d.undershoot, d.rise_time, d.settling_min]).all()
     assert d.ie == pytest.approx(1 / 0.7, rel=1e-9)
 
 
-def test_an_inverse_response_has_an_undershoot():
+def test_an_inverse_response_has_an_undershoot() -> None:
     y = Loop(Plant([-1.0, 1.0], [1.0, 2.0, 1.0], 0.7), PI(0.3, 0.25)).step()
     assert summarize_signal(y).undershoot == -float(y.trough())
     assert summarize_signal(y * -1.0).undershoot == pytest.approx(-float(y.trough()), rel=1e-12)
 
 
-def test_the_summary_of_a_loop():
+def test_the_summary_of_a_loop() -> None:
     found = summarize_loop(OSCILLATING)
     margins = OSCILLATING.margins()
     assert found.stable
@@ -84,7 +84,7 @@ def test_the_summary_of_a_loop():
     assert "<th>stable</th><td>yes</td>" in found._repr_html_()
 
 
-def test_the_summary_of_an_unstable_loop_says_so():
+def test_the_summary_of_an_unstable_loop_says_so() -> None:
     found = summarize_loop(Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(2.0)))
     assert not found.stable
     assert found.rightmost_pole == pytest.approx(complex(mp.lambertw(-2)), rel=1e-12)
@@ -93,7 +93,7 @@ def test_the_summary_of_an_unstable_loop_says_so():
     assert "step" not in " ".join(found.to_dict())
 
 
-def test_a_frame_holds_the_values():
+def test_a_frame_holds_the_values() -> None:
     y = OSCILLATING.step(until=10.0)
     frame = signal_frame(y, [0.0, 1.5, 2.5])
     assert frame.index.name == "t"
@@ -107,7 +107,7 @@ S = 1j * np.geomspace(0.01, 10.0, 7)
 PADE = (1 - S / 2 + S**2 / 12) / (1 + S / 2 + S**2 / 12)  # second order, dead time 1
 
 
-def test_a_plant_becomes_a_transfer_function_with_pade():
+def test_a_plant_becomes_a_transfer_function_with_pade() -> None:
     system = plant_to_control(Plant.foptd(2.0, 3.0, 1.0), pade=2)
     assert isinstance(system, control.TransferFunction)
     np.testing.assert_allclose(system(S), 2 / (3 * S + 1) * PADE, rtol=1e-12)
@@ -123,7 +123,7 @@ def test_a_plant_becomes_a_transfer_function_with_pade():
         PI(0.6, measurement_filter=0.3),
     ],
 )
-def test_a_loop_becomes_its_transfer_functions(controller):
+def test_a_loop_becomes_its_transfer_functions(controller: PID) -> None:
     loop = Loop(Plant.foptd(2.0, 3.0, 1.0), controller)
     P, C, F = 2 / (3 * S + 1) * PADE, controller.feedback(S), controller.feedforward(S)
     np.testing.assert_allclose(loop_to_control(loop, 2)(S), P * F / (1 + P * C), rtol=1e-11)
@@ -132,7 +132,7 @@ def test_a_loop_becomes_its_transfer_functions(controller):
     np.testing.assert_allclose(controller_to_control(controller)(S), C, rtol=1e-12)
 
 
-def test_what_has_no_transfer_function():
+def test_what_has_no_transfer_function() -> None:
     with pytest.raises(LoopError, match="give the order of its Padé approximation"):
         plant_to_control(Plant.foptd(1.0, 1.0, 1.0))
     with pytest.raises(LoopError, match="n >= 1"):
@@ -140,4 +140,4 @@ def test_what_has_no_transfer_function():
     with pytest.raises(LoopError, match="only a plant that is one rational function"):
         plant_to_control(Plant.from_function(lambda s: np.exp(-np.sqrt(s))), pade=2)
     with pytest.raises(LoopError, match="must be setpoint, load or loop"):
-        loop_to_control(OSCILLATING, 2, "noise")
+        loop_to_control(OSCILLATING, 2, "noise")  # type: ignore[arg-type]
