@@ -34,9 +34,10 @@ from replicate.exhibits.results import ClaimsResult, Result, TableResult
 from replicate.verdicts.rows import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS, VerdictRow
 
 if TYPE_CHECKING:
-    import jinja2
+    from replicate.verdicts.sandbox import SafeEnvironment
 
 _SHOWN_KEYS = 12
+_MOST_DIGITS = 17  # a floating-point number has no more
 _LINE_MARK = re.compile("\ue010(\\d+)\ue011")
 
 
@@ -71,17 +72,16 @@ class Prose:
         self._results = results
         self._verdicts = [row for row in verdicts if row.paper == paper.id]
         self._by_cell = {(row.exhibit, row.row, row.column): row for row in self._verdicts}
-        self._environment = _environment().overlay()
-        self._environment.globals = dict(self._environment.globals)
-        self._environment.globals.update(
-            value=self._value,
-            number=self._number,
-            printed=self._printed,
-            verdict=self._verdict,
-            count=self._count,
-            claim=self._claim,
-        )
-        self._environment.globals.update(functions or {})
+        self._environment = _environment()
+        self._functions: dict[str, object] = {
+            "value": self._value,
+            "number": self._number,
+            "printed": self._printed,
+            "verdict": self._verdict,
+            "count": self._count,
+            "claim": self._claim,
+        }
+        self._functions |= functions or {}
 
     def render(self, text: str, source: str, first_line: int = 1, **variables: object) -> str:
         """Fill in a text.
@@ -102,8 +102,10 @@ class Prose:
         """
         import jinja2
 
+        from replicate.verdicts.sandbox import LimitError
+
         try:
-            return self._environment.from_string(text).render(**variables)
+            return self._environment.fill(text, **self._functions, **variables)
         except jinja2.TemplateSyntaxError as error:
             msg = f"{source}:{first_line + error.lineno - 1}: {error.message}"
             raise TemplateError(msg) from error
@@ -115,9 +117,12 @@ class Prose:
             ValueError,
             ArithmeticError,
             LookupError,
+            LimitError,
+            RecursionError,
+            MemoryError,
         ) as error:
-            line = first_line + _template_line(error) - 1
-            msg = f"{source}:{line}: {error}"
+            line = first_line + (getattr(error, "line", 0) or _template_line(error)) - 1
+            msg = f"{source}:{line}: {str(error) or type(error).__name__}"
             raise TemplateError(msg) from error
 
     def render_lines(self, text: str, source: str) -> list[tuple[str, int]]:
@@ -259,24 +264,26 @@ def check_syntax(text: str, source: str, first_line: int = 1) -> None:
     import jinja2
 
     try:
-        _environment().parse(text)
+        _environment().parsed(text)
     except jinja2.TemplateSyntaxError as error:
         msg = f"{source}:{first_line + error.lineno - 1}: {error.message}"
         raise TemplateError(msg) from error
 
 
 @cache
-def _environment() -> jinja2.Environment:
+def _environment() -> SafeEnvironment:
     import jinja2
 
-    environment = jinja2.Environment(
+    from replicate.verdicts.sandbox import SafeEnvironment
+
+    environment = SafeEnvironment(
         undefined=jinja2.StrictUndefined,
         comment_start_string="<!--#",
         comment_end_string="#-->",
         keep_trailing_newline=True,
         trim_blocks=True,
         lstrip_blocks=True,
-        autoescape=False,  # noqa: S701  -- the output is Markdown
+        autoescape=False,
     )
     environment.filters["digits"] = _digits
     return environment
@@ -284,6 +291,9 @@ def _environment() -> jinja2.Environment:
 
 def _digits(number: float, digits: int = 6) -> str:
     """Write a number with so many significant digits."""
+    if not 1 <= digits <= _MOST_DIGITS:
+        msg = f"the number of digits must be 1 to {_MOST_DIGITS}, not {digits}"
+        raise ValueError(msg)
     return f"{float(number) + 0.0:.{digits}g}"  # + 0.0 turns -0 into 0
 
 
