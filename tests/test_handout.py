@@ -327,6 +327,45 @@ def test_errors_name_the_place(make: Make, text: str, message: str) -> None:
         pdf(make(HEAD + text))
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        '`#read("/etc/passwd")`{=typst}',
+        '```{=typst}\n#include "/etc/passwd"\n```',
+        "`<script>`{=html}",
+        "<script>alert(1)</script>",
+        '<img src="file:///etc/passwd">',
+        '<iframe src="/etc/passwd"></iframe>',
+        "<!-- a comment -->",
+        "\\input{/etc/passwd}",
+        "\\begin{center}x\\end{center}",
+        "![a picture](/etc/passwd)",
+        "![a picture](main.typ)",
+        "{% include '/etc/passwd' %}",
+    ],
+)
+def test_what_could_read_files_or_be_raw_is_refused_by_its_line(make: Make, text: str) -> None:
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:1[01]: .*(is not allowed|is not available)"):
+        make(f"{HEAD}A line.\n{text}\n")
+
+
+@pytest.mark.parametrize("text", ['#read("/etc/passwd")', '#include "/etc/passwd"', '#image("/etc/passwd")'])
+def test_words_of_typst_are_words(make: Make, text: str) -> None:
+    made = markup(make(f"{HEAD}{text}\n"))
+    assert f"\\{text}" in made.replace('\\"', '"')
+
+
+def test_a_formula_reads_no_file(make: Make) -> None:
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:9: pandoc cannot convert"):
+        make(f"{HEAD}$\\input{{/etc/passwd}}$\n")
+
+
+@pytest.mark.parametrize("leave", ["import sys; sys.exit(0)", "raise SystemExit", "quit()"])
+def test_a_program_that_leaves_is_named_by_its_line(make: Make, leave: str) -> None:
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:10: the program fails: "):
+        make(f"{HEAD}```{{.python .run}}\n{leave}\n```\n")
+
+
 def test_row_heads_that_are_not_found_are_an_error() -> None:
     with pytest.raises(ValueError, match="0 row heads in the tables of the PDF, expected: 3"):
         with_row_heads(b"%PDF-1.7\ntrailer\n<</Size 1>>\nstartxref\n9\n%%EOF", rows=3)

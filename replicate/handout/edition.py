@@ -14,7 +14,7 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import Results
-from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, located
+from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, line_of, located
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
 from replicate.handout.tree import Blocks, Element, classes, div, elements, plain, string, text_of, transform
@@ -24,10 +24,17 @@ from replicate.verdicts.rows import VerdictRow
 FILE = "handout.md"
 
 # "(5) and (6) give ..." is a sentence about equations, not item 5 of a list, and "<" is a less-than sign.
+# What is raw is read as such, so that it can be refused with its line: the text says what, not how in one format.
 _FORMAT = (
     "markdown-auto_identifiers-implicit_figures-yaml_metadata_block-fancy_lists-example_lists-citations"
-    "-raw_html-raw_tex-raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
+    "+raw_html+raw_tex+raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
 )
+_OPTIONS = ["--sandbox", "--fail-if-warnings", "--columns=10000"]
+_FOREIGN = {
+    "RawInline": "raw text for one format",
+    "RawBlock": "raw text for one format",
+    "Image": "an image from a file",
+}
 _EXERCISE_LEVEL = 2  # below the section that they stand in, whatever the text writes
 _MARK = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
@@ -96,9 +103,7 @@ def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
     """Read Markdown into pandoc's tree."""
     text = "\n".join(line for line, _ in lines)
     try:
-        tree = json.loads(
-            pypandoc.convert_text(text, "json", format=_FORMAT, extra_args=["--fail-if-warnings", "--columns=10000"])
-        )
+        tree = json.loads(pypandoc.convert_text(text, "json", format=_FORMAT, extra_args=_OPTIONS))
     except RuntimeError as error:
         words = " ".join(str(error).split())
         found = re.search(r"\[WARNING\] (.*?)(?: Failing because|$)", words)
@@ -107,7 +112,19 @@ def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
         msg = f"{source}:{line}: pandoc cannot read the text: {found[1] if found else words}"
         raise TemplateError(msg) from error
     blocks: Blocks = tree["blocks"]
+    for element in elements(blocks):
+        if element["t"] in _FOREIGN:
+            raise _refused(element, lines, source)
     return blocks
+
+
+def _refused(element: Element, lines: Sequence[tuple[str, int]], source: str) -> TemplateError:
+    """Return an error about something that a handout must not hold: it could read files, or differ by format."""
+    text = element["c"][2][0] if element["t"] == "Image" else element["c"][1]
+    shown = " ".join(text.split())[:60]
+    instead = "figures are placed with figure(...)" if element["t"] == "Image" else r"write \< or \\ for the sign"
+    msg = f"{source}:{line_of(text, lines)}: {_FOREIGN[element['t']]} is not allowed: {shown}; {instead}"
+    return TemplateError(msg)
 
 
 def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:

@@ -66,7 +66,7 @@ def convert(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
 def _written(formulas: Sequence[Formula], target: str) -> list[str]:
     """Write each formula in a paragraph of its own, and cut the result at the marks between them."""
     document = "\n\n".join(f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas)
-    options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
+    options = ["--sandbox", "--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
     text = str(pypandoc.convert_text(document, target, format="markdown", extra_args=options))
     parts = [part.strip() for part in text.replace("\r\n", "\n").split("\ue004")[1:]]
     if target == "typst":

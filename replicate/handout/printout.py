@@ -83,7 +83,7 @@ def markup(document: Document) -> str:
     tree = {"pandoc-api-version": _api_version(), "meta": {}, "blocks": blocks}
     body = str(
         pypandoc.convert_text(
-            json.dumps(tree), "typst", format="json", extra_args=["--wrap=none", "--fail-if-warnings"]
+            json.dumps(tree), "typst", format="json", extra_args=["--sandbox", "--wrap=none", "--fail-if-warnings"]
         )
     )
     settings = {

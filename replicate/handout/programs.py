@@ -61,7 +61,7 @@ def _run(code: str, names: dict[str, Any], source: str, first: int) -> str:
     try:
         with redirect_stdout(written):
             exec(compile(code, "<program>", "exec"), names)  # noqa: S102  -- the paper's own text
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         failed = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<program>"]
         line = (failed[-1].lineno if failed else getattr(error, "lineno", 1)) or 1
         msg = f"{source}:{first + line - 1}: the program fails: {type(error).__name__}: {error}"

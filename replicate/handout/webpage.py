@@ -27,7 +27,7 @@ def webpage(document: Document) -> str:
             json.dumps(empty | {"blocks": blocks}),
             "html",
             format="json",
-            extra_args=["--wrap=none", "--fail-if-warnings", "--shift-heading-level-by=1"],
+            extra_args=["--sandbox", "--wrap=none", "--fail-if-warnings", "--shift-heading-level-by=1"],
         )
     )
     return (
