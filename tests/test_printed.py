@@ -13,7 +13,7 @@ from replicate.exhibits.matching import match
 from replicate.exhibits.numerals import parse_number
 from replicate.exhibits.printed import PrintedValue, read_printed
 
-ALLOWED = "digits with an optional sign, decimal point, repeating decimals in brackets and exponent"
+ALLOWED = r"digits with an optional sign, .*, \? for a lost last digit, exponent"
 
 
 def table(significant_digits: int | None = None) -> Table:

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field
 
 from replicate.display import numbers
 from replicate.exhibits import Reading, Table
+from replicate.exhibits.conventions import tallies
 from replicate.exhibits.frames import FrameCells
 from replicate.exhibits.matching import Match
-from replicate.exhibits.printed import Key
-from replicate.exhibits.results import TableResult
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.results import Ranges, TableResult
 from replicate.verdicts.rows import HOLDING, VerdictRow
 
 _MANY_CELLS = 6
@@ -18,12 +19,26 @@ _MANY_CELLS = 6
 
 @dataclass(frozen=True)
 class Value:
-    """What one reading computes for a cell: as shown, with all digits, and how it compares with the print."""
+    """What one reading computes for a cell.
+
+    Attributes
+    ----------
+    text, full
+        The number as shown, and with all digits.
+    match
+        How it compares with the print.
+    range
+        Its range over the printed inputs of the reading, as text; empty if there is none.
+    point
+        The inputs at which most of the case's cells hold together, as text; empty if there is no range.
+    """
 
     reading: Reading
     text: str
     full: str
     match: Match
+    range: str = ""
+    point: str = ""
 
 
 @dataclass(frozen=True)
@@ -65,6 +80,7 @@ class TableView:
     notes: list[Note]
     errors: dict[str, str]
     verdicts: list[VerdictRow]
+    shortened: list[tuple[str, str]] = field(default_factory=list)  # quantities with truncated cells, and the count
 
     @staticmethod
     def lines(row: list[Cell]) -> list[tuple[list[str], list[Value]]]:
@@ -101,7 +117,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
     notes = _notes(by_cell.values())
     note_of = {where: note.number for note, cells in notes for where in cells}
     cells = {
-        (row, column): _cell(table, frames, (row, column), by_cell.get((row, column)))
+        (row, column): _cell(table, result, frames, (row, column), by_cell.get((row, column)))
         for row in rows
         for column in columns
     }
@@ -120,10 +136,13 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         [note for note, _ in notes],
         dict(result.errors),
         list(by_cell.values()),
+        _shortened(table, by_cell.values()),
     )
 
 
-def _cell(table: Table, frames: Mapping[str, FrameCells], key: Key, verdict: VerdictRow | None) -> Cell:
+def _cell(
+    table: Table, result: TableResult, frames: Mapping[str, FrameCells], key: Key, verdict: VerdictRow | None
+) -> Cell:
     judged = {one.reading: one for one in verdict.values} if verdict else {}
     printed = verdict.value if verdict else None
     values = []
@@ -135,8 +154,31 @@ def _cell(table: Table, frames: Mapping[str, FrameCells], key: Key, verdict: Ver
             values.append(Value(reading, word, word if found.kind != "none" else "", found))
             continue
         number = cells.numbers.get(key)
-        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found))
+        texts = _range(table, result.ranges.get(id), key, printed)
+        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found, *texts))
     return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
+
+
+def _range(table: Table, ranges: Ranges | None, key: Key, printed: PrintedValue | None) -> tuple[str, str]:
+    """Return the range of a cell over the printed inputs, and the inputs at which its case holds best, as texts."""
+    if ranges is None or key not in ranges.lower:
+        return "", ""
+    low, high = (numbers.shown(end, printed) for end in (ranges.lower[key], ranges.upper[key]))
+    point = ranges.points[table.case(*key)]
+    inputs = ", ".join(f"{name} = {numbers.shown(number, None)}" for name, number in point.items())
+    return (f"{low} to {high}" if low and high else ""), inputs
+
+
+def _shortened(table: Table, verdicts: Iterable[VerdictRow]) -> list[tuple[str, str]]:
+    """Return, for every quantity of which some cell is truncated or all are rounded, how many cells are which."""
+    matches = {
+        (verdict.row, verdict.column): one.match
+        for verdict in verdicts
+        for one in verdict.values
+        if one.reading == verdict.reading
+    }
+    counts = tallies(table, matches)
+    return [(quantity, count.sentence) for quantity, count in counts.items() if count.truncated]
 
 
 def _texts(cell: Cell) -> list[str]:

@@ -16,9 +16,11 @@ from replicate.exhibits.printed import USUAL, Near, PrintedValue
 from replicate.exhibits.statements import compare_statement
 
 MatchKind = Literal["equal", "consistent", "near", "differs", "none"]
-MatchHow = Literal["rounded", "truncated", ""]
+MatchHow = Literal["rounded", "truncated", "either", ""]
 
 COMPUTED_DIGITS = 12
+
+_BEST_FIRST: dict[MatchKind, int] = {"equal": 0, "consistent": 1, "near": 2, "differs": 3, "none": 4}
 
 # Wide enough that sums of a 12-digit number and a printed one, of any magnitudes that can tie, are exact.
 _PRECISION = 200
@@ -35,7 +37,8 @@ class Match:
         that round to what the paper prints give a value that does. ``near``: within 2 units of the last printed
         digit or 1 % of the print. ``differs``: none of these. ``none``: nothing was computed.
     how
-        For ``equal``: ``rounded`` or, where only that fits, ``truncated``.
+        For a value that holds: ``rounded``, ``truncated``, or ``either`` where both fit. One that holds by the
+        convention of other columns only is ``near``, and keeps this (`replicate.exhibits.conventions`).
     """
 
     kind: MatchKind
@@ -86,7 +89,7 @@ def match(
     Examples
     --------
     >>> match("6.968", 6.96849)
-    Match(kind='equal', how='rounded')
+    Match(kind='equal', how='either')
     >>> match("6.968", 6.9689)
     Match(kind='equal', how='truncated')
     >>> match("6.9680", 6.9689).kind, match("6.968", 7.1).kind, match("6.968", None).kind
@@ -105,7 +108,9 @@ def match(
         compare = partial(_compare, near=printed.near)
         if not printed.states_number or word:
             return Match(compare_statement(printed.statement, text, lambda *numbers: compare(*numbers).kind))
-        return compare(printed.value, printed.unit, Decimal(text))
+        found = [compare(value, printed.unit, Decimal(text)) for value in printed.candidates]
+    best = min(found, key=lambda one: _BEST_FIRST[one.kind])
+    return replace(best, how="either") if printed.lost_digit and best.how else best
 
 
 def meets(printed: str, computed: float) -> bool:
@@ -127,12 +132,11 @@ def _within(printed: Decimal, error: Decimal, computed: Decimal) -> Match:
 
 def _compare(printed: Decimal, unit: Decimal, computed: Decimal, near: Near = USUAL) -> Match:
     distance = abs(computed - printed)
-    if 2 * distance <= unit:
-        return Match("equal", "rounded")
+    rounds = 2 * distance <= unit
     # Truncation goes toward zero: the computed value lies farther out, on the same side.
-    outward = abs(computed) - abs(printed)
-    if 0 <= outward < unit and computed * printed >= 0:
-        return Match("equal", "truncated")
+    truncates = 0 <= abs(computed) - abs(printed) < unit and computed * printed >= 0
+    if rounds or truncates:
+        return Match("equal", "either" if rounds and truncates else "rounded" if rounds else "truncated")
     if distance <= Decimal(str(near.units)) * unit or distance <= Decimal(str(near.fraction)) * abs(printed):
         return Match("near")
     return Match("differs")

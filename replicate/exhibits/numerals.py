@@ -1,4 +1,7 @@
-"""Numbers as papers print them in plain notation: sign, digits, decimal point, repeating decimals, exponent."""
+"""Numbers as papers print them in plain notation: sign, digits, decimal point, repeating decimals, exponent.
+
+A last digit that cannot be read in the copy at hand is a question mark: ``1.2?`` is one of 1.20 to 1.29.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,15 @@ import re
 from decimal import Decimal
 
 MINUS = "\N{MINUS SIGN}"
-ALLOWED = "digits with an optional sign, decimal point, repeating decimals in brackets and exponent"
+LOST = "?"
+ALLOWED = (
+    "digits with an optional sign, decimal point, repeating decimals in brackets, ? for a lost last digit, exponent"
+)
 
 #: A longer number, or one beyond any computed one, is more likely a slip than a print.
 MOST_DIGITS, LARGEST_EXPONENT = 100, 300
 
-_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+|\d*\.\d*\[(?P<repeated>\d+)\])([eE][+-]?\d{1,4})?", re.ASCII)
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*\??|\.\d+\??|\d*\.\d*\[(?P<repeated>\d+)\])([eE][+-]?\d{1,4})?", re.ASCII)
 _REPEATED_DIGITS = 30  # many more than comparisons use
 
 
@@ -22,6 +28,8 @@ def parse_number(text: str) -> Decimal | None:
     --------
     >>> parse_number("6.9680")
     Decimal('6.9680')
+    >>> parse_number("1.2?")
+    Decimal('1.20')
     >>> parse_number("0.91[6]").quantize(Decimal("1e-9"))
     Decimal('0.916666667')
     >>> parse_number("1,2") is None
@@ -34,7 +42,7 @@ def parse_number(text: str) -> Decimal | None:
     digits = found["repeated"]
     if digits:
         plain = plain.replace(f"[{digits}]", (digits * _REPEATED_DIGITS)[:_REPEATED_DIGITS])
-    number = Decimal(plain)
+    number = Decimal(plain.replace(LOST, "0"))
     return number if not number or abs(number.adjusted()) <= LARGEST_EXPONENT else None
 
 

@@ -10,13 +10,13 @@ from functools import cache, partial
 from importlib.resources.abc import Traversable
 from pathlib import Path, PurePosixPath
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
-from replicate.exhibits.printed import USUAL, Key, Near, read_transcription
+from replicate.exhibits.printed import USUAL, Key, Near, PrintedValue, read_transcription
 from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_points
 from replicate.exhibits.vocabulary import (
     AS_WRITTEN,
@@ -155,7 +155,7 @@ class Paper:
 
     def printed_numbers(self, exhibit: str) -> dict[tuple[str, str], float]:
         """Return the printed cells of the table ``exhibit`` as numbers."""
-        return {key: float(cell) for key, cell in self.printed_cells(exhibit).items()}
+        return {key: float(PrintedValue(cell).value) for key, cell in self.printed_cells(exhibit).items()}
 
     def _add(self, exhibit: Exhibit) -> None:
         if exhibit.id in self.exhibits:
@@ -181,6 +181,7 @@ class Paper:
         near: Near = USUAL,
         spans: Mapping[Key, Sequence[Key]] | None = None,
         depends: Sequence[str] = (),
+        cases: Literal["rows", "columns", ""] = "",
     ) -> Table:
         """Add a table, worked example or formula; ``printed=False`` where the paper prints no numbers in it.
 
@@ -218,6 +219,7 @@ class Paper:
             near=near,
             spans=spans or {},
             depends=self._declared(id, depends),
+            cases=cases,
         )
         exhibit.check()
         self._add(exhibit)

@@ -4,7 +4,7 @@ A printed CSV looks like the paper's own table, so that a person can proofread i
 column holds the row keys, the header the column keys, and a cell the paper leaves blank is blank. Trailing
 zeros are information: ``6.968`` and ``6.9680`` have different units in the last place and so accept
 different computed values. Digits under an overbar stand in brackets: ``0.91[6]`` is 0.91666..., which says all
-of its digits.
+of its digits. A digit that cannot be read in the copy at hand is a question mark: ``1.2?`` is one of 1.20 to 1.29.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cached_property
 from importlib.resources.abc import Traversable
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from replicate.errors import PrintedFileError
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.notation import PLAIN, Notation, Statement
-from replicate.exhibits.numerals import last_place
+from replicate.exhibits.numerals import LOST, last_place
 from replicate.exhibits.statements import scaled
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class PrintedValue:
     ----------
     text
         The print: digits with an optional sign (``-`` or U+2212), decimal point and exponent; digits under an
-        overbar in brackets; or what `notation` allows besides.
+        overbar in brackets, a last digit that is lost as ``?``; or what `notation` allows besides.
     row, column
         The keys of its cell.
     line
@@ -116,6 +116,25 @@ class PrintedValue:
         if self.statement.kind in {"word", "date"}:
             return Decimal("NaN")
         return scaled(self.statement)[0]
+
+    @property
+    def lost_digit(self) -> bool:
+        """Whether the last digit cannot be read in the copy at hand."""
+        return LOST in self.statement.text
+
+    @property
+    def candidates(self) -> list[Decimal]:
+        """What may stand there: the number, or ten of them where the last digit is lost."""
+        if not self.lost_digit:
+            return [self.value]
+        texts = [self.statement.text.replace(LOST, str(digit)) for digit in range(10)]
+        return [scaled(replace(self.statement, text=text))[0] for text in texts]
+
+    @property
+    def interval(self) -> tuple[Decimal, Decimal]:
+        """The smallest and the largest number that rounds to the print."""
+        values = self.candidates
+        return min(values) - self.unit / 2, max(values) + self.unit / 2
 
     @property
     def repeating(self) -> bool:

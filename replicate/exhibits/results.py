@@ -12,9 +12,30 @@ from typing import TYPE_CHECKING, Any
 
 from replicate.exhibits.claims import Finding
 from replicate.exhibits.frames import FrameCells, read_frame
+from replicate.exhibits.printed import Key
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """What a reading with printed inputs gives while these run through the intervals of their last digits.
+
+    Attributes
+    ----------
+    lower, upper
+        The range of the quantity in a cell, by (row, column); NaN where it does not exist for all inputs.
+    joint
+        Its value at the point of the case, by (row, column).
+    points
+        By case: the inputs at which most of its printed quantities hold together, by quantity.
+    """
+
+    lower: dict[Key, float] = field(default_factory=dict)
+    upper: dict[Key, float] = field(default_factory=dict)
+    joint: dict[Key, float] = field(default_factory=dict)
+    points: dict[str, dict[str, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -28,12 +49,15 @@ class TableResult:
         failed.
     errors
         By reading id: a one-line reason for each reading that raised.
+    ranges
+        By reading id, for the readings with printed inputs.
     """
 
     paper: str
     exhibit: str
     frames: dict[str, pd.DataFrame] = field(default_factory=dict)
     errors: dict[str, str] = field(default_factory=dict)
+    ranges: dict[str, Ranges] = field(default_factory=dict)
 
     @cached_property
     def cells(self) -> Mapping[str, FrameCells]:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
@@ -32,6 +32,8 @@ FigureKind = Literal["figure", "diagram"]
 
 AS_WRITTEN = "as-written"
 
+Compute = TypeVar("Compute", bound=Callable[..., Any])
+
 
 @dataclass(frozen=True)
 class Reading:
@@ -44,17 +46,27 @@ class Reading:
     title
         One line for table headings and the terminal.
     compute
-        Returns the whole exhibit; rows and columns carry the keys of the printed CSV.
+        Returns the whole exhibit; rows and columns carry the keys of the printed CSV. With `inputs`, returns the
+        quantities of one case instead: ``compute(case, given)``, where `given` has a number for each input.
     note
         What is assumed and why, in Markdown; may be empty.
+    inputs
+        The quantities that the reading takes from the print. Each stands for all numbers that round to it.
+    inputs_of
+        Those of the cases that take others.
+    tried
+        How many alternatives were tried for each free choice of the reading, by what was chosen.
     module
         The module in which it is defined; set by itself.
     """
 
     id: str
     title: str
-    compute: Callable[[], pd.DataFrame]
+    compute: Callable[..., Any]
     note: str = ""
+    inputs: tuple[str, ...] = ()
+    inputs_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    tried: Mapping[str, int] = field(default_factory=dict)
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
@@ -94,6 +106,9 @@ class Table:
     depends
         Files and folders outside the paper's folder, relative to it, that the readings use without `Paper.data`: when
         one of them changes, the exhibit is computed anew.
+    cases
+        Whether the rows or the columns are the cases for which the other keys, the quantities, are printed. Not
+        given: the rows, or the column if there is just one.
     module
         The module in which it is defined; set by itself.
     """
@@ -114,6 +129,7 @@ class Table:
     spans: Mapping[Key, Sequence[Key]] = field(default_factory=dict)
     points: Sequence[Point] = ()
     depends: tuple[str, ...] = ()
+    cases: Literal["rows", "columns", ""] = ""
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def check(self) -> None:
@@ -184,15 +200,49 @@ class Table:
         """Return the table with nothing computed: what a reading returns where all inputs are missing."""
         return self.frame({row: [math.nan] * len(self.columns) for row in self.rows})
 
+    @property
+    def cases_are_columns(self) -> bool:
+        """Whether each column is a case and each row a quantity."""
+        return self.cases == "columns" or (not self.cases and len(self.columns) == 1)
+
+    def case(self, row: str, column: str) -> str:
+        """Return the case to which a cell belongs."""
+        return column if self.cases_are_columns else row
+
+    def quantity(self, row: str, column: str) -> str:
+        """Return the quantity that a cell holds."""
+        return row if self.cases_are_columns else column
+
+    def key(self, case: str, quantity: str) -> tuple[str, str]:
+        """Return row and column of a quantity of a case."""
+        return (quantity, case) if self.cases_are_columns else (case, quantity)
+
     def reading(
-        self, id: str, title: str, note: str = ""
-    ) -> Callable[[Callable[[], pd.DataFrame]], Callable[[], pd.DataFrame]]:
+        self,
+        id: str,
+        title: str,
+        note: str = "",
+        *,
+        inputs: Sequence[str] = (),
+        inputs_of: Mapping[str, Sequence[str]] | None = None,
+        tried: Mapping[str, int] | None = None,
+    ) -> Callable[[Compute], Compute]:
         """Register the decorated function as a reading; the first must be ``as-written``.
 
         Parameters
         ----------
         id, title, note
             As for `Reading`.
+        inputs
+            Quantities of this table that the reading takes from the print. The function is then called as
+            ``compute(case, given)``, with the numbers by quantity in `given`, and returns numbers by quantity. It is
+            called for the printed numbers and for others that round to them, and returns nothing for a quantity
+            that it does not compute. ``"w0@first"`` is the quantity ``w0`` of the case ``first``. A case that prints
+            not all of the inputs is left out.
+        inputs_of
+            The inputs of single cases where they are others.
+        tried
+            How many alternatives were tried for each free choice, as ``{"order of the Padé model": 4}``.
 
         Raises
         ------
@@ -200,14 +250,22 @@ class Table:
             If the id is taken, or the first reading is not ``as-written``.
         """
 
-        def register(compute: Callable[[], pd.DataFrame]) -> Callable[[], pd.DataFrame]:
+        def register(compute: Compute) -> Compute:
             if not self.readings and id != AS_WRITTEN:
                 msg = f"{self.id}: the first reading must be '{AS_WRITTEN}', not '{id}'"
                 raise PaperDefinitionError(msg)
             if id in self.readings:
                 msg = f"{self.id}: reading '{id}' is defined twice"
                 raise PaperDefinitionError(msg)
-            self.readings[id] = Reading(id, title, compute, note)
+            self.readings[id] = Reading(
+                id,
+                title,
+                compute,
+                note,
+                tuple(inputs),
+                {case: tuple(others) for case, others in (inputs_of or {}).items()},
+                dict(tried or {}),
+            )
             return compute
 
         return register

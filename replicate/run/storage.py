@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 from replicate.exhibits import ClaimVerdict, Finding
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.exhibits.statements import given_text
+from replicate.run.stored_ranges import ranges_from_data, ranges_to_data
 
 if TYPE_CHECKING:
     import pandas as pd
 
 #: Changes with the form of what is written here.
-SCHEMA = 1
+SCHEMA = 2
 
 _POINT = ("panel", "curve", "x", "y")
 _MOST_SHOWN = 60
@@ -41,7 +42,11 @@ def to_text(result: Result) -> str:
         If a cell of a table, or the value of a claim, is nothing that JSON can hold; the message names the cell.
     """
     if isinstance(result, TableResult):
-        fields = {"frames": {id: _frame(frame) for id, frame in result.frames.items()}, "errors": result.errors}
+        fields = {
+            "frames": {id: _frame(frame) for id, frame in result.frames.items()},
+            "errors": result.errors,
+            "ranges": {id: ranges_to_data(ranges) for id, ranges in result.ranges.items()},
+        }
     elif isinstance(result, FigureResult):
         fields = {
             "svg": result.svg,
@@ -88,7 +93,8 @@ def from_text(text: str | bytes) -> Result:
 
 def _read_table(paper: str, exhibit: str, given: dict[str, Any]) -> TableResult:
     frames = {id: _to_frame(frame) for id, frame in _as(dict, given["frames"]).items()}
-    return TableResult(paper, exhibit, frames, _texts(given["errors"]))
+    ranges = {id: ranges_from_data(data) for id, data in _as(dict, given["ranges"]).items()}
+    return TableResult(paper, exhibit, frames, _texts(given["errors"]), ranges)
 
 
 def _read_figure(paper: str, exhibit: str, given: dict[str, Any]) -> FigureResult:
@@ -116,7 +122,7 @@ def _read_claims(paper: str, exhibit: str, given: dict[str, Any]) -> ClaimsResul
 
 
 _READERS: dict[str, tuple[tuple[str, ...], Callable[[str, str, dict[str, Any]], Result]]] = {
-    "TableResult": (("frames", "errors"), _read_table),
+    "TableResult": (("frames", "errors", "ranges"), _read_table),
     "FigureResult": (("svg", "png", "curves", "axes", "error", "figure"), _read_figure),
     "ClaimsResult": (("findings", "errors"), _read_claims),
 }

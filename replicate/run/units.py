@@ -15,7 +15,9 @@ from typing import get_args
 
 from replicate.exhibits import Claim, Claims, ClaimVerdict, Exhibit, Figure, Finding, Paper, Table
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
+from replicate.exhibits.printed import read_printed
+from replicate.exhibits.results import ClaimsResult, FigureResult, Ranges, Result, TableResult
+from replicate.exhibits.rounded_inputs import compute_reading
 
 _LONGEST_REASON = 400
 
@@ -62,7 +64,7 @@ def compute(unit: Unit, without: Collection[str] = (), before: Callable[[str], o
     paper: Paper = importlib.import_module(unit.package).paper
     exhibit = paper.load().exhibits[unit.exhibit]
     if isinstance(exhibit, Table):
-        return _compute_reading(unit, exhibit)
+        return _compute_reading(unit, paper, exhibit)
     if isinstance(exhibit, Figure):
         return _draw(unit, exhibit)
     if isinstance(exhibit, Claims):
@@ -118,17 +120,23 @@ def _text(value: object) -> str:
     return line if len(line) <= _LONGEST_REASON else f"{line[:_LONGEST_REASON]} ..."
 
 
-def _compute_reading(unit: Unit, table: Table) -> TableResult:
+def _compute_reading(unit: Unit, paper: Paper, table: Table) -> TableResult:
     import pandas as pd
 
     try:
-        frame: object = table.readings[unit.reading].compute()
+        reading, ranges = table.readings[unit.reading], dict[str, Ranges]()
+        frame: object
+        if reading.inputs:
+            printed = read_printed(paper.folder() / "printed" / f"{table.id}.csv", table)
+            frame, ranges[reading.id] = compute_reading(table, reading, printed)
+        else:
+            frame = reading.compute()
         if not isinstance(frame, pd.DataFrame):
             msg = f"the reading returns {type(frame).__name__}; expected: a pandas DataFrame"
             raise TypeError(msg)  # noqa: TRY301  -- reported like everything else the reading gets wrong
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error)})
-    return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame})
+    return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame}, ranges=ranges)
 
 
 def _draw(unit: Unit, figure: Figure) -> FigureResult:

@@ -6,6 +6,8 @@ The texts are Jinja2 templates over Markdown. They can call:
     a computed number as text, with so many significant digits;
 ``number(exhibit, row, column, reading="as-written")``
     the same as a number, to compute with (``{{ (number(...) / number(...)) | digits(3) }}``);
+``lower(exhibit, row, column, reading="as-written", digits=4)``, ``upper(...)``
+    the ends of its range, for a reading that takes inputs from the print;
 ``printed(exhibit, row, column)``
     the text the paper prints;
 ``verdict(exhibit, row, column="claim")``
@@ -24,7 +26,7 @@ from __future__ import annotations
 import re
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 from replicate.errors import TemplateError
@@ -76,6 +78,8 @@ class Prose:
         self._functions: dict[str, object] = {
             "value": self._value,
             "number": self._number,
+            "lower": partial(self._end, "lower"),
+            "upper": partial(self._end, "upper"),
             "printed": self._printed,
             "verdict": self._verdict,
             "count": self._count,
@@ -189,6 +193,19 @@ class Prose:
 
     def _value(self, exhibit: str, row: str, column: str, reading: str = AS_WRITTEN, digits: int = 6) -> str:
         return _digits(self._number(exhibit, row, column, reading), digits)
+
+    def _end(self, end: str, exhibit: str, row: str, column: str, reading: str = AS_WRITTEN, digits: int = 4) -> str:
+        where = f"{end}('{exhibit}', '{row}', '{column}', '{reading}')"
+        result = self._result(exhibit, where)
+        ranges = result.ranges if isinstance(result, TableResult) else {}
+        if reading not in ranges:
+            msg = f"{where}: no such reading with printed inputs; allowed: {_listed(ranges)}"
+            raise _MissingResultError(msg)
+        ends: Mapping[tuple[str, str], float] = getattr(ranges[reading], end)
+        if (row, column) not in ends:
+            msg = f"{where}: nothing is computed there"
+            raise _MissingResultError(msg)
+        return _digits(ends[row, column], digits)
 
     def _printed(self, exhibit: str, row: str, column: str) -> str:
         return self._verdict_row("printed", exhibit, row, column).printed

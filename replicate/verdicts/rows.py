@@ -49,12 +49,27 @@ class ResultRow:
 
 @dataclass(frozen=True)
 class Computed:
-    """What one reading gives for a printed value: the number, ``None`` if there is none, and its match."""
+    """What one reading gives for a printed value.
+
+    Attributes
+    ----------
+    number
+        ``None`` if there is none.
+    word
+        What is given where it is no number: a word, a date, a pair of numbers.
+    lower, upper
+        Its range over the printed inputs of the reading; ``None`` if it takes none from the print.
+    convention
+        How the column's cells were shortened, judged by this reading.
+    """
 
     reading: str
     number: float | None
     match: Match
-    word: str = ""  # what is given where it is no number: a word, a date, a pair of numbers
+    word: str = ""
+    lower: float | None = None
+    upper: float | None = None
+    convention: str = ""
 
     @property
     def text(self) -> str:

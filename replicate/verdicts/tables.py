@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.exhibits.matching import Match, MatchKind, computed_text, match
+from replicate.exhibits.conventions import tallies
+from replicate.exhibits.matching import MatchKind, computed_text
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.corrections import correction
 from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.verdicts.matches import other_convention, reading_matches, share_points
 from replicate.verdicts.rows import ERRORS, Computed, Judgement, ValueVerdict, VerdictRow
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
@@ -27,8 +28,7 @@ _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "unknown": "unexplained",
 }
 
-
-_AGREEMENT: tuple[MatchKind, ...] = ("equal", "consistent", "near", "differs", "none")
+_HELD: tuple[tuple[MatchKind, ValueVerdict], ...] = (("equal", "reconstructed"), ("consistent", "consistent"))
 
 
 @dataclass
@@ -52,14 +52,15 @@ class TableJudge:
     ledger: Ledger
     judgement: Judgement = field(default_factory=Judgement)
     numbers: dict[str, dict[Key, float]] = field(default_factory=dict)  # by reading
-    matches: dict[str, dict[Key, Match]] = field(default_factory=dict)  # by reading
-    words: dict[str, dict[Key, str]] = field(default_factory=dict)  # by reading
+    computed: dict[str, dict[Key, Computed]] = field(default_factory=dict)  # by reading
 
     def judge(self) -> list[tuple[int, LedgerEntry]]:
         """Fill the judgement, and return which of its verdicts come from which ledger entry."""
         explained = []
         for reading in self.table.readings:
             self._read(reading)
+        points = [reading for reading in self.table.readings if reading in self.result.ranges]
+        share_points(self.table, self.printed, self.computed, points)
         held = {key: self._held(key) for key in self.printed}
         entries = dict(self._assign({key for key, verdict in held.items() if verdict is None}))
         for key, value in self.printed.items():
@@ -83,26 +84,31 @@ class TableJudge:
             numbers, words, wrong = found.pick(spread)
             for line in wrong:
                 self._problem(f"reading '{reading}': {line}")
-        self.numbers[reading], self.words[reading], self.matches[reading] = numbers, words, {}
-        for key, value in self.printed.items():
-            # Of the cells that one printed number stands for, the one that agrees least speaks for all.
-            matches = {cell: match(value, numbers.get(cell), word=words.get(cell, "")) for cell in self._cells(key)}
-            least = max(matches, key=lambda cell: _AGREEMENT.index(matches[cell].kind))
-            self.matches[reading][key] = matches[least]
-            if least != key:
-                _speak_for(key, least, numbers)
-                _speak_for(key, least, words)
+        self.numbers[reading] = numbers
+        ranges = self.result.ranges.get(reading)
+        given = {cell: numbers.get(cell, words.get(cell)) for cell in {**numbers, **words}}
+        self.computed[reading] = reading_matches(self.table, reading, self.printed, given, ranges)
+        for key, one in self.computed[reading].items():  # of a print that spans cells, one speaks for all
+            numbers.pop(key, None)
+            if one.number is not None:
+                numbers[key] = one.number
 
     def _cells(self, key: Key) -> list[Key]:
         return [key, *self.table.spans.get(key, ())]
 
     def _held(self, key: Key) -> VerdictRow | None:
         """Return the verdict on a value that some reading gives, as written first; ``None`` if none does."""
-        for reading in self.table.readings.values():
-            if self.matches[reading.id][key].kind == "equal":
-                if reading.id == AS_WRITTEN:
-                    return self._verdict_row(key, "reproduced", reading.id)
-                return replace(self._verdict_row(key, "reconstructed", reading.id), explanation=reading.title)
+        others = [reading.id for reading in self.table.readings.values() if reading.id != AS_WRITTEN]
+        as_written = self.computed[AS_WRITTEN][key].match.kind
+        if as_written == "equal":
+            return self._verdict_row(key, "reproduced", AS_WRITTEN)
+        if as_written == "consistent":
+            return self._verdict_row(key, "consistent", AS_WRITTEN)
+        for kind, verdict in _HELD:
+            for id in others:
+                if self.computed[id][key].match.kind == kind:
+                    row = self._verdict_row(key, verdict, id)
+                    return replace(row, explanation=self.table.readings[id].title)
         return None
 
     def _assign(self, open_keys: set[Key]) -> Iterator[tuple[Key, LedgerEntry]]:
@@ -120,12 +126,19 @@ class TableJudge:
                 )
                 found = [key for key in named if key in open_keys]
             else:
-                found = [key for key in self.printed if key in open_keys - taken and entry.covers(*key)]
+                found = [
+                    key
+                    for key in self.printed
+                    if key in open_keys - taken and entry.covers(*key) and not self._by_other_convention(key)
+                ]
                 if not found:
                     self.judgement.problems.append(f"{place}: {self.table.id}: explains no printed value that differs")
             right = [key for key in found if self._correction_holds(key, entry)]
             taken.update(right)
             yield from ((key, entry) for key in right)
+
+    def _by_other_convention(self, key: Key) -> bool:
+        return any(other_convention(found[key]) for found in self.computed.values())
 
     def _correction_holds(self, key: Key, entry: LedgerEntry) -> bool:
         """Check that the reading of a wrong print gives a right value, and the one that the entry states."""
@@ -153,9 +166,10 @@ class TableJudge:
         )
 
     def _unexplained(self, key: Key, value: PrintedValue) -> VerdictRow:
-        for reading in self.table.readings:
-            if self.matches[reading][key].kind == "near":
-                return self._verdict_row(key, "near", reading)
+        near = [id for id in self.table.readings if self.computed[id][key].match.kind == "near"]
+        if near:
+            best = next((id for id in near if other_convention(self.computed[id][key])), near[0])
+            return replace(self._verdict_row(key, "near", best), explanation=self._remark(key, best))
         if self.result.errors and not any(key in numbers for numbers in self.numbers.values()):
             return self._verdict_row(key, "unexplained", AS_WRITTEN)  # the failure is on record already
         computed = [
@@ -164,7 +178,17 @@ class TableJudge:
         self._problem(f"{_cell(key)}: printed {value.text}, computed {', '.join(computed)}: has no ledger entry")
         return self._verdict_row(key, "unexplained", AS_WRITTEN)
 
+    def _remark(self, key: Key, reading: str) -> str:
+        """Say by which convention a near value would hold, and by which its column does."""
+        one = self.computed[reading][key]
+        if not other_convention(one):
+            return ""
+        count = tallies(self.table, {place: other.match for place, other in self.computed[reading].items()})
+        verb = "truncated" if one.match.how == "truncated" else "rounded"
+        return f"Holds if it was {verb}; of its column {count[self.table.quantity(*key)].sentence}."
+
     def _verdict_row(self, key: Key, verdict: ValueVerdict, reading: str) -> VerdictRow:
+        one = self.computed[reading][key]
         return VerdictRow(
             self.paper,
             self.table.id,
@@ -172,23 +196,16 @@ class TableJudge:
             self.printed[key].text,
             verdict,
             reading,
-            self.words[reading].get(key) or computed_text(self.numbers[reading].get(key)),
+            one.text,
+            lower=computed_text(one.lower),
+            upper=computed_text(one.upper),
+            convention=one.convention if one.match.how else "",
             value=self.printed[key],
-            values=tuple(self._computed(key, id) for id in self.table.readings),
+            values=tuple(self.computed[id][key] for id in self.table.readings),
         )
-
-    def _computed(self, key: Key, reading: str) -> Computed:
-        number, word = self.numbers[reading].get(key), self.words[reading].get(key, "")
-        return Computed(reading, number, self.matches[reading][key], word)
 
     def _problem(self, text: str) -> None:
         self.judgement.problems.append(f"{self.paper} {self.table.id}: {text}")
-
-
-def _speak_for(key: Key, other: Key, given: dict[Key, Any]) -> None:
-    given.pop(key, None)
-    if other in given:
-        given[key] = given[other]
 
 
 def _cell(key: Key) -> str:

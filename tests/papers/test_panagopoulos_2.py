@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import control
 import numpy as np
 import pytest
 import sympy as sp
 from scipy import integrate
 
+from replicate.exhibits import Table
+from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.rounded_inputs import compute_reading
 from replicate.loops import PID, Loop
+from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import (
     example,
     example_controllers,
     feasible,
     filters,
     noise_figures,
-    rounding,
     setpoint,
+    tables,
 )
 from replicate.papers.panagopoulos.part_2.designs import optimal, printed
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
@@ -193,17 +199,18 @@ def test_curvature_alone_does_not_exclude_a_rising_phase() -> None:
 
 
 def test_what_the_digits_leave_open() -> None:
-    frame = rounding.by_errata.readings["as-written"].compute()
+    full = paper.load().exhibits[tables.REPLACEMENT]
+    assert isinstance(full, Table)
+    rows = ("G3 Ms=2.0", "G8 Ms=1.4")
+    values = {key: PrintedValue(text, *key) for key, text in paper.printed_cells(full.id).items() if key[0] in rows}
+    _, ranges = compute_reading(replace(full, rows=rows), full.readings["printed-gains"], values)
     # IE = Ti/k grows with Ti and falls with k: its ends are two corners
-    assert frame.loc["G8 Ms=1.4 IE", "low"] == pytest.approx(2.245 / 0.3125, rel=1e-12)
-    assert frame.loc["G8 Ms=1.4 IE", "high"] == pytest.approx(2.255 / 0.3115, rel=1e-12)
+    assert ranges.lower["G8 Ms=1.4", "IE"] == pytest.approx(2.245 / 0.3125, rel=1e-12)
+    assert ranges.upper["G8 Ms=1.4", "IE"] == pytest.approx(2.255 / 0.3115, rel=1e-12)
     # b = sqrt(Td/Ti), (15)
-    assert frame.loc["G3 Ms=2.0 b", "low"] == pytest.approx((0.125 / 0.1895) ** 0.5, rel=1e-12)
-    assert frame.loc["G3 Ms=2.0 b", "high"] == pytest.approx((0.135 / 0.1885) ** 0.5, rel=1e-12)
-    # a random gain that rounds to the printed one is never outside
-    rng = np.random.default_rng(7)
-    for k, ti, td in rng.uniform([0.9815, 3.135, 1.725], [0.9825, 3.145, 1.735], (40, 3)):
-        s = 1j * np.geomspace(0.05, 1.0, 4001)
-        value = k * (1 + 1 / (ti * s) + td * s) / (s + 1) ** 7
-        assert frame["low"]["G7 Ms=2.0 Mp"] - 1e-6 <= np.max(np.abs(value / (1 + value)))
-        assert np.max(np.abs(value / (1 + value))) <= frame["high"]["G7 Ms=2.0 Mp"] + 1e-6
+    assert ranges.lower["G3 Ms=2.0", "b"] == pytest.approx((0.125 / 0.1895) ** 0.5, rel=1e-12)
+    assert ranges.upper["G3 Ms=2.0", "b"] == pytest.approx((0.135 / 0.1885) ** 0.5, rel=1e-12)
+    # one point of the box for the row: gains that round to the printed ones
+    point = ranges.points["G3 Ms=2.0"]
+    assert all(abs(point[name] - printed_number(full.id, "G3 Ms=2.0", name)) <= half + 1e-12
+               for name, half in (("k", 0.05), ("Ti", 0.0005), ("Td", 0.005)))  # fmt: skip

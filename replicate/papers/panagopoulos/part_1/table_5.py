@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -122,6 +122,30 @@ def authors() -> pd.DataFrame:
         if method == "Lambda":
             table.loc[row, ["k", "Ti", "ki"]] = math.nan
     return table
+
+
+@table_5.reading(
+    "printed-gains",
+    "Lambda tuning with its printed gains",
+    note="What follows from the printed $k$ and $k_i$ of lambda tuning, which the text does not lead to, by the rules "
+    "of the reading before.",
+    inputs=("k", "ki"),
+)
+def lambda_from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Compute the rows of lambda tuning from their printed gains."""
+    plant, method = ROWS[row]
+    if method != "Lambda":
+        return {}
+    pi = PI(given["k"], given["ki"])
+    loop = Loop(PLANTS[plant], pi)
+    step, load = loop.step(), loop.load_step()
+    return {
+        "Ms": loop.sensitivity_peak().value,
+        "IAE": load.iae(),
+        "o": 100.0 * overshoot_of_peak(step),
+        "ts": one_sided(load, PLANTS[plant].dead_time),
+        "Mp": loop.complementary_peak().value,
+    }
 
 
 identification = paper.table(

@@ -13,7 +13,7 @@ MODULES: tuple[str, ...] = (
     "setpoint_formulas",
     "errata_table",
     "settling",
-    "rounding",
+    "two_peaks",
     "claims",
     "parameter_claims",
     "supplement_claims",

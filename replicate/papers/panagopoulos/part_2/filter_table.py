@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from replicate.loops import PID
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import filters
 from replicate.papers.panagopoulos.part_2.filters import CUT, HEADED
 
 if TYPE_CHECKING:
     import pandas as pd
+
+GAINS = ("K", "Ti", "Td")
 
 LABELS = {
     "argFy": r"$\arg F_y(i\omega_0)$, degrees",
@@ -31,6 +35,7 @@ table = paper.table(
     caption=r"$G = 1/(s+1)^4$, $M_s = 1.4$, designed for $F_yG$ with filters of order $n$. IAE is that of the "
     r"output $y$ after a unit load step. Without filter $M_n$ is infinite, printed as $\infty$.",
     labels=LABELS,
+    cases="columns",
 )
 
 
@@ -38,10 +43,6 @@ def _frame(columns: dict[str, dict[str, float]]) -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame(columns, index=list(filters.ROWS))[list(filters.COLUMNS)].astype(float)
-
-
-def _without(values: dict[str, float], *rows: str) -> dict[str, float]:
-    return values | dict.fromkeys(rows, float("nan"))
 
 
 @table.reading(
@@ -73,18 +74,17 @@ def conventions() -> pd.DataFrame:
 @table.reading(
     "printed-gains",
     "From the printed gains, with the filters they belong to",
-    r"$\omega_0$, IAE and $M_n$ of the printed $K$, $T_i$, $T_d$ with the filters of the reconstruction.",
+    r"$\omega_0$, IAE and $M_n$ of the printed $K$, $T_i$, $T_d$ with the filters of the reconstruction, whose "
+    r"$\omega_0$ is printed as well.",
+    inputs=GAINS,
+    inputs_of={c: (*GAINS, f"w0@{filters.source_of_w0(c)}") for c in filters.HEADED},
 )
-def printed_gains() -> pd.DataFrame:
+def printed_gains(column: str, given: Mapping[str, float]) -> dict[str, float]:
     """Return what follows from the printed gains."""
-    return _frame(
-        {
-            c: _without(
-                filters.numbers(filters.as_used(c), filters.printed_pid(c), gon=True, cut=CUT), "argFy", "K", "Ti", "Td"
-            )
-            for c in filters.COLUMNS
-        }
-    )
+    w0 = next((number for name, number in given.items() if name.startswith("w0")), None)
+    pid = PID.ideal(*(given[name] for name in GAINS))
+    found = filters.numbers(filters.as_used(column, w0), pid, gon=True, cut=CUT)
+    return {row: number for row, number in found.items() if row in {"w0", "IAE", "Mn"}}
 
 
 evidence = paper.table(

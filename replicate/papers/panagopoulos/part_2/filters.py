@@ -87,8 +87,13 @@ def by_the_text(column: str) -> tuple[Filter | None, PID]:
     return filter_, _design(filter_, 0.0).controller
 
 
-def as_used(column: str) -> Filter | None:
-    """Return the filter that the printed numbers belong to.
+def source_of_w0(column: str) -> str:
+    """Return the column whose printed w0 is in the filter of a column."""
+    return PREVIOUS.get(column, UNFILTERED)
+
+
+def as_used(column: str, w0: float | None = None) -> Filter | None:
+    """Return the filter that the printed numbers belong to, for the printed w0 or another one.
 
     N = 1 stands under the heading 2. First-order filters use the printed w0 of the design without filter. For
     second-order filters each column uses the w0 of the column before it, as if the variable had been overwritten.
@@ -96,8 +101,7 @@ def as_used(column: str) -> Filter | None:
     if column == UNFILTERED:
         return None
     order, n = HEADED[column]
-    source = PREVIOUS.get(column, UNFILTERED)
-    return Filter(order, 1 if n == 2 else n, printed_number(TABLE, "w0", source))
+    return Filter(order, 1 if n == 2 else n, w0 or printed_number(TABLE, "w0", source_of_w0(column)))
 
 
 def printed_pid(column: str) -> PID:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING
 
-from replicate.loops import PID, Plant
+from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
-from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected
+from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected, weight
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 SUPERSEDED = "II-table-1"
 REPLACEMENT = "IIs-table-2"
 GAINS = ("k", "Ti", "Td")
+LOST_TD = "G3 Ms=2.0"
+
+RowFunction = Callable[[str, Mapping[str, float]], dict[str, float]]
 
 
 @cache
@@ -51,33 +54,43 @@ def _designs(table: Table, problem: Problem) -> Callable[[], pd.DataFrame]:
     return lambda: table.frame({row: design_properties(row, problem).row() for row in ROWS})
 
 
-def _from_printed(table: Table) -> Callable[[], pd.DataFrame]:
-    def compute() -> pd.DataFrame:
-        rows = {}
-        for row in ROWS:
-            rows[row] = printed_properties(table.id, row).row() | dict.fromkeys(GAINS, float("nan"))
-            if table.id == SUPERSEDED and row == "G3 Ms=2.0":  # its Td was taken from the printed b
-                rows[row]["b"] = float("nan")
-        return table.frame(rows)
-
-    return compute
+def _controller(given: Mapping[str, float]) -> PID:
+    """Return the controller with printed gains; where Td is lost, b of (15) gives it back."""
+    td = given["Td"] if "Td" in given else given["b"] ** 2 * given["Ti"]
+    return PID.ideal(given["k"], given["Ti"], td)
 
 
-def _filter_only(table: Table, peak_of: Callable[[Plant, PID], Resonance]) -> Callable[[], pd.DataFrame]:
-    def compute() -> pd.DataFrame:
-        rows = {}
-        for row in ROWS:
-            plant, controller = PLANTS[split(row)[0]], printed(table.id, row)
-            exact = Resonance.of(plant, controller)
-            # whether there is a filter at all is decided by the exact peak
-            size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(plant, controller))
-            rows[row] = {"Tsp": size}
-        return table.frame(rows)
+def _from_gains(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Return what follows from printed gains."""
+    found = Properties.of(split(row)[0], _controller(given)).row()
+    return {column: number for column, number in found.items() if column not in {*GAINS, *given}}
+
+
+def _with_filter(peak_of: Callable[[Plant, PID], Resonance], *, complete: bool) -> RowFunction:
+    """Return the row with (16) over the frequency of a peak; without the integrals of responses if not complete."""
+
+    def compute(row: str, given: Mapping[str, float]) -> dict[str, float]:
+        plant, controller = PLANTS[split(row)[0]], _controller(given)
+        exact = Resonance.of(plant, controller)
+        # whether there is a filter at all is decided by the exact peak
+        size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(plant, controller))
+        if complete:
+            return _from_gains(row, given) | {"Tsp": size}
+        found = {
+            "b": weight(controller, exact),
+            "Tsp": size,
+            "IE": 1.0 / controller.ki,
+            "w0": Loop(plant, controller).sensitivity_peak().frequency,
+            "Mp": exact.value,
+        }
+        return {column: number for column, number in found.items() if column not in given}
 
     return compute
 
 
 def _add_readings(table: Table) -> None:
+    # The scan of the superseded table has lost one derivative time.
+    lost = {LOST_TD: ("k", "Ti", "b")} if table.id == SUPERSEDED else {}
     table.reading(
         "as-written",
         "The optimum of the stated problem",
@@ -99,18 +112,24 @@ def _add_readings(table: Table) -> None:
             if table.id == SUPERSEDED
             else ""
         ),
-    )(_from_printed(table))
+        inputs=GAINS,
+        inputs_of=lost,
+    )(_from_gains)
     table.reading(
         "filter-corrected",
         "The printed gains, (16) over $\\omega_{mp}$",
         "$T_{sp} = \\sqrt{k_i^2M_p^2/A-1}/\\omega_{mp}$, which does what the text wants; the print divides by "
         "$\\omega_{mp}^2$.",
-    )(_filter_only(table, Resonance.of))
+        inputs=GAINS,
+        inputs_of=lost,
+    )(_with_filter(Resonance.of, complete=False))
     table.reading(
         "filter-default-grid",
         "The same on Matlab's default frequency grid",
         "As before, with the peak of $|T|$ taken from 50 frequencies, `logspace(-2,2)`.",
-    )(_filter_only(table, Resonance.on_default_grid))
+        inputs=GAINS,
+        inputs_of=lost,
+    )(_with_filter(Resonance.on_default_grid, complete=table.id == SUPERSEDED))
     table.reading(
         "paper-1-settling",
         "The settling time of paper I",

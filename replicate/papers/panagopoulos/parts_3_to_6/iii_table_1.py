@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from replicate.papers.panagopoulos import paper
@@ -20,6 +21,7 @@ table_1 = paper.table(
     rows=("M", "gamma"),
     columns=COLUMNS,
     labels=LABELS,
+    cases="columns",
     caption="Each row is computed from the other one as printed: $M$ by (13), $\\gamma$ by (14).",
 )
 
@@ -35,14 +37,11 @@ def printed_pairs() -> dict[str, tuple[float, float]]:
     "Each row from the other",
     note="(13) and (14) are inverse to each other, but two-digit numbers are not: the table has columns in which only "
     "one of the two formulas gives the printed digits.",
+    inputs=("M", "gamma"),
 )
-def as_written() -> pd.DataFrame:
+def as_written(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute M from the printed gamma and gamma from the printed M."""
-    rows = {
-        "M": [float(m_of_gamma(gamma)) for _, gamma in printed_pairs().values()],
-        "gamma": [float(gamma_of_m(m)) for m, _ in printed_pairs().values()],
-    }
-    return table_1.frame(rows)
+    return {"M": float(m_of_gamma(given["gamma"])), "gamma": float(gamma_of_m(given["M"]))}
 
 
 direction = paper.table(

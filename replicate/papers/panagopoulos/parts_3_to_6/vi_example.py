@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -90,12 +91,14 @@ def exact() -> pd.DataFrame:
 @example.reading(
     "rounded-inputs",
     "$k_b$ from the printed $P_{max}$ and $P_{min}$",
-    note="(10) applied to $0.85/0.088$.",
+    note="(10) applied to $0.85/0.088$, and (9) to the $k_b$ that it gives.",
+    inputs=("P_max", "P_min"),
 )
-def rounded_inputs() -> pd.DataFrame:
-    """Evaluate k_b from the rounded characteristics."""
-    printed = paper.printed_numbers("VI-example")
-    return _frame(EXAMPLE, printed["P_max", "value"] / printed["P_min", "value"])
+def rounded_inputs(_: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Evaluate k_b and the gain from the rounded characteristics."""
+    ratio = given["P_max"] / given["P_min"]
+    k_b = k_b_from(ratio)
+    return {"k_b": k_b, "K_b": EXAMPLE.band_gain(k_b), "ratio": ratio}
 
 
 @example.reading(

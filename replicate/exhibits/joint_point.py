@@ -1,0 +1,83 @@
+"""One point of the box of the printed inputs at which as many quantities of a case as possible round to their print.
+
+The cells of a case share their inputs: that each of them could be right for some inputs does not mean that all of them
+could be right for the same.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from replicate.exhibits.quadratic_model import Part, Search
+
+_ZOOMS = 3
+_SHRINK = 0.15
+_TRIED = 3  # of the points evaluated so far, the best are tried as well
+
+
+def joint_point(search: Search, lower: np.ndarray, upper: np.ndarray, needed: np.ndarray) -> np.ndarray:
+    """Return the best point of the box.
+
+    Parameters
+    ----------
+    search
+        The quantities over the box.
+    lower, upper
+        The interval that each quantity should lie in, shape (m,); NaN where nothing is printed.
+    needed
+        Those that hold for the printed inputs themselves and should not be given up for others, shape (m,).
+
+    Returns
+    -------
+    ndarray
+        Shape (d,): where first the most needed quantities hold, then the most others, then all of them most clearly.
+        The centre wins a tie.
+    """
+    target = _Target((lower + upper) / 2, (upper - lower) / 2, needed)
+    candidates = [search.centre]
+    for part, scaled in search.searched():
+        where = scaled
+        centre, size = np.zeros(len(search.centre)), 1.0
+        for _ in range(_ZOOMS):
+            centre = where[_best(target, part, where)]
+            size *= _SHRINK
+            where = np.clip(centre + size * scaled, -1.0, 1.0)
+        candidates.append(part.point(centre))
+    candidates += [search.points[i] for i in _best_known(target, search)]
+    ranks = [(*target.rank(search.at(point)), -i) for i, point in enumerate(candidates)]
+    return candidates[max(range(len(candidates)), key=lambda i: ranks[i])]
+
+
+class _Target:
+    """What the quantities should be."""
+
+    def __init__(self, middle: np.ndarray, half: np.ndarray, needed: np.ndarray) -> None:
+        self.middle, self.half, self.needed = middle, half, needed
+        self.asked = np.isfinite(middle)
+
+    def slack(self, values: np.ndarray) -> np.ndarray:
+        """Return, by quantity, how far inside its interval it is: 1 in the middle, 0 at the ends."""
+        with np.errstate(invalid="ignore"):
+            return np.where(self.asked, 1.0 - np.abs(values - self.middle) / self.half, -np.inf)
+
+    def ranks(self, values: np.ndarray) -> np.ndarray:
+        """Return one number for each line of values, larger the better."""
+        slack = self.slack(values)
+        slack = np.where(np.isnan(slack), -np.inf, slack)
+        held = slack >= 0.0
+        least = np.where(held, slack, 1.0).min(axis=1, initial=1.0)
+        many = values.shape[1] + 1
+        return np.asarray((held & self.needed).sum(axis=1) * many + held.sum(axis=1) + least / 2)
+
+    def rank(self, values: np.ndarray) -> tuple[float]:
+        """Return the rank of one point, without regard to how clearly."""
+        return (float(np.floor(self.ranks(values[None])[0])),)
+
+
+def _best(target: _Target, part: Part, scaled: np.ndarray) -> int:
+    return int(np.argmax(target.ranks(part(scaled))))
+
+
+def _best_known(target: _Target, search: Search) -> list[int]:
+    ranks = target.ranks(np.array(search.values))
+    return [int(i) for i in np.argsort(-ranks, kind="stable")[:_TRIED]]
