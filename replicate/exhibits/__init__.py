@@ -5,14 +5,13 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.notation import Notation
 from replicate.exhibits.paper import Paper
 from replicate.exhibits.printed import Near
+from replicate.exhibits.readings import AS_WRITTEN, Reading
 from replicate.exhibits.vocabulary import (
-    AS_WRITTEN,
     Chart,
     Exhibit,
     Figure,
     FigureKind,
     NotComputable,
-    Reading,
     Table,
     TableKind,
 )

@@ -18,8 +18,8 @@ from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
 from replicate.exhibits.printed import USUAL, Key, Near, PrintedValue, read_transcription
 from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_points
+from replicate.exhibits.readings import AS_WRITTEN
 from replicate.exhibits.vocabulary import (
-    AS_WRITTEN,
     Chart,
     Exhibit,
     Figure,

@@ -20,8 +20,9 @@ from replicate.exhibits.joint_point import joint_point
 from replicate.exhibits.matching import match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.quadratic_model import Search
+from replicate.exhibits.readings import Reading
 from replicate.exhibits.results import Ranges
-from replicate.exhibits.vocabulary import Reading, Table
+from replicate.exhibits.vocabulary import Table
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
@@ -21,6 +21,7 @@ from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
 from replicate.exhibits.printed import USUAL, Key, Near
 from replicate.exhibits.read_off import Point
+from replicate.exhibits.readings import AS_WRITTEN, Compute, Reading
 from replicate.exhibits.rows import Row, frame_of_rows
 
 if TYPE_CHECKING:
@@ -29,45 +30,6 @@ if TYPE_CHECKING:
 
 TableKind = Literal["table", "example", "formula"]
 FigureKind = Literal["figure", "diagram"]
-
-AS_WRITTEN = "as-written"
-
-Compute = TypeVar("Compute", bound=Callable[..., Any])
-
-
-@dataclass(frozen=True)
-class Reading:
-    """One way to understand how an exhibit was computed.
-
-    Attributes
-    ----------
-    id
-        ``as-written`` for the first reading of an exhibit, a short ASCII slug for every other.
-    title
-        One line for table headings and the terminal.
-    compute
-        Returns the whole exhibit; rows and columns carry the keys of the printed CSV. With `inputs`, returns the
-        quantities of one case instead: ``compute(case, given)``, where `given` has a number for each input.
-    note
-        What is assumed and why, in Markdown; may be empty.
-    inputs
-        The quantities that the reading takes from the print. Each stands for all numbers that round to it.
-    inputs_of
-        Those of the cases that take others.
-    tried
-        How many alternatives were tried for each free choice of the reading, by what was chosen.
-    module
-        The module in which it is defined; set by itself.
-    """
-
-    id: str
-    title: str
-    compute: Callable[..., Any]
-    note: str = ""
-    inputs: tuple[str, ...] = ()
-    inputs_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    tried: Mapping[str, int] = field(default_factory=dict)
-    module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
 
 @dataclass
