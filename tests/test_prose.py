@@ -108,7 +108,7 @@ def test_pulls_results(template: str, text: str) -> None:
             "claim('big', 'table-1'): 'table-1' holds no claims; allowed: 'claims'",
         ),
         ("{{ valeu('table-1', 'A', 'x') }}", "'valeu' is undefined"),
-        ("{{ claim('big').vlaue }}", "'replicate.exhibits.vocabulary.Finding object' has no attribute 'vlaue'"),
+        ("{{ claim('big').vlaue }}", "'replicate.exhibits.claims.Finding object' has no attribute 'vlaue'"),
         ("{{ number('table-1', 'A', 'x') / 0 }}", "float division by zero"),
         (
             "{{ value('table-1') }}",
