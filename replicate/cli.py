@@ -12,7 +12,7 @@ import signal
 import sys
 import threading
 import traceback
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -21,6 +21,7 @@ from replicate.commands.options import BROKEN
 from replicate.errors import TERMINATED, ReplicateError
 from replicate.run.exits import only_ours
 from replicate.run.isolation import isolate_matplotlib
+from replicate.terminal.streams import lost_output, say, whole_output
 
 app = typer.Typer(
     name="replicate",
@@ -33,6 +34,11 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line; this is the console script ``replicate``."""
+    with whole_output(BROKEN):
+        _run()
+
+
+def _run() -> NoReturn:
     arguments = sys.argv[1:]
     debug = "--debug" in arguments
     _prepare()
@@ -48,12 +54,14 @@ def main() -> None:
             raise
         if debug:
             traceback.print_exc()
-        print(f"replicate: code of a paper tries to end the program, with status {error.code}", file=sys.stderr)  # noqa: T201
+        if lost_output(sys.stdout) is None:  # otherwise that is the reason
+            say(f"replicate: code of a paper tries to end the program, with status {error.code}")
         sys.exit(BROKEN)
     except Exception as error:
         if debug:
             raise
-        print(f"replicate: {_one_line(error)}", file=sys.stderr)  # noqa: T201  -- the error is the output
+        if lost_output(sys.stdout) is None:  # otherwise that is the error
+            say(f"replicate: {_one_line(error)}")
         sys.exit(BROKEN)
     sys.exit(status or 0)
 

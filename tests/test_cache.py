@@ -462,3 +462,13 @@ def test_a_run_notes_what_units_cost(kept: tuple[Paper, Path], monkeypatch: pyte
     noted = json.loads((tmp_path / "replicate" / "costs.json").read_text())
     assert list(noted) == [OF_TABLE_2]
     assert noted[OF_TABLE_2] > 0
+
+
+def test_inner_parts_of_installed_packages_count_with_their_package() -> None:
+    """Which of several modules called _cyutility a process has depends on what it loaded first."""
+    import pandas as pd
+    import scipy.linalg
+
+    assert pd.DataFrame().empty
+    assert scipy.linalg.norm([0.0]) == 0.0
+    assert "_cyutility" not in modules_of("lab_paper", ["lab_paper"])

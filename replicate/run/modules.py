@@ -20,10 +20,25 @@ def modules_of(package: str, others: Collection[str]) -> set[str]:
     That is every loaded one, except those of other packages that the same process has served: they count only if
     something that the package imports, directly or not, imports them.
     """
-    loaded = set(sys.modules)
+    loaded = {name for name in sys.modules if not _is_inner(name)}
     foreign = {name for name in loaded if any(_is_in(name, other) for other in others if other != package)}
     start = {name for name in loaded - foreign if not is_standard(name) and not distributions_of(name)}
     return loaded - foreign | (_reached(start) if foreign else set())
+
+
+def _is_inner(name: str) -> bool:
+    """Say whether a module is an inner part of an installed package of another name.
+
+    Several packages carry one called ``_cyutility``, and which of them a process has depends on what it loaded first.
+    Each counts with its package.
+    """
+    file = getattr(sys.modules.get(name), "__file__", None)
+    if file is None or "." in name:
+        return False
+    path = os.path.realpath(file)
+    site = next((site for site in _sites() if path.startswith(site + os.sep)), None)
+    inside = Path(path).relative_to(site).parts if site is not None else ()
+    return len(inside) > 1 and inside[0] != name
 
 
 def _is_in(module: str, package: str) -> bool:

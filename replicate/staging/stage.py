@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -119,7 +120,8 @@ def _room(target: Path) -> Iterator[Path]:
 
 def _unwritable(target: Path, error: OSError) -> OSError | OutputError:
     """Return the error to raise: one about another place, say a file that is read, is none of ours."""
-    if error.errno is None or (error.filename and not Path(error.filename).is_relative_to(target)):
+    elsewhere = error.filename and not Path(error.filename).absolute().is_relative_to(target.absolute())
+    if error.errno in (None, errno.EPIPE) or elsewhere:
         return error
     return OutputError(f"{target}: cannot be written: {error.strerror or error}")
 

@@ -67,29 +67,45 @@ def edit(site: Path, replacement: str) -> None:
     exhibits.write_text(exhibits.read_text().replace("2**0.5, 3**0.5", replacement).replace("math.log(", "math.log1p("))
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_commands(attack: Attack, quick: Path, command: str) -> None:
-    here, site, states = quick / "here", quick / "site", quick / "states"
+def prepared(quick: Path, command: str) -> list[str]:
+    """Run a command once, change the paper, and return the command that will then write something else."""
+    here, site = quick / "here", quick / "site"
     with installed_paper.installed(site):
         pass  # the files stay
 
-    def replicate(value: str, *, copied: bool = False, command: str = command) -> None:
-        arguments = [part.format(value) for part in COMMANDS[command]] + ["-j1"] * (command not in ("chart", "new"))
-        where = states if copied else quick / "unused"
-        done = run("crash_states.py", str(here), str(where), str(site), *arguments, cwd=here)
-        shutil.rmtree(quick / "unused", ignore_errors=True)
-        assert done.returncode in (0, 1), done.stderr
+    def arguments(command: str, value: str) -> list[str]:
+        jobs = ["-j1"] if command not in ("chart", "new") else []
+        return [*(part.format(value) for part in COMMANDS[command]), *jobs]
 
-    here.mkdir()
     (here / "build/report").mkdir(parents=True)
     (here / "build/report/main.tex").write_text("thesis")
-    if command == "diff":
-        replicate("", command="accept")
-    if command != "new":
-        replicate("0.3")
+    for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
+        replicate(quick, arguments(earlier, "0.3"))
     edit(site, "2**0.5, 3**0.51")
+    return arguments(command, "0.4")
+
+
+def replicate(quick: Path, arguments: list[str], states: Path | None = None) -> None:
+    """Run the command line, and copy the folder before each of its file operations."""
+    unused = quick / "unused"
+    done = run(
+        "crash_states.py",
+        str(quick / "here"),
+        str(states or unused),
+        str(quick / "site"),
+        *arguments,
+        cwd=quick / "here",
+    )
+    shutil.rmtree(unused, ignore_errors=True)
+    assert done.returncode in (0, 1), done.stderr
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_commands_that_are_killed(attack: Attack, quick: Path, command: str) -> None:
+    here, states = quick / "here", quick / "states"
+    arguments = prepared(quick, command)
     old = tree(here)
-    replicate("0.4", copied=True)
+    replicate(quick, arguments, states)
     new = tree(here)
     assert old != new
 
@@ -107,6 +123,21 @@ def test_commands(attack: Attack, quick: Path, command: str) -> None:
 
     numbers = range(1, len(list(states.iterdir())) + 1)
     attack(f"killed at any file operation: {command}", numbers, held, short=12)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system with fork")
+@pytest.mark.parametrize("how", ["once", "full"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_commands_whose_disk_fails(attack: Attack, quick: Path, command: str, how: str) -> None:
+    if not attack.everything and how == "once" and command not in ("report", "accept"):
+        pytest.skip("in the long form only")
+    arguments = prepared(quick, command)
+    every = "1" if attack.everything else "17"
+    done = run("failing_steps.py", how, str(quick / "here"), str(quick / "site"), every, *arguments, cwd=quick / "here")
+    assert done.returncode == 0, done.stderr
+    cases = json.loads(done.stdout.splitlines()[-1])
+    words = {"once": "one file operation fails", "full": "the disk is full from any operation on"}[how]
+    attack.report(f"{words}: {command}", len(cases), [(case, why) for case, why in cases if why])
 
 
 def tree(folder: Path) -> dict[str, bytes]:

@@ -1,0 +1,119 @@
+"""Let each file operation of a command fail in turn, and say what became of the folder. Run as a script.
+
+``failing_steps.py HOW FOLDER SITE EVERY ARGUMENTS`` runs the command line in forks of a process that has imported
+everything. HOW is ``once``, where one operation fails, or ``full``, where from then on nothing can be created. Prints a
+JSON list of [case, what went wrong].
+"""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import shutil
+import sys
+from itertools import count
+from pathlib import Path
+
+from crash_states import watch
+
+PROGRESS = re.compile(r"computed \d|\d+ of \d+ results kept|.*(removed|finished|put back) what a run")
+CREATING = {"open", "torn", "os.mkdir", "os.link", "os.symlink", "shutil.copyfile"}
+
+
+def tree(folder: Path) -> dict[str, bytes]:
+    """Return what a user sees of a folder, without what is kept for the next run."""
+    hidden = {"cache", ".replicate"}
+    files = (path for path in folder.rglob("*") if path.is_file() and not hidden & {*path.relative_to(folder).parts})
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def command(arguments: list[str]) -> int:
+    """Run the command line here and return its status."""
+    from replicate import cli
+
+    sys.argv = ["replicate", *arguments]
+    try:
+        cli.main()
+    except SystemExit as error:
+        return error.code if isinstance(error.code, int) else 1
+    return 0
+
+
+def fail_at(number: int, how: str, folder: Path, reached: Path) -> None:
+    """Make the file operation of that number fail in this process."""
+    seen = 0
+
+    def maybe(event: str, path: str) -> None:
+        nonlocal seen
+        if event == "torn":
+            return
+        seen += 1
+        if seen == number:
+            reached.touch()
+        if seen == number or (how == "full" and seen > number and event in CREATING):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), path)
+
+    watch(folder, maybe)
+
+
+def attempt(number: int, how: str, folder: Path, arguments: list[str], errors: Path) -> tuple[int, str]:
+    """Run the command in a fork and return its status and what it said."""
+    id = os.fork()
+    if id == 0:
+        sink = os.open(errors, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(sink, 2)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        status = 99
+        try:
+            fail_at(number, how, folder, errors.with_name("reached"))
+            status = command(arguments)
+            sys.stderr.flush()
+        finally:
+            os._exit(status)
+    _, status = os.waitpid(id, 0)
+    return os.waitstatus_to_exitcode(status), errors.read_text(encoding="utf-8")
+
+
+def main() -> None:
+    how, where, site, every, *arguments = sys.argv[1:]
+    sys.path.insert(0, site)
+    folder = Path(where)
+    kept = folder.parent / "kept"
+    shutil.copytree(folder, kept, symlinks=True)
+    old = tree(folder)
+    command(arguments)  # and imports everything
+    new = tree(folder)
+    assert old != new
+    if (folder / "build/cache").is_dir():  # forks compute nothing
+        shutil.copytree(folder / "build/cache", kept / "build/cache", dirs_exist_ok=True)
+    found = []
+    for number in count(1, int(every)):
+        shutil.rmtree(folder)
+        shutil.copytree(kept, folder, symlinks=True)
+        os.chdir(folder)
+        reached = folder.parent / "reached"
+        reached.unlink(missing_ok=True)
+        status, said = attempt(number, how, folder, arguments, folder.parent / "errors")
+        if not reached.exists():
+            break
+        found.append((f"operation {number} fails ({how})", judge(status, said, tree(folder), old, new)))
+    sys.__stdout__.write(f"\n{json.dumps(found)}\n")  # type: ignore[union-attr]
+
+
+def judge(status: int, said: str, now: dict[str, bytes], old: dict[str, bytes], new: dict[str, bytes]) -> str:
+    if now not in (old, new):
+        return "a mixture of the earlier and the new state"
+    lines = [line for line in said.splitlines() if line and not PROGRESS.match(line)]
+    if status != 2:
+        return (
+            "" if now == new and not lines else f"status {status}, said {lines}, state {'old' if now == old else 'new'}"
+        )
+    if len(lines) != 1 or not lines[0].startswith("replicate: ") or "unexpected" in lines[0]:
+        return f"said {lines}"
+    return "" if "No space left on device" in lines[0] and ".replicate/new" not in lines[0] else f"said {lines}"
+
+
+if __name__ == "__main__":
+    main()
