@@ -18,6 +18,7 @@ ALLOWED = {
     "loops": set(),
     "exhibits": {"errors"},
     "figures": {"errors"},
+    "baselines": {"display", "errors", "figures", "resources", "staging"},
     "papers": {"errors", "exhibits", "figures", "loops"},
     "verdicts": {"errors", "exhibits"},
     "run": {"errors", "exhibits", "figures", "verdicts"},

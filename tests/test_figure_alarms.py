@@ -18,7 +18,7 @@ from matplotlib.transforms import Bbox
 
 from replicate.figures import Record, capture, compare
 
-Change = Callable[[Figure], object]
+Change = Callable[[Any], object]
 
 
 def drawn(name: str) -> Figure:

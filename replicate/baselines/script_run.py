@@ -1,0 +1,136 @@
+"""Run one plotting script off-screen and keep every figure that it saves or leaves open.
+
+Started as a process of its own: ``python -m replicate.baselines.script_run SCRIPT FOLDER``. In FOLDER it leaves
+``1.json`` and ``1.png``, ... and, at the very end, ``status.json``.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import runpy
+import sys
+import traceback
+from pathlib import Path
+from typing import Any
+
+from replicate.baselines.outcomes import draw
+from replicate.errors import FigureError
+
+
+class Keeper:
+    """Keeps the states of figures in the order in which they were saved or left open."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.process = os.getpid()
+        self.count = 0
+        self.problems: list[str] = []
+        self._last: dict[int, tuple[Any, str]] = {}
+        self._busy = False
+
+    def keep(self, figure: Any) -> None:
+        """Keep the present state of a figure, unless it is the one that was kept last."""
+        if os.getpid() != self.process or self._busy:
+            return
+        self._busy = True  # drawing the picture saves the figure, too
+        try:
+            drawn = draw(figure)
+        except FigureError:
+            return  # nothing is on it
+        except Exception as error:  # noqa: BLE001  -- whatever an artist raises while it is drawn
+            self.problems.append(f"a figure cannot be drawn: {type(error).__name__}: {error}")
+            return
+        finally:
+            self._busy = False
+        kept = self._last.get(id(figure))
+        if kept is not None and kept[1] == drawn.record:
+            return
+        # The figure is kept alive, so that no other one gets its identity.
+        self._last[id(figure)] = (figure, drawn.record)
+        self.count += 1
+        (self.folder / f"{self.count}.json").write_text(drawn.record, encoding="utf-8", newline="\n")
+        (self.folder / f"{self.count}.png").write_bytes(drawn.picture)
+
+    def keep_open(self) -> None:
+        """Keep every figure that pyplot has open."""
+        plt: Any = sys.modules.get("matplotlib.pyplot")
+        for number in plt.get_fignums() if plt else ():
+            self.keep(plt.figure(number))
+
+
+def _watch(keeper: Keeper) -> None:
+    """Stand between the script and the screen."""
+    import matplotlib as mpl
+    import matplotlib.pyplot as plt
+    from matplotlib.figure import Figure
+
+    plt.switch_backend("agg")
+    mpl.use = lambda *_, **__: None
+    plt.switch_backend = lambda *_, **__: None
+    original = Figure.savefig
+
+    def savefig(figure: Any, *arguments: Any, **options: Any) -> Any:
+        result = original(figure, *arguments, **options)
+        # A film saves each of its frames.
+        if not sys._getframe(1).f_globals.get("__name__", "").startswith("matplotlib.animation"):  # noqa: SLF001
+            keeper.keep(figure)
+        return result
+
+    def show(*_: Any, block: bool | None = None, **__: Any) -> None:
+        keeper.keep_open()
+        if block is not False:  # who looks at a window closes it
+            plt.close("all")
+
+    Figure.savefig = savefig  # type: ignore[assignment, method-assign]
+    plt.show = show
+    Figure.show = lambda figure, *_, **__: keeper.keep(figure)  # type: ignore[method-assign]
+
+
+def run(script: Path, keeper: Keeper) -> str:
+    """Run a script as Python would; return what went wrong, in one line, or nothing."""
+    sys.argv = [str(script)]
+    sys.path[0] = str(script.parent)
+    try:
+        runpy.run_path(str(script), run_name="__main__")
+    except SystemExit as end:
+        if end.code not in {None, 0}:
+            return f"{script.name}:{_line(end, script)}: ended with sys.exit({end.code!r})"
+    except KeyboardInterrupt:
+        raise
+    except SyntaxError as error:
+        return f"{script.name}:{error.lineno or 1}: {type(error).__name__}: {error.msg}"
+    except BaseException as error:  # noqa: BLE001  -- whatever the script raises is its own
+        said = " ".join(str(error).split())
+        return f"{script.name}:{_line(error, script)}: {type(error).__name__}: {said}"
+    keeper.keep_open()
+    return ""
+
+
+def _line(error: BaseException, script: Path) -> int:
+    """Return the line of the script in which something happened."""
+    frames = traceback.extract_tb(error.__traceback__)
+    return next((frame.lineno or 1 for frame in reversed(frames) if Path(frame.filename).name == script.name), 1)
+
+
+def main() -> None:
+    """Run the script that the command line names."""
+    script, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+    keeper = Keeper(folder)
+    _watch(keeper)
+    os.chdir(script.parent)
+    problem = run(script, keeper)
+    if os.getpid() != keeper.process:  # the script has forked, and this is the copy
+        os._exit(0)
+    if not problem:
+        keeper.keep_open()
+    problem = problem or "; ".join(f"{script.name}: {what}" for what in keeper.problems)
+    status = json.dumps({"figures": keeper.count, "problem": problem})
+    (folder / "status.json").write_text(status, encoding="utf-8")
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(0)  # whatever threads the script has left behind
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,181 @@
+"""The folder of accepted figures: one record, one small picture and one list of acceptances for each.
+
+``NAME.json`` is the record that is compared, ``NAME.png`` a picture for people, and each line of ``NAME.log`` an
+acceptance: why, what had changed, and the digests of the state that it replaced and of the one that it made. A merge
+that mixes two acceptances shows, because the last line does not speak of the state that is there.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from replicate.errors import FigureError, FigureRecordError
+from replicate.figures.record import Record
+from replicate.staging import finish_interrupted, replace_files
+
+#: What names of figures are made of, so that they are names of files everywhere.
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
+_LONGEST = 150
+_DIGITS = 16
+
+
+def digest(text: str) -> str:
+    """Return the digest of a record: the first digits of its SHA-256.
+
+    Examples
+    --------
+    >>> digest("")
+    'e3b0c44298fc1c14'
+    """
+    return hashlib.sha256(text.encode()).hexdigest()[:_DIGITS]
+
+
+def checked_name(name: object) -> str:
+    """Return the name of a figure.
+
+    Raises
+    ------
+    FigureError
+        If it cannot be that of a file on every system.
+
+    Examples
+    --------
+    >>> checked_name("step-response_2")
+    'step-response_2'
+    """
+    if not isinstance(name, str) or not _NAME.match(name) or len(name) > _LONGEST:
+        msg = (
+            f"a figure cannot be called {name!r}: needed are letters, digits, '-' and '_', "
+            f"the first a letter or a digit, at most {_LONGEST} of them"
+        )
+        raise FigureError(msg)
+    return name
+
+
+def name_of(text: str) -> str:
+    """Return a name of a figure that is made from any text.
+
+    Examples
+    --------
+    >>> name_of("test_step[dead_time=0.5]")
+    'test_step-dead_time-0-5'
+    """
+    return re.sub(r"[^A-Za-z0-9_]+", "-", text).strip("-_")[:_LONGEST] or "figure"
+
+
+def chosen_figure(text: str) -> tuple[str, str | None]:
+    """Return a name and the digest that follows it, if one does.
+
+    Examples
+    --------
+    >>> chosen_figure("plots/step-1=0123456789abcdef"), chosen_figure("step-1"), chosen_figure("step-1=")
+    (('plots/step-1', '0123456789abcdef'), ('step-1', None), ('step-1', ''))
+    """
+    name, equals, digest = text.partition("=")
+    return name, digest if equals else None
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """An accepted figure: its record, the digest of its file, and its picture, if there is one."""
+
+    record: Record
+    digest: str
+    picture: bytes
+
+
+@dataclass(frozen=True)
+class Store:
+    """A folder of accepted figures; names may have folders in them, as those of scripts do."""
+
+    folder: Path
+
+    def path(self, name: str, ending: str = ".json") -> Path:
+        """Return where a file of a figure is."""
+        return self.folder / f"{name}{ending}"
+
+    def read(self, name: str) -> Accepted | None:
+        """Return an accepted figure, or ``None`` if there is none.
+
+        Raises
+        ------
+        FigureRecordError
+            If its record is damaged, newer than this version, or not the one that was accepted last.
+        """
+        path = self.path(name)
+        finish_interrupted(path.parent)
+        if not path.is_file():
+            return None
+        text = self._text(path)
+        try:
+            record = Record.from_json(text)
+        except FigureRecordError as error:
+            where = f"{path}:{error.line}" if error.line else str(path)
+            raise FigureRecordError(f"{where}: {error.why}") from None  # noqa: EM102  -- the class makes the sentence
+        last = self._last(name)
+        if last is not None and last != digest(text):
+            why = f"{path}: is not the state that was accepted last, a merge or an edit changed it: accept it again"
+            raise FigureRecordError(why)
+        picture = self.path(name, ".png")
+        return Accepted(record, digest(text), picture.read_bytes() if picture.is_file() else b"")
+
+    def digest(self, name: str) -> str:
+        """Return the digest of the accepted state, whatever it is; empty if there is none."""
+        path = self.path(name)
+        return digest(self._text(path)) if path.is_file() else ""
+
+    def names(self) -> list[str]:
+        """Return the names of all accepted figures."""
+        found = self.folder.rglob("*.json") if self.folder.is_dir() else ()
+        names = (path.relative_to(self.folder).with_suffix("") for path in found)
+        return sorted(name.as_posix() for name in names if not any(part.startswith(".") for part in name.parts))
+
+    def write(self, name: str, record: str, picture: bytes, reason: str, changes: Sequence[str]) -> None:
+        """Accept a state, all of its files or none.
+
+        Raises
+        ------
+        OutputError
+            If the folder cannot be written; it is as it was, then.
+        """
+        self._replace(name, {".json": record.encode(), ".png": picture}, reason, changes, digest(record))
+
+    def remove(self, name: str, reason: str) -> None:
+        """Accept that there is no such figure any more; its acceptances stay."""
+        self._replace(name, {}, reason, ["is not drawn any more"], "")
+
+    def _replace(self, name: str, files: dict[str, bytes], reason: str, changes: Sequence[str], accepted: str) -> None:
+        entry = {"reason": reason, "changes": list(changes), "replaces": self.digest(name), "accepted": accepted}
+        log = self.path(name, ".log")
+        earlier = self._text(log) if log.is_file() else ""
+        line = json.dumps(entry, ensure_ascii=False) + "\n"
+        fresh = {f"{log.stem}{ending}": content for ending, content in files.items() if content}
+        gone = [] if files else [f"{log.stem}{ending}" for ending in (".json", ".png")]
+        replace_files(log.parent, {**fresh, log.name: (earlier + line).encode()}, gone)
+
+    def _last(self, name: str) -> str | None:
+        """Return the digest of the state that was accepted last; ``None`` if nobody wrote that down."""
+        log = self.path(name, ".log")
+        if not log.is_file():
+            return None
+        lines = self._text(log).splitlines()
+        try:
+            entry = json.loads(lines[-1]) if lines else {}
+            return str(entry["accepted"])
+        except (ValueError, KeyError, TypeError):
+            why = f"{log}:{len(lines)}: is no acceptance, needed: an object with 'accepted' in each line"
+            raise FigureRecordError(why) from None
+
+    @staticmethod
+    def _text(path: Path) -> str:
+        try:
+            return path.read_text(encoding="utf-8")
+        except OSError as error:
+            raise FigureRecordError(f"{path}: cannot be read: {error.strerror or error}") from None  # noqa: EM102
+        except UnicodeDecodeError:
+            raise FigureRecordError(f"{path}: is no text in UTF-8") from None  # noqa: EM102

@@ -1,0 +1,24 @@
+
+// Collect the commands of the ticked figures, and lay the two pictures of a figure over each other.
+const ticks = [...document.querySelectorAll("input.accept")];
+const box = document.querySelector("#commands");
+const collect = () => {
+  const chosen = ticks.filter((tick) => tick.checked).map((tick) => tick.value);
+  box.hidden = chosen.length === 0;
+  box.querySelector("code").textContent = chosen.join("\n");
+};
+for (const tick of ticks) {
+  tick.closest("label").hidden = false;
+  tick.addEventListener("change", collect);
+}
+for (const pair of document.querySelectorAll(".pair")) {
+  const label = document.createElement("label");
+  const slider = Object.assign(document.createElement("input"), { type: "range", min: 0, max: 100, value: 50 });
+  slider.setAttribute("aria-label", pair.dataset.name + ": how much of the accepted picture covers the new one");
+  const show = () => pair.style.setProperty("--cut", slider.value + "%");
+  slider.addEventListener("input", show);
+  label.append("new", slider, "accepted");
+  pair.append(label);
+  pair.classList.add("swipe");
+  show();
+}

@@ -1,0 +1,146 @@
+"""The pytest plugin, run by a pytest of its own on small projects."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TESTS = """
+import pytest
+from matplotlib.figure import Figure
+
+def drawn(style="-"):
+    figure = Figure()
+    figure.subplots().plot([0, 1, 2], [0, 1, 0], style, label="ZN")
+    return figure
+
+def test_fixture(figure_diff):
+    figure_diff(drawn(STYLE), "by-hand")
+
+@pytest.mark.figure_diff
+@pytest.mark.parametrize("gain", [0.5, 1.0])
+def test_mark(gain):
+    figure = drawn()
+    figure.axes[0].set_title(f"gain {gain}")
+    return figure
+"""
+
+
+class Project:
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        (folder / "pytest.ini").write_text("[pytest]\nfilterwarnings = error\n")
+        (folder / "tests").mkdir()
+        self.write(TESTS.replace("STYLE", '"-"'))
+
+    def write(self, text: str, name: str = "test_figures.py") -> None:
+        (self.folder / "tests" / name).write_text(text)
+
+    def run(self, *arguments: str) -> tuple[int, str]:
+        command = [sys.executable, "-m", "pytest", "-q", "-p", "replicate.baselines.plugin", "-p", "no:cacheprovider"]
+        done = subprocess.run([*command, *arguments], cwd=self.folder, capture_output=True, text=True, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    def accepted(self) -> dict[str, bytes]:
+        folder = self.folder / "tests" / "figures"
+        return {path.name: path.read_bytes() for path in sorted(folder.glob("*.*"))} if folder.is_dir() else {}
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    return Project(tmp_path)
+
+
+def test_accept_compare_change(project: Project) -> None:
+    status, said = project.run()
+    assert status == 1
+    assert "figure 'by-hand': has no accepted state" in said
+    status, said = project.run("--accept-figures")
+    assert (status, project.accepted()) == (4, {})
+    assert "--accept-figures needs a reason" in said
+    status, said = project.run("--accept-figures", "--reason", "first")
+    assert status == 0, said
+    names = ["by-hand", "test_figures-test_mark-0-5", "test_figures-test_mark-1-0"]
+    assert [name for name in project.accepted() if name.endswith(".json")] == [f"{name}.json" for name in names]
+    status, said = project.run()
+    assert status == 0
+    assert "nothing differs from the accepted state; figures compared: 3" in said
+
+    project.write(TESTS.replace("STYLE", '"--"'))
+    before = project.accepted()
+    status, said = project.run("-n", "2")
+    assert status == 1
+    assert "curve 'ZN' is dashed now (was solid)" in said
+    assert project.accepted() == before
+    page = (project.folder / "build/figures-diff/index.html").read_text()
+    digest = json.loads(before["by-hand.log"].decode())["accepted"]
+    assert f"--accept-only by-hand={digest}" in page
+    assert "3 figures" in said
+
+    status, said = project.run("--accept-figures", "--reason", "stale", "--accept-only", "by-hand=0123456789abcdef")
+    assert status == 1
+    assert "is not accepted: its author looked at the difference from state 0123456789abcdef" in said
+    assert project.accepted() == before
+    status, said = project.run(
+        "--accept-figures", "--reason", "dashed", "--accept-only", f"by-hand={digest}", "-n", "2"
+    )
+    assert status == 0, said
+    last = json.loads(project.accepted()["by-hand.log"].decode().splitlines()[-1])
+    assert (last["reason"], last["replaces"]) == ("dashed", digest)
+    assert last["changes"] == ["curve 'ZN' is dashed now (was solid)"]
+    assert project.run()[0] == 0
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("def test_it(figure_diff): return drawn()", "the figure that it returns was never compared"),
+        ("def test_it(figure_diff): pass", "nothing was compared, though 1 tests draw figures"),
+        ("@pytest.mark.figure_diff\ndef test_it(): pass", "is marked figure_diff, but returns NoneType and no figure"),
+        ("def test_it(figure_diff): figure_diff(drawn(), 'a/b')", "a figure cannot be called 'a/b'"),
+        ("def test_it(figure_diff): figure_diff(drawn(), '..')", "a figure cannot be called '..'"),
+        ("def test_it(figure_diff): figure_diff(None, 'a')", "a matplotlib figure is needed, not NoneType"),
+        ("def test_it(figure_diff): figure_diff(Figure(), 'a')", "nothing is drawn on the figure"),
+        (
+            "def test_it(figure_diff): figure_diff(drawn(), 'a'); figure_diff(drawn(), 'a')",
+            "two figures are called 'a'",
+        ),
+    ],
+)
+def test_what_cannot_be_compared_is_said(project: Project, text: str, said: str) -> None:
+    head = TESTS.split("def test_fixture", maxsplit=1)[0]
+    project.write(f"{head}\n{text}\n")
+    status, out = project.run("--accept-figures", "--reason", "first")
+    assert status == 1
+    assert said in out
+    assert "Traceback" not in out
+
+
+def test_it_is_silent_unless_used(project: Project) -> None:
+    project.write("def test_it(): pass\n")
+    status, said = project.run()
+    assert status == 0
+    assert "figures" not in said
+    assert not (project.folder / "build").exists()
+
+
+def test_damage_and_merges_are_said(project: Project) -> None:
+    project.run("--accept-figures", "--reason", "first")
+    path = project.folder / "tests/figures/by-hand.json"
+    whole = path.read_text()
+    for text, said in (
+        (whole[:-30], "by-hand.json:"),
+        (whole.replace('"version": 2', '"version": 9'), "was written by a newer version"),
+        (whole.replace("ZN", "PA"), "is not the state that was accepted last"),
+    ):
+        path.write_text(text)
+        status, out = project.run("-k", "fixture")
+        assert status == 1
+        assert said in out
+    status, out = project.run("-k", "fixture", "--accept-figures", "--reason", "mended")
+    assert status == 0, out
+    assert project.run()[0] == 0

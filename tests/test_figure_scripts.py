@@ -1,0 +1,163 @@
+"""Figures of plain plotting scripts: run off-screen, named by script and number, compared and accepted."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPTS = {
+    "plot_saved.py": """
+import matplotlib.pyplot as plt
+fig, ax = plt.subplots()
+ax.plot([0, 1, 2], [0, 1, 0], label="ZN")
+fig.savefig("saved.png")
+fig.savefig("saved.pdf")
+plt.close(fig)
+""",
+    "plot_shown.py": """
+import matplotlib
+matplotlib.use("TkAgg")
+import matplotlib.pyplot as plt
+plt.plot([1, 2])
+plt.show()
+plt.plot([2, 1])
+""",
+    "plot_ended.py": """
+import sys
+import matplotlib.pyplot as plt
+if __name__ == "__main__":
+    plt.plot([3, 1])
+    plt.savefig("ended.png")
+    sys.exit()
+""",
+    "plot_forked.py": """
+import os
+import matplotlib.pyplot as plt
+plt.plot([1, 3])
+if os.fork() == 0:
+    plt.figure()
+    plt.plot([9, 9])
+else:
+    os.wait()
+""",
+}
+FIGURES = [
+    "plots/plot_ended-1",
+    "plots/plot_forked-1",
+    "plots/plot_saved-1",
+    "plots/plot_shown-1",
+    "plots/plot_shown-2",
+]
+
+
+class Folder:
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        (path / "plots").mkdir()
+        for name, text in SCRIPTS.items():
+            self.write(name, text)
+
+    def write(self, name: str, text: str) -> None:
+        (self.path / "plots" / name).write_text(text)
+
+    def run(self, *arguments: str, **environment: str) -> tuple[int, str, str]:
+        import os
+
+        done = subprocess.run(
+            [sys.executable, "-m", "replicate", "figures", *arguments],
+            cwd=self.path, capture_output=True, text=True, check=False,
+            env={**os.environ, "NO_COLOR": "1", "GITHUB_STEP_SUMMARY": "", **environment},
+        )  # fmt: skip
+        return done.returncode, done.stdout, done.stderr
+
+    def accepted(self) -> list[str]:
+        folder = self.path / "figures"
+        return sorted(path.relative_to(folder).with_suffix("").as_posix() for path in folder.rglob("*.json"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Folder:
+    return Folder(tmp_path)
+
+
+def test_accept_compare_change(folder: Folder) -> None:
+    status, out, _ = folder.run("diff", "plots")
+    assert status == 1
+    assert "plots/plot_saved-1: has no accepted state" in out
+    assert folder.run("accept", "plots")[0] == 2
+    status, out, err = folder.run("accept", "plots", "--reason", "first")
+    assert (status, folder.accepted()) == (0, FIGURES), err
+    status, out, _ = folder.run("diff", "plots/*.py")
+    assert (status, out.splitlines()[0]) == (0, "nothing differs from the accepted state; figures compared: 5")
+
+    folder.write("plot_saved.py", SCRIPTS["plot_saved.py"].replace("label", "color='orange', label"))
+    folder.write("plot_shown.py", SCRIPTS["plot_shown.py"].replace("plt.plot([2, 1])", ""))
+    summary = folder.path / "summary.md"
+    status, out, _ = folder.run("diff", "plots", "--comment", "comment.md", GITHUB_STEP_SUMMARY=str(summary))
+    assert status == 1
+    assert "plots/plot_saved-1: colour of curve 'ZN' changed from blue to orange" in out
+    assert "plots/plot_shown-2: was accepted, but is not drawn any more" in out
+    assert "2 of 5 figures differ" in summary.read_text()
+    comment = (folder.path / "comment.md").read_text()
+    assert comment.startswith("<!-- replicate-figures -->\n## 🔴 Figures\n")
+    page = (folder.path / "build/figures-diff/index.html").read_text()
+    assert "replicate figures accept plots/plot_saved.py --only plots/plot_saved-1=" in page
+    assert "http" not in page.replace("http-equiv", "")
+
+    log = folder.path / "figures/plots/plot_saved-1.log"
+    digest = json.loads(log.read_text())["accepted"]
+    stale = folder.run("accept", "plots", "--only", "plots/plot_saved-1=0", "--reason", "x")
+    assert (stale[0], len(log.read_text().splitlines())) == (2, 1)
+    assert folder.run("accept", "plots", "--only", f"plots/plot_saved-1={digest}", "--reason", "orange")[0] == 0
+    assert json.loads(log.read_text().splitlines()[-1])["replaces"] == digest
+    assert folder.run("accept", "plots", "--reason", "one is enough")[0] == 0
+    assert folder.accepted() == FIGURES[:-1]
+    status, out, _ = folder.run("diff", "plots", "--comment", "comment.md")
+    assert status == 0
+    assert (folder.path / "comment.md").read_text().startswith("<!-- replicate-figures -->\n## 🟢 Figures\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x = 1\nraise ValueError('no\\nway')\n", "plots/plot_bad.py:2: ValueError: no way"),
+        ("x = (\n", "plots/plot_bad.py:1: SyntaxError:"),
+        ("import sys\nsys.exit(3)\n", "plots/plot_bad.py:2: ended with sys.exit(3)"),
+        ("import os\nos._exit(7)\n", "plots/plot_bad.py: ended before its end, with status 7"),
+        ("import os\nos.abort()\n", "plots/plot_bad.py: ended before its end, with status -6"),
+        ("import matplotlib.pyplot as plt\nplt.plot([1])\nplt.close()\n", "plots/plot_bad.py: draws nothing"),
+        ("import time\ntime.sleep(99)\n", "plots/plot_bad.py: is stopped, it took longer than 8 seconds"),
+    ],
+)
+def test_a_script_that_fails_is_named_and_takes_nothing_else_down(folder: Folder, text: str, said: str) -> None:
+    for name in ("plot_shown.py", "plot_ended.py", "plot_forked.py"):
+        (folder.path / "plots" / name).unlink()
+    assert folder.run("accept", "plots", "--reason", "first")[0] == 0
+    folder.write("plot_bad.py", text)
+    status, out, err = folder.run("diff", "plots", "--timeout", "8")
+    assert status == 2
+    assert [line for line in err.splitlines() if line.startswith(said)], err
+    assert "failed: 1" in out
+    assert "plot_saved-1" not in out
+    status, _, err = folder.run("accept", "plots", "--reason", "second", "--timeout", "8")
+    assert status == 2
+    assert err.splitlines()[-1].startswith("replicate: nothing is accepted, because a script failed")
+
+
+def test_bad_names_and_folders(folder: Folder) -> None:
+    assert folder.run("diff", "nowhere/*.py")[0] == 2
+    folder.write("plot_a.b.py", SCRIPTS["plot_saved.py"])
+    folder.write("plot_a-b.py", SCRIPTS["plot_saved.py"])
+    status, _, err = folder.run("diff", "plots")
+    assert status == 2
+    assert err.startswith("replicate: two figures of one name:")
+    (folder.path / "plots/plot_a-b.py").unlink()
+    (folder.path / "blocked").write_text("a file")
+    status, _, err = folder.run("accept", "plots", "--reason", "first", "--accepted", "blocked")
+    assert status == 2
+    assert "blocked" in err.splitlines()[-1]
+    assert "Traceback" not in err
