@@ -1,4 +1,4 @@
-"""The open chain from the delayed control signal to the controller's building blocks.
+r"""The open chain from the delayed control signal to the controller's building blocks.
 
 On an interval no longer than the dead time the plant sees only what the controller did one dead time ago. Everything in
 that interval, output and next control signal alike, is therefore an explicit linear function of known signals:
@@ -6,39 +6,63 @@ there is no feedback inside. The chain holds the states of the plant, of the fil
 
     X' = A X + B v + E r,    y = C X + D v,    w = W_x X + W_v v + W_r r,    u = g . w,
 
-with v the plant input after the dead time, r the set-point, and w the four signals r_f, y_f, integral(r_f - y_f) and
-derivative whose gains are (k b, -k, ki, kd). The gains appear only in the last product, so one chain serves a
-whole sweep.
+with v the plant input after each of its dead times, r the set-point, and w the four signals r_f, y_f,
+integral(r_f - y_f) and derivative whose gains are (k b, -k, ki, kd). The gains appear only in the last product, so one
+chain serves a whole sweep. The states are scaled by powers of two that balance the whole chain, feedback included.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.linalg
 import scipy.signal
 from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.plant import Plant
+from replicate.loops.sum_plant import SumPlant
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Chain:
-    """State-space matrices of the open chain; shapes A (n, n), B, E, C (n,), W_x (4, n), W_v, W_r (4,)."""
+    """State-space matrices of the open chain for m dead times.
+
+    Shapes A (n, n), B (n, m), E, C (n,), D (m,), W_x (4, n), W_v (4, m), W_r (4,).
+    """
 
     a: Array
     b: Array
     e: Array
     c: Array
-    d: float
+    d: Array
     wx: Array
     wv: Array
     wr: Array
     setpoint_impulse: float  # weight of the impulse that an ideal derivative makes of a set-point step, per unit of kd
+
+    def balanced(self, g: Array) -> Chain:
+        """Return the chain with its states scaled by powers of two, so that the loop closed by gains ``g`` is balanced.
+
+        Scaling is exact; it keeps the solutions of stiff and of badly scaled chains accurate.
+        """
+        n = self.b.shape[0]
+        if n == 0:
+            return self
+        feedback, drive = np.abs(g) @ np.abs(self.wx), np.abs(self.b).sum(axis=1)
+        whole = np.zeros((n + 1, n + 1))
+        whole[:n, :n], whole[:n, n], whole[n, :n] = self.a, drive, feedback
+        _, (scale, _) = scipy.linalg.matrix_balance(whole, permute=False, separate=True)
+        scale = scale[:n] / scale[n]
+        return replace(
+            self,
+            a=self.a * scale / scale[:, None], b=self.b / scale[:, None], e=self.e / scale,
+            c=self.c * scale, wx=self.wx * scale,
+        )  # fmt: skip
 
 
 def gains(controller: PID) -> Array:
@@ -59,9 +83,9 @@ def build_chain(plant: Plant, controller: PID, *, integral: bool = True, derivat
     ImproperLoopError
         If an ideal derivative meets a plant whose output jumps with its input.
     """
-    pa, pb, pc, d = plant.state_space()
-    n_plant = pb.size
-    n_filter = controller.measurement_filter_order if controller.measurement_filter else 0
+    pa, pb, pc, d = _plant_state_space(plant)
+    n_plant, inputs = pb.shape
+    n_filter = controller.measurement_filter_polynomials()[1].size - 1
     n_integral = 1 if integral else 0
     n_lag = 1 if derivative and controller.derivative_filter else 0
     fa, fb, fc, fd = _state_space(*controller.setpoint_filter_polynomials())
@@ -71,39 +95,32 @@ def build_chain(plant: Plant, controller: PID, *, integral: bool = True, derivat
     i_setpoint = i_lag + n_lag
     n = i_setpoint + fb.size
 
-    a, b, e = np.zeros((n, n)), np.zeros(n), np.zeros(n)
+    a, b, e = np.zeros((n, n)), np.zeros((n, inputs)), np.zeros(n)
     a[:n_plant, :n_plant], b[:n_plant] = pa, pb
     y = _Row(np.concatenate([pc, np.zeros(n - n_plant)]), d, 0.0)
 
-    # measurement filter: a chain of equal first-order lags
-    measured, slope = y, None
-    for index in range(i_filter, i_filter + n_filter):
-        lag = controller.measurement_filter
-        slope = (measured - _Row.state(index, n)) * (1.0 / lag)
-        a[index], b[index], e[index] = slope.x, slope.v, slope.r
-        measured = _Row.state(index, n)
-
+    measured, slope = _measured(controller, y, slice(i_filter, i_integral), a, b)
     a[i_setpoint:, i_setpoint:], e[i_setpoint:] = fa, fb
-    setpoint = _Row(np.concatenate([np.zeros(i_setpoint), fc]), 0.0, fd)
+    setpoint = _Row(np.concatenate([np.zeros(i_setpoint), fc]), np.zeros(inputs), fd)
     error = setpoint - measured
 
-    integrated = _Row(np.zeros(n), 0.0, 0.0)
+    integrated = _Row(np.zeros(n), np.zeros(inputs), 0.0)
     if integral:
         a[i_integral], b[i_integral], e[i_integral] = error.x, error.v, error.r
-        integrated = _Row.state(i_integral, n)
+        integrated = _Row.state(i_integral, n, inputs)
 
-    differentiated, impulse = _Row(np.zeros(n), 0.0, 0.0), 0.0
+    differentiated, impulse = _Row(np.zeros(n), np.zeros(inputs), 0.0), 0.0
     if n_lag:
         weighted = setpoint * controller.c - measured
-        differentiated = (weighted - _Row.state(i_lag, n)) * (1.0 / controller.derivative_filter)
+        differentiated = (weighted - _Row.state(i_lag, n, inputs)) * (1.0 / controller.derivative_filter)
         a[i_lag], b[i_lag], e[i_lag] = differentiated.x, differentiated.v, differentiated.r
     elif derivative:
         if slope is None:
-            if d:
+            if np.any(measured.v):
                 msg = "an ideal derivative of an output that jumps with the plant's input is not a causal controller"
                 raise ImproperLoopError(msg)
-            slope = _Row(y.x @ a, float(y.x @ b), 0.0)
-        setpoint_slope = _Row(setpoint.x @ a, 0.0, float(setpoint.x @ e))
+            slope = _Row(measured.x @ a, measured.x @ b, 0.0)
+        setpoint_slope = _Row(setpoint.x @ a, np.zeros(inputs), float(setpoint.x @ e))
         differentiated = setpoint_slope * controller.c - slope
         impulse = controller.c * fd
 
@@ -120,20 +137,47 @@ class _Row:
     """A signal of the chain as a linear function of its state, the plant input v and the set-point r."""
 
     x: Array
-    v: float
+    v: Array
     r: float
 
     @classmethod
-    def state(cls, index: int, size: int) -> _Row:
+    def state(cls, index: int, size: int, inputs: int) -> _Row:
         x = np.zeros(size)
         x[index] = 1.0
-        return cls(x, 0.0, 0.0)
+        return cls(x, np.zeros(inputs), 0.0)
 
     def __sub__(self, other: _Row) -> _Row:
         return _Row(self.x - other.x, self.v - other.v, self.r - other.r)
 
     def __mul__(self, factor: float) -> _Row:
         return _Row(self.x * factor, self.v * factor, self.r * factor)
+
+
+def _measured(controller: PID, y: _Row, own: slice, a: Array, b: Array) -> tuple[_Row, _Row | None]:
+    """Enter the measurement filter's states into A and B; return the filtered output, and its slope if known."""
+    n, inputs = b.shape
+    lag = controller.measurement_filter
+    if isinstance(lag, tuple):
+        fa, fb, fc, fd = _state_space(*controller.measurement_filter_polynomials())
+        a[own], b[own] = np.outer(fb, y.x), np.outer(fb, y.v)
+        a[own, own] = fa
+        measured = _Row(fd * y.x, fd * y.v, 0.0)
+        measured.x[own] = fc
+        return measured, None
+    measured, slope = y, None
+    for index in range(own.start, own.stop):  # a chain of equal first-order lags
+        slope = (measured - _Row.state(index, n, inputs)) * (1.0 / lag)
+        a[index], b[index] = slope.x, slope.v
+        measured = _Row.state(index, n, inputs)
+    return measured, slope
+
+
+def _plant_state_space(plant: Plant) -> tuple[Array, Array, Array, Array]:
+    """Return (A, B, C, D) of a plant with an input for each of its dead times."""
+    if isinstance(plant, SumPlant):
+        return plant.state_space_by_dead_time()
+    a, b, c, d = plant.state_space()
+    return a, b[:, None], c, np.array([d])
 
 
 def _state_space(num: Array, den: Array) -> tuple[Array, Array, Array, float]:

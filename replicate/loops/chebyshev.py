@@ -127,6 +127,30 @@ def real_roots(coefficients: Array) -> Array:
     return np.sort(real)
 
 
+def cut(length: float, pieces: int, until: float) -> tuple[Array, float]:
+    """Return the breaks of equal pieces, the last one cut at ``until``, and the share of it that is left."""
+    breaks = length * np.arange(pieces + 1)
+    share = min(1.0, (until - breaks[-2]) / length)
+    if share < 1.0:
+        breaks[-1] = until
+    return np.asarray(breaks, dtype=float), float(share)
+
+
+def cut_last(coefficients: Array, share: float) -> Array:
+    """Return piecewise series with the last piece restricted to a share of it from the left."""
+    if share < 1.0:
+        coefficients = np.array(coefficients)
+        coefficients[-1] = restricted(coefficients[-1], -1.0, 2.0 * share - 1.0)
+    return coefficients
+
+
+def restricted(series: Array, left: float, right: float) -> Array:
+    """Return the Chebyshev series of the same function on a part [left, right] of [-1, 1]."""
+    degree = series.size - 1
+    x = left + 0.5 * (right - left) * (nodes(degree) + 1.0)
+    return np.asarray(values_to_coefficients(degree) @ cheb.chebval(x, series))
+
+
 def _frozen(array: NDArray[np.floating[Any]]) -> Array:
     array.setflags(write=False)  # cached arrays are shared
     return np.asarray(array, dtype=np.float64)

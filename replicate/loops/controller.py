@@ -5,10 +5,11 @@ Every controller here is a special case of
 .. math::
 
     u = k (b r_f - y_f) + \frac{k_i}{s} (r_f - y_f) + \frac{k_d s}{1 + s T_d'} (c r_f - y_f), \qquad
-    r_f = F_{sp} r, \quad y_f = \frac{y}{(1 + s T_f)^n}
+    r_f = F_{sp} r, \quad y_f = F_y y
 
-with set-point weights b and c, derivative filter time :math:`T_d'`, measurement filter of order n (0, 1, 2) and
-set-point filter :math:`F_{sp}`. The series form with derivative filter is contained exactly (`PID.series`).
+with set-point weights b and c, derivative filter time :math:`T_d'`, measurement filter :math:`F_y`, for example
+:math:`1/(1 + s T_f)^n`, and set-point filter :math:`F_{sp}`. The series form with derivative filter is contained
+exactly (`PID.series`).
 """
 
 from __future__ import annotations
@@ -18,10 +19,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 
 ComplexArray = NDArray[np.complex128]
 Array = NDArray[np.float64]
+Filter = float | tuple[tuple[float, ...], tuple[float, ...]]  # a time constant, or (num, den)
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,9 @@ class PID:
     derivative_filter
         Time constant of the filter on the derivative part alone; 0 is an ideal derivative.
     measurement_filter, measurement_filter_order
-        Time constant and order (1 or 2) of the filter on the measurement; time constant 0 is no filter.
+        Time constant and order (1 or 2) of the filter 1/(1 + sT)^order on the measurement; time constant 0 is no
+        filter. Any other filter is a pair (num, den) of polynomial coefficients in descending powers of s, whose order
+        is its own: 1/(1 + sT + (sT)^2/2) is ``((1.0,), (T**2 / 2, T, 1.0))``.
     setpoint_filter
         Time constant of a first-order set-point filter (0: none), or a pair (num, den) of polynomial coefficients in
         descending powers of s.
@@ -45,8 +50,8 @@ class PID:
     Raises
     ------
     LoopError
-        If a gain is not finite, a time constant is negative, the filter order is not 1 or 2, or the set-point filter is
-        not proper and stable.
+        If a gain is not a finite real number, a time constant is negative, the filter order is not 1 or 2, or a filter
+        given by polynomials is not proper and stable.
     """
 
     k: float
@@ -55,23 +60,25 @@ class PID:
     b: float = 1.0
     c: float = 0.0
     derivative_filter: float = 0.0
-    measurement_filter: float = 0.0
+    measurement_filter: Filter = 0.0
     measurement_filter_order: int = 1
-    setpoint_filter: float | tuple[tuple[float, ...], tuple[float, ...]] = 0.0
+    setpoint_filter: Filter = 0.0
 
     def __post_init__(self) -> None:
         for name in ("k", "ki", "kd", "b", "c"):
-            if not np.isfinite(getattr(self, name)):
-                msg = f"the controller's {name} must be a finite number, not {getattr(self, name)}"
-                raise LoopError(msg)
-        for name in ("derivative_filter", "measurement_filter"):
-            if not (np.isfinite(getattr(self, name)) and getattr(self, name) >= 0.0):
-                msg = f"the controller's {name} must be a time constant >= 0, not {getattr(self, name)}"
-                raise LoopError(msg)
-        _check_setpoint_filter(self.setpoint_filter)
+            self._set(name, checks.finite(f"the controller's {name}", getattr(self, name)))
+        lag = checks.non_negative(
+            "the controller's derivative_filter", self.derivative_filter, allowed="a time constant >= 0"
+        )
+        self._set("derivative_filter", lag)
+        for name in ("measurement_filter", "setpoint_filter"):
+            self._set(name, _checked_filter(name, getattr(self, name)))
         if self.measurement_filter_order not in (1, 2):
-            msg = f"the order of the measurement filter must be 1 or 2, not {self.measurement_filter_order}"
+            msg = f"the order of the measurement filter must be 1 or 2, not {self.measurement_filter_order!r}"
             raise LoopError(msg)
+
+    def _set(self, name: str, value: object) -> None:
+        object.__setattr__(self, name, value)
 
     @classmethod
     def ideal(
@@ -83,9 +90,9 @@ class PID:
         b: float = 1.0,
         c: float = 0.0,
         derivative_filter: float = 0.0,
-        measurement_filter: float = 0.0,
+        measurement_filter: Filter = 0.0,
         measurement_filter_order: int = 1,
-        setpoint_filter: float | tuple[tuple[float, ...], tuple[float, ...]] = 0.0,
+        setpoint_filter: Filter = 0.0,
     ) -> PID:
         r"""Return :math:`K (1 + 1/(sT_i) + s T_d)`; ``integral_time=inf`` switches the integral part off.
 
@@ -98,10 +105,11 @@ class PID:
         b, c, derivative_filter, measurement_filter, measurement_filter_order, setpoint_filter
             As for `PID`.
         """
+        gain = checks.finite("gain", gain)
         return cls(
             gain,
             gain / _checked_time("integral_time", integral_time),
-            gain * derivative_time,
+            gain * checks.finite("derivative_time", derivative_time),
             b=b,
             c=c,
             derivative_filter=derivative_filter,
@@ -144,8 +152,10 @@ class PID:
         >>> bool(abs(pid.feedback(s) - 2 * (1 + 1 / (4 * s)) * (1 + s) / (1 + 0.1 * s)) < 1e-14)
         True
         """
-        lag = alpha * derivative_time
-        k = gain * (1.0 + (derivative_time - lag) / _checked_time("integral_time", integral_time))
+        gain, derivative_time = checks.finite("gain", gain), checks.finite("derivative_time", derivative_time)
+        lag = checks.non_negative("alpha", alpha) * derivative_time
+        integral_time = _checked_time("integral_time", integral_time)
+        k = gain * (1.0 + (derivative_time - lag) / integral_time)
         return cls(k, gain / integral_time, gain * derivative_time - k * lag, b=b, c=c, derivative_filter=lag)
 
     @property
@@ -159,22 +169,30 @@ class PID:
         return self.kd / self.k if self.k else float("inf")
 
     def to_series(self) -> tuple[float, float, float]:
-        r"""Return (gain, integral time, derivative time) of the series form :math:`K' (1 + 1/(sT_i'))(1 + sT_d')`.
+        r"""Return (gain, integral time, derivative time) of the series form.
+
+        The series form is :math:`K' (1 + 1/(sT_i'))(1 + sT_d')/(1 + sT_d'')`, its filter the derivative filter of the
+        controller.
 
         Raises
         ------
         LoopError
-            If the controller has a derivative filter, or complex zeros (Ti < 4 Td): then no series form exists.
+            If the controller has complex zeros: then no series form exists.
+
+        Examples
+        --------
+        >>> [round(x, 12) for x in PID.series(2.0, 4.0, 1.0, alpha=0.1).to_series()]
+        [2.0, 4.0, 1.0]
         """
-        if self.derivative_filter:
-            msg = "to_series() is defined for controllers without derivative filter"
-            raise LoopError(msg)
-        ti, td = self.integral_time, self.derivative_time
+        # the numerator (k lag + kd) s^2 + (k + ki lag) s + ki is that of a controller without filter
+        k, kd = self.k + self.ki * self.derivative_filter, self.kd + self.k * self.derivative_filter
+        ti = k / self.ki if self.ki else float("inf")
+        td = kd / k if k else float("inf")
         if ti < 4.0 * td:
             msg = f"no series form: the zeros are complex, Ti = {ti:g} is less than 4 Td = {4 * td:g}"
             raise LoopError(msg)
         factor = 0.5 * (1.0 + np.sqrt(1.0 - 4.0 * td / ti))
-        return self.k * factor, ti * factor, td / factor
+        return k * float(factor), ti * float(factor), td / float(factor)
 
     def feedback_polynomials(self) -> tuple[Array, Array]:
         """Return (num, den), descending powers of s, of the transfer function from -y to u.
@@ -189,19 +207,21 @@ class PID:
             lag = np.array([self.derivative_filter, 1.0]) if self.derivative_filter else np.array([1.0])
             num = np.polyadd(np.polymul(num, lag), np.polymul([self.kd, 0.0], den))
             den = np.polymul(den, lag)
-        if self.measurement_filter:
-            for _ in range(self.measurement_filter_order):
-                den = np.polymul(den, [self.measurement_filter, 1.0])
+        filter_num, filter_den = self.measurement_filter_polynomials()
+        if filter_den.size > 1 or isinstance(self.measurement_filter, tuple):
+            num, den = np.polymul(num, filter_num), np.polymul(den, filter_den)
         return np.atleast_1d(num).astype(float), np.atleast_1d(den).astype(float)
+
+    def measurement_filter_polynomials(self) -> tuple[Array, Array]:
+        """Return (num, den) of the measurement filter."""
+        num, den = _filter_polynomials(self.measurement_filter)
+        if self.measurement_filter_order == 2 and not isinstance(self.measurement_filter, tuple):
+            den = np.asarray(np.polymul(den, den), dtype=float)
+        return num, den
 
     def setpoint_filter_polynomials(self) -> tuple[Array, Array]:
         """Return (num, den) of the set-point filter."""
-        if isinstance(self.setpoint_filter, tuple):
-            num, den = (np.trim_zeros(np.atleast_1d(np.asarray(p, dtype=float)), "f") for p in self.setpoint_filter)
-            return num, den
-        if self.setpoint_filter:
-            return np.array([1.0]), np.array([float(self.setpoint_filter), 1.0])
-        return np.array([1.0]), np.array([1.0])
+        return _filter_polynomials(self.setpoint_filter)
 
     def feedback(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the transfer function from -y to u, measurement filter included.
@@ -230,32 +250,42 @@ class PID:
         return np.asarray((self.b * self.k + integral + derivative) * np.polyval(num, s) / np.polyval(den, s))
 
 
-def _check_setpoint_filter(setpoint_filter: object) -> None:
-    if not isinstance(setpoint_filter, tuple):
-        if not (np.isscalar(setpoint_filter) and np.isreal(setpoint_filter) and 0.0 <= float(setpoint_filter) < np.inf):  # type: ignore[arg-type]
-            msg = f"the controller's setpoint_filter must be a time constant >= 0 or (num, den), not {setpoint_filter}"
-            raise LoopError(msg)
-        return
+def _filter_polynomials(given: Filter) -> tuple[Array, Array]:
+    if isinstance(given, tuple):
+        return np.array(given[0]), np.array(given[1])
+    return np.array([1.0]), np.array([given, 1.0]) if given else np.array([1.0])
+
+
+def _checked_filter(name: str, given: object) -> Filter:
+    """Return a filter's time constant, or its polynomials without leading zeros."""
+    if not isinstance(given, tuple | list):
+        allowed = "a time constant >= 0 or a pair (num, den) of polynomials"
+        return checks.non_negative(f"the controller's {name}", given, allowed=allowed)
     try:
-        num, den = (np.trim_zeros(np.atleast_1d(np.asarray(part, dtype=float)), "f") for part in setpoint_filter)
-    except (TypeError, ValueError):
-        num = den = np.empty(0)
-    if not (num.size and den.size and np.isfinite(num).all() and np.isfinite(den).all()):
-        msg = f"the controller's setpoint_filter must be two non-zero polynomials (num, den), not {setpoint_filter}"
-    elif num.size > den.size:
-        msg = f"the controller's setpoint_filter must be proper: degree {num.size - 1} over degree {den.size - 1}"
+        num, den = (checks.coefficients(name, part) for part in given)
+    except (LoopError, ValueError):
+        shown = checks.shown(given)
+        msg = f"the controller's {name} must be two non-zero polynomials (num, den) of finite numbers, not {shown}"
+        raise LoopError(msg) from None
+    if num.size > den.size:
+        msg = f"the controller's {name} must be proper: degree {num.size - 1} over degree {den.size - 1}"
     elif np.any(np.roots(den).real >= 0.0):
-        msg = f"the controller's setpoint_filter must be stable: {den.tolist()} has a root with Re s >= 0"
+        msg = f"the controller's {name} must be stable: {den.tolist()} has a root with Re s >= 0"
     else:
-        return
+        return tuple(num.tolist()), tuple(den.tolist())
     raise LoopError(msg)
 
 
 def _checked_time(name: str, value: float) -> float:
-    if value == 0.0 or np.isnan(value):
-        msg = f"the controller's {name} must be a number other than 0 (inf switches the integral part off), not {value}"
+    try:
+        time = checks.real(value)
+    except ValueError:
+        time = float("nan")
+    if time == 0.0 or np.isnan(time):
+        given = checks.shown(value)
+        msg = f"the controller's {name} must be a number other than 0 (inf switches the integral part off), not {given}"
         raise LoopError(msg)
-    return value
+    return time
 
 
 class PI(PID):
@@ -277,9 +307,9 @@ class PI(PID):
         ki: float = 0.0,
         b: float = 1.0,
         *,
-        measurement_filter: float = 0.0,
+        measurement_filter: Filter = 0.0,
         measurement_filter_order: int = 1,
-        setpoint_filter: float | tuple[tuple[float, ...], tuple[float, ...]] = 0.0,
+        setpoint_filter: Filter = 0.0,
     ) -> None:
         super().__init__(
             k,
@@ -304,4 +334,5 @@ class PI(PID):
         b
             Set-point weight of the proportional part.
         """
+        gain = checks.finite("gain", gain)
         return cls(gain, gain / _checked_time("integral_time", integral_time), b)

@@ -22,6 +22,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.loops import checks
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PI
 from replicate.loops.errors import LoopError
@@ -33,6 +34,7 @@ from replicate.loops.pi_tangency import closest_frequencies, corner_optimum, smo
 from replicate.loops.plant import Plant
 from replicate.loops.sensitivity import sensitivity_peak
 from replicate.loops.setpoint_weights import setpoint_weight
+from replicate.loops.units import Units
 
 Array = NDArray[np.float64]
 
@@ -66,8 +68,15 @@ def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) ->
     True
     """
     circle = Circle.of(ms, mp)
-    if gain_is_negative(plant):
-        return _mirrored(design_pi(-plant, ms, mp))
+    checks.instance("the plant of a design", plant, Plant, "a Plant")
+    units = Units.of(plant)
+    scaled = units.plant(plant)
+    design = _mirrored(_design(-scaled, circle)) if scaled.gain_is_negative else _design(scaled, circle)
+    return _in_units(design, units)
+
+
+def _design(plant: Plant, circle: Circle) -> PIDesign:
+    """Design for a plant of positive gain whose numbers are of the order of one."""
     w = design_grid(plant)
     solutions: list[PIDesign] = []
     for maximum in local_maxima(plant, circle, w):
@@ -85,11 +94,16 @@ def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) ->
     return replace(ordered[0], solutions=tuple(ordered))
 
 
-def gain_is_negative(plant: Plant) -> bool:
-    """Whether only a negative ki can stabilise the plant: the characteristic function at s = 0 has the sign of ki G."""
-    if plant.is_rational:
-        return bool(plant.num[-1] < 0.0)  # the denominator is monic
-    return bool(plant.delay_free(design_grid(plant)[0]).real < 0.0)
+def _in_units(design: PIDesign, units: Units) -> PIDesign:
+    """Return a design made in its own units in those of the plant."""
+    return replace(
+        design,
+        k=design.k / units.gain,
+        ki=design.ki / (units.gain * units.time),
+        frequency=design.frequency / units.time,
+        frequencies=tuple(w / units.time for w in design.frequencies),
+        solutions=tuple(_in_units(solution, units) for solution in design.solutions if solution is not design),
+    )
 
 
 def _mirrored(design: PIDesign) -> PIDesign:

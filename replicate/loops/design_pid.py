@@ -11,13 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
+from replicate.loops import checks
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PI
-from replicate.loops.design_pi import design_pi, gain_is_negative
+from replicate.loops.design_pi import design_pi
 from replicate.loops.errors import LoopError
 from replicate.loops.frequency_grids import design_grid
 from replicate.loops.loop import Loop
@@ -26,6 +26,7 @@ from replicate.loops.pid_optimality import GridProblem
 from replicate.loops.pid_result import PIDDesign, Status
 from replicate.loops.pid_search import Search
 from replicate.loops.plant import Plant
+from replicate.loops.units import Units
 
 DERIVATIVE_STARTS = (0.0, 0.3, 0.8, 1.8)  # kd of the starts, in units of k / (frequency of the PI design)
 CAUTIOUS = 0.1  # ki of the second round of starts, in units of that of the first
@@ -35,7 +36,7 @@ def design_pid(
     plant: Plant,
     ms: float | None = None,
     mp: float | None = None,
-    constraints: Sequence[Constraint | Literal["curvature", "phase"]] | None = None,
+    constraints: Sequence[Constraint | str] | None = None,
     *,
     start: tuple[float, float, float] | None = None,
 ) -> PIDDesign:
@@ -72,13 +73,41 @@ def design_pid(
     1.4
     """
     circle = Circle.of(ms, mp)
-    if gain_is_negative(plant):
-        mirrored = None if start is None else (-start[0], -start[1], -start[2])
-        found = design_pid(-plant, ms, mp, constraints, start=mirrored)
-        return replace(found, k=-found.k, ki=-found.ki, kd=-found.kd)
+    checks.instance("the plant of a design", plant, Plant, "a Plant")
     if plant.is_rational and plant.num.size == plant.den.size:
         msg = "the plant's output jumps with its input: multiply a measurement filter into the plant to design a PID"
         raise LoopError(msg)
+    units = Units.of(plant)
+    scaled = units.plant(plant)
+    sign = -1.0 if scaled.gain_is_negative else 1.0
+    if start is not None:
+        k, ki, kd = (sign * units.gain * checks.finite("start", gain) for gain in start)
+        start = (k, ki * units.time, kd / units.time)
+    if constraints is not None:
+        constraints = [_scaled(item, units.time) for item in constraints]
+    found = _design(scaled if sign > 0.0 else -scaled, ms, mp, circle, constraints, start)
+    gain = sign / units.gain
+    active = tuple(replace(part, frequency=part.frequency / units.time) for part in found.active)
+    return replace(
+        found,
+        k=found.k * gain, ki=found.ki * gain / units.time, kd=found.kd * gain * units.time,
+        frequency=found.frequency / units.time, active=active,
+    )  # fmt: skip
+
+
+def _scaled(item: Constraint | str, time: float) -> Constraint | str:
+    return replace(item, low=item.low * time, high=item.high * time) if isinstance(item, Constraint) else item
+
+
+def _design(
+    plant: Plant,
+    ms: float | None,
+    mp: float | None,
+    circle: Circle,
+    constraints: Sequence[Constraint | str] | None,
+    start: tuple[float, float, float] | None,
+) -> PIDDesign:
+    """Design for a plant of positive gain whose numbers are of the order of one."""
     pi = design_pi(plant, ms, mp)
     shape: Sequence[Constraint | str] = ("phase",) if plant.integrators else ("curvature", "phase")
     asked = [Constraint("sensitivity")]

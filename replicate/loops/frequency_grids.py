@@ -20,14 +20,15 @@ def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Ar
     """Return frequencies that resolve every corner, resonance and dead-time rotation of L up to ``end``."""
     corners = transfer.corner_frequencies
     slow = [end, *np.abs(corners).tolist()]
-    if transfer.dead_time:
-        slow.append(1.0 / transfer.dead_time)
+    longest = max((part.dead_time for part in transfer.plant.parts), default=transfer.dead_time)
+    if longest:
+        slow.append(1.0 / longest)
     start = 1e-4 * min(slow)
-    if not transfer.plant.is_rational:
-        start = min(start, 1e-8 * end)
+    if not transfer.plant.parts:
+        start = min(start, 1e-8 * end, 1e-4 * transfer.plant.corners[0])
     parts = [_logarithmic(start, end, per_decade)]
-    if transfer.dead_time:
-        step = np.pi / (10.0 * transfer.dead_time)
+    if longest:
+        step = np.pi / (10.0 * longest)
         if end > step * MOST_POINTS:
             msg = f"|L| stays near one for {MOST_POINTS // 20} turns of the dead time: stability is not resolved"
             raise LoopError(msg)
@@ -73,19 +74,14 @@ def plants_grid(first: Plant, second: Plant, decades: int) -> Array:
 
 def design_grid(plant: Plant) -> Array:
     """Return the frequencies on which a design looks for its optimum, before polishing."""
-    if plant.is_rational:
-        corners = np.abs(np.concatenate([plant.poles(), plant.zeros()]))
-        corners = corners[corners > 0.0]
-    else:
-        corners = np.array([1e-1, 1e2])
-    if plant.dead_time:
-        corners = np.append(corners, 1.0 / plant.dead_time)
-    if corners.size == 0:
-        corners = np.array([1.0])
+    corners = np.array(plant.corners)
+    longest = max((part.dead_time for part in plant.parts), default=plant.dead_time)
+    if longest:
+        corners = np.append(corners, 1.0 / longest)
     low, high = 2e-3 * corners.min(), 1e3 * corners.max()
     parts = [_logarithmic(low, high, 70)]
-    if plant.dead_time:
-        step = np.pi / (24.0 * plant.dead_time)
+    if longest:
+        step = np.pi / (24.0 * longest)
         parts.append(np.asarray(np.arange(1, 24 * 12) * step, dtype=float))
     parts += _around(_resonant(plant.poles()), _two_sided(20.0, 0.1, 10), narrowest=1e-9)
     grid = np.unique(np.concatenate(parts))

@@ -1,8 +1,7 @@
 """Derivatives of a plant's frequency response with respect to frequency, exact.
 
-For rational plants the Taylor coefficients of numerator, denominator and dead time are divided and multiplied
-as series.
-For plants given by a function they come from Cauchy's integral on a circle around i w, which converges geometrically.
+The Taylor coefficients of the plant's part without dead time (`Plant.taylor`) and of the dead time are multiplied as
+series.
 """
 
 from __future__ import annotations
@@ -17,26 +16,20 @@ from replicate.loops.plant import Plant
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-CIRCLE_POINTS = 48
-CIRCLE_RADIUS = 0.35  # of |w|; a cut or poles on the negative real axis stay well outside
-
 
 def plant_jet(plant: Plant, w: Array, order: int) -> ComplexArray:
     """Return the Taylor coefficients of G(i w) in w, shape (order + 1, len(w)); row n is n-th derivative / n!."""
     s = 1j * np.asarray(w, dtype=float)
-    if plant.is_rational:
-        series = series_quotient(_polynomial_jet(plant.num, s, order), _polynomial_jet(plant.den, s, order))
-    else:
-        turn = np.exp(2j * np.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
-        radius = CIRCLE_RADIUS * np.abs(s)
-        around = plant.delay_free(s[:, None] + radius[:, None] * turn)
-        powers = np.exp(-2j * np.pi * np.outer(np.arange(CIRCLE_POINTS), np.arange(order + 1)) / CIRCLE_POINTS)
-        series = (around @ powers / CIRCLE_POINTS).T / radius ** np.arange(order + 1)[:, None]
+    series = plant.taylor(s, order)
     if plant.dead_time:
-        delay = np.exp(-s * plant.dead_time)
-        delays = np.array([delay * (-plant.dead_time) ** n / factorial(n) for n in range(order + 1)])
-        series = series_product(series, delays)
+        series = series_product(series, delay_series(s, plant.dead_time, order))
     return np.asarray(series * (1j ** np.arange(order + 1))[:, None])
+
+
+def delay_series(s: ComplexArray, dead_time: float, order: int) -> ComplexArray:
+    """Return the Taylor coefficients of exp(-s dead_time) at ``s``, shape (order + 1, len(s))."""
+    delay = np.exp(-s * dead_time)
+    return np.array([delay * (-dead_time) ** n / factorial(n) for n in range(order + 1)])
 
 
 def controller_basis_jets(w: Array, order: int) -> ComplexArray:
@@ -63,8 +56,3 @@ def series_quotient(a: ComplexArray, b: ComplexArray) -> ComplexArray:
     for n in range(a.shape[0]):
         quotient[n] = (a[n] - sum(quotient[i] * b[n - i] for i in range(n))) / b[0]
     return quotient
-
-
-def _polynomial_jet(polynomial: Array, s: ComplexArray, order: int) -> ComplexArray:
-    rows = [np.polyval(np.polyder(polynomial, n), s) / factorial(n) for n in range(order + 1)]
-    return np.array(rows, dtype=complex)

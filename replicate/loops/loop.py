@@ -9,14 +9,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from replicate.loops import inversion, margins, method_of_steps, poles, sensitivity, stability
+from replicate.loops import checks, inversion, margins, poles, sensitivity, stability
+from replicate.loops.control_signal import control_signal
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.margins import Margins
 from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
+from replicate.loops.responses import responses
 from replicate.loops.signal import Signal
+from replicate.loops.units import Units
 
 ComplexArray = NDArray[np.complex128]
 
@@ -52,6 +55,8 @@ class Loop:
     ------
     ImproperLoopError
         If the loop gain grows without bound at high frequency.
+    LoopError
+        If the plant is not a Plant or the controller not a PI or PID.
 
     Examples
     --------
@@ -67,19 +72,29 @@ class Loop:
     """
 
     def __init__(self, plant: Plant, controller: PID) -> None:
+        checks.instance("the plant of a loop", plant, Plant, "a Plant (Plant.from_control makes one)")
+        checks.instance("the controller of a loop", controller, PID, "a PI or PID")
         self.plant = plant
         self.controller = controller
-        self.transfer = LoopTransfer.of(plant, controller)
+        # everything is computed in units in which the loop's numbers are of the order of one
+        self._units = Units.of(plant, controller)
+        self._plant, self._controller = self._units.plant(plant), self._units.controller(controller)
+        self._transfer = LoopTransfer.of(self._plant, self._controller)
 
     def __call__(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the loop transfer function L(s) = C(s) G(s)."""
-        return self.transfer(s)
+        return self._transfer(np.asarray(s, dtype=complex) * self._units.time)
+
+    @cached_property
+    def transfer(self) -> LoopTransfer:
+        """The loop transfer function, in the units of the plant."""
+        return LoopTransfer.of(self.plant, self.controller)
 
     # ---- stability ------------------------------------------------------------------------------------------------
 
     @cached_property
     def _stable(self) -> bool:
-        return stability.is_stable(self.transfer)
+        return stability.is_stable(self._transfer)
 
     def is_stable(self) -> bool:
         """Return whether all closed-loop poles are in the open left half-plane, by the argument principle."""
@@ -87,11 +102,11 @@ class Loop:
 
     def unstable_poles(self) -> int:
         """Return the number of closed-loop poles in the closed right half-plane."""
-        return stability.unstable_poles(self.transfer)
+        return stability.unstable_poles(self._transfer)
 
     @cached_property
     def _poles(self) -> ComplexArray:
-        return poles.rightmost_poles(self.plant, self.controller, self.transfer, count=4)
+        return poles.rightmost_poles(self._plant, self._controller, self._transfer, count=4)
 
     def rightmost_pole(self) -> complex:
         """Return the closed-loop pole with the largest real part (of a pair the one with Im > 0).
@@ -101,14 +116,16 @@ class Loop:
         if self._poles.size == 0:
             msg = "a static loop has no poles; give a horizon to get its response"
             raise LoopError(msg)
-        return complex(self._poles[0])
+        return complex(self._poles[0] / self._units.time)
 
     def poles(self, count: int = 4) -> ComplexArray:
-        """Return up to ``count`` rightmost closed-loop poles, descending real part, one of each conjugate pair."""
-        if count < 1:
-            msg = f"the number of poles must be at least 1, not {count}"
-            raise LoopError(msg)
-        return poles.rightmost_poles(self.plant, self.controller, self.transfer, count=count)
+        """Return up to ``count`` rightmost closed-loop poles, descending real part, one of each conjugate pair.
+
+        A multiple pole is listed once; of poles with equal real parts the one of the lowest frequency comes first.
+        """
+        count = checks.whole("the number of poles", count)
+        found = poles.rightmost_poles(self._plant, self._controller, self._transfer, count=count)
+        return np.asarray(found / self._units.time)
 
     def _require_stable(self, what: str) -> None:
         if not self._stable:
@@ -126,17 +143,20 @@ class Loop:
             If the loop is unstable.
         """
         self._require_stable("sensitivity peak")
-        return sensitivity.sensitivity_peak(self.transfer, self._poles)
+        return self._peak(sensitivity.sensitivity_peak(self._transfer, self._poles))
 
     def complementary_peak(self) -> FrequencyPeak:
         """Return Mp = max |L/(1+L)| with its frequency; UnstableLoopError if the loop is unstable."""
         self._require_stable("complementary sensitivity peak")
-        return sensitivity.complementary_peak(self.transfer, self._poles)
+        return self._peak(sensitivity.complementary_peak(self._transfer, self._poles))
+
+    def _peak(self, scaled: FrequencyPeak) -> FrequencyPeak:
+        return FrequencyPeak(scaled.value, scaled.frequency / self._units.time)
 
     def margins(self) -> Margins:
         """Return gain, phase (degrees) and delay margin with their frequencies; UnstableLoopError if unstable."""
         self._require_stable("stability margins")
-        return margins.margins(self.transfer)
+        return margins.margins(self._transfer).in_time(self._units.time)
 
     # ---- time domain ----------------------------------------------------------------------------------------------
 
@@ -149,16 +169,20 @@ class Loop:
             If the loop is unstable.
         """
         self._require_stable("settling horizon")
-        if not self.plant.is_rational:
+        if not self.plant.parts:
             # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
             return TAIL / abs(self.rightmost_pole().real)
-        return SETTLED / self._slowest_decay() + 4.0 * self.plant.dead_time
+        return SETTLED / self._slowest_decay() + 4.0 * self._longest
+
+    @property
+    def _longest(self) -> float:
+        return max((part.dead_time for part in self.plant.parts), default=self.plant.dead_time)
 
     def _slowest_decay(self) -> float:
         """Return the decay rate of the slowest mode: of the loop, of its neutral tail, or of the set-point filter."""
         rates = [abs(self.rightmost_pole().real), *(-np.roots(self.controller.setpoint_filter_polynomials()[1]).real)]
-        if self.plant.dead_time and self.transfer.feedthrough:  # the poles' real parts tend to this far from the axis
-            rates.append(-np.log(self.transfer.feedthrough) / self.plant.dead_time)
+        if self._longest and self._transfer.feedthrough:  # the poles' real parts tend to this far from the axis
+            rates.append(-np.log(self._transfer.feedthrough) / self._longest)
         return float(min(rates))
 
     def step(self, until: float | None = None) -> Signal:
@@ -208,33 +232,32 @@ class Loop:
         UnstableLoopError
             If no horizon is given and the loop is unstable.
         """
-        end = load_at + self.horizon() if until is None else float(until)
-        if not 0.0 < end < np.inf:
-            msg = f"the horizon must be positive and finite, not {end:g}"
-            raise LoopError(msg)
-        for name, value in (("setpoint", setpoint), ("load", load)):
-            if not np.isfinite(value):
-                msg = f"the {name} step must be a finite number, not {value}"
-                raise LoopError(msg)
-        if load_at < 0.0 or load_at >= end:
+        setpoint = checks.finite("the setpoint step", setpoint)
+        load = checks.finite("the load step", load)
+        load_at = checks.non_negative("load_at", load_at, allowed="a time with 0 <= load_at < the horizon")
+        if until is None:
+            end = load_at + self.horizon()
+        else:
+            end = checks.positive("the horizon until", until, allowed="a finite time > 0")
+        if load_at >= end:
             msg = f"the load step must come within the horizon, 0 <= load_at < {end:g}, not at {load_at:g}"
             raise LoopError(msg)
         if load and load_at:
             base = self.respond(setpoint=setpoint, until=end)
             added = self.respond(setpoint=0.0, load=load, until=end - load_at)
             return Response(base.output + added.output.delayed(load_at), base.control + added.control.delayed(load_at))
-        if not self.plant.is_rational:
-            return self._respond_by_inversion(setpoint, load, end)
-        length, y, u = method_of_steps.respond(self.plant, [self.controller], end, setpoint=setpoint, load=load)
-        return Response(*self._signals(length, y[0], u[0], end, setpoint, load))
-
-    def _signals(
-        self, length: float, y: NDArray[np.float64], u: NDArray[np.float64], end: float, setpoint: float, load: float
-    ) -> tuple[Signal, Signal]:
+        time, gain = self._units.time, self._units.gain
+        if not self.plant.parts:
+            breaks, y, control_breaks, u = self._by_inversion(setpoint, load * gain, end / time)
+        else:
+            [(breaks, y, u)] = responses(
+                self._plant, [self._controller], end / time, setpoint=setpoint, load=load * gain
+            )
+            control_breaks = breaks
         final_y, final_u = self.steady_state(setpoint, load)
-        return (
-            Signal.from_pieces(length, y, end, final=final_y, stable=self.is_stable),
-            Signal.from_pieces(length, u, end, final=final_u, stable=self.is_stable),
+        return Response(
+            Signal(breaks * time, y, final=final_y, stable=self.is_stable),
+            Signal(control_breaks * time, u / gain, final=final_u, stable=self.is_stable),
         )
 
     def steady_state(self, setpoint: float, load: float) -> tuple[float, float]:
@@ -246,51 +269,39 @@ class Loop:
             Heights of the two steps.
         """
         gain = self.plant.gain
-        num, den = self.controller.setpoint_filter_polynomials()
-        reference = setpoint * float(num[-1] / den[-1])
+        (num, den), (filter_num, filter_den) = (
+            self.controller.setpoint_filter_polynomials(),
+            self.controller.measurement_filter_polynomials(),
+        )
+        reference, measured = setpoint * float(num[-1] / den[-1]), float(filter_num[-1] / filter_den[-1])
+        blocked = self.plant.num[-1] == 0.0 if self.plant.is_rational else gain == 0.0
+        nan = float("nan")
         if self.controller.ki:
-            if not self.plant.is_rational or self.plant.num[-1]:
-                output = reference
-                return output, (output / gain if gain else float("nan")) - load
-            return float("nan"), float("nan")
+            if blocked or not measured:
+                return nan, nan
+            output = reference / measured
+            return output, (output / gain if gain else nan) - load
         k = self.controller.k
         if np.isinf(gain):  # the integrator's input vanishes: u = -load
-            return (self.controller.b * reference + load / k if k else float("nan")), -load
-        output = gain * (k * self.controller.b * reference + load) / (1.0 + gain * k)
-        return output, k * (self.controller.b * reference - output)
+            return ((self.controller.b * reference + load / k) / measured if k and measured else nan), -load
+        output = gain * (k * self.controller.b * reference + load) / (1.0 + gain * k * measured)
+        return output, k * (self.controller.b * reference - measured * output)
 
-    def _respond_by_inversion(self, setpoint: float, load: float, end: float) -> Response:
-        plant, controller = self.plant, self.controller
+    def _by_inversion(
+        self, setpoint: float, load: float, end: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        plant, controller = self._plant, self._controller
 
         def forward(s: ArrayLike) -> ComplexArray:
             s = np.asarray(s, dtype=complex)
             return np.asarray((setpoint * controller.feedforward(s) + load) * plant.delay_free(s) / s)
 
-        closed = inversion.ClosedLoop(self.transfer, forward, self.poles(count=8))
-        breaks, coefficients = inversion.respond(closed, end, 1.0 / abs(self.rightmost_pole().real))
-        final_y, final_u = self.steady_state(setpoint, load)
-        output = Signal(breaks, coefficients, final=final_y, stable=self.is_stable)
-        return Response(output, _control_from_output(controller, output, setpoint, final_u))
+        closed = inversion.ClosedLoop(self._transfer, forward, self.poles(count=8) * self._units.time)
+        breaks, y = inversion.respond(closed, end, 1.0 / abs(self._poles[0].real))
+        return breaks, y, *control_signal(controller, breaks, y, setpoint)
 
     def __repr__(self) -> str:
         return f"Loop({self.plant!r}, {self.controller!r})"
-
-
-def _control_from_output(controller: PID, output: Signal, setpoint: float, final: float) -> Signal:
-    """Return u of a controller without filters, computed from y itself."""
-    num, den = controller.setpoint_filter_polynomials()
-    if controller.derivative_filter or controller.measurement_filter or den.size > 1 or num.size > 1:
-        msg = "the control signal of a plant given by a function is available for controllers without filters only"
-        raise LoopError(msg)
-    error = output * -1.0
-    error.coefficients[:, 0] += setpoint
-    control = error.antiderivative() * controller.ki
-    proportional = output * -controller.k
-    proportional.coefficients[:, 0] += controller.k * controller.b * setpoint
-    control = control + proportional
-    if controller.kd:
-        control = control + output.derivative() * -controller.kd
-    return Signal(control.breaks, control.coefficients, final=final, stable=output.stable)
 
 
 def step_responses(
@@ -318,10 +329,15 @@ def step_responses(
     """
     if not controllers:
         return []
-    length, y, _ = method_of_steps.respond(plant, list(controllers), until, setpoint=setpoint, load=load)
+    until = checks.positive("the horizon until", until, allowed="a finite time > 0")
+    units = Units.of(plant, controllers[0])
+    found = responses(
+        units.plant(plant), [units.controller(c) for c in controllers], until / units.time,
+        setpoint=setpoint, load=load * units.gain,
+    )  # fmt: skip
     signals = []
-    for controller, coefficients in zip(controllers, y, strict=True):
+    for controller, (breaks, y, _) in zip(controllers, found, strict=True):
         loop = Loop(plant, controller)
         final, _ = loop.steady_state(setpoint, load)
-        signals.append(Signal.from_pieces(length, coefficients, until, final=final, stable=loop.is_stable))
+        signals.append(Signal(breaks * units.time, y, final=final, stable=loop.is_stable))
     return signals

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.plant import Plant
+from replicate.loops.sum_plant import SumPlant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -41,34 +42,60 @@ class LoopTransfer:
         ImproperLoopError
             If |L| grows without bound at high frequency, or L tends to -1 there in a loop without dead time.
         """
+        from replicate.loops.other_transfers import FunctionTransfer, SumTransfer
+
         num, den = controller.feedback_polynomials()
-        if plant.is_rational:
-            num = np.asarray(np.polymul(num, plant.num), dtype=float)
-            den = np.asarray(np.polymul(den, plant.den), dtype=float)
-        transfer = cls(np.trim_zeros(num, "f"), den, plant.dead_time, plant)
-        if plant.is_rational and transfer.num.size > den.size:
+        num = np.trim_zeros(num, "f")
+        if isinstance(plant, SumPlant):
+            return SumTransfer.of_parts(plant, num, den)
+        if not plant.is_rational:
+            return FunctionTransfer(num, den, plant.dead_time, plant)
+        num = np.trim_zeros(np.asarray(np.polymul(num, plant.num), dtype=float), "f") if num.size else num
+        den = np.asarray(np.polymul(den, plant.den), dtype=float)
+        transfer = LoopTransfer(num, den, plant.dead_time, plant)
+        if transfer.num.size > den.size:
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
             raise ImproperLoopError(msg)
-        if plant.is_rational and not plant.dead_time and transfer.num.size == den.size:
-            direct = transfer.num[0] / den[0]
-            if abs(1.0 + direct) < 1e-12:
-                msg = "the loop is not well posed: without dead time L must not tend to -1 at infinite frequency"
-                raise ImproperLoopError(msg)
+        if not plant.dead_time and transfer.num.size == den.size and abs(1.0 + transfer.num[0] / den[0]) < 1e-12:
+            msg = "the loop is not well posed: without dead time L must not tend to -1 at infinite frequency"
+            raise ImproperLoopError(msg)
         return transfer
+
+    @property
+    def is_polynomial(self) -> bool:
+        """Whether the closed loop's poles are the roots of a polynomial: a rational loop without dead time."""
+        return self.dead_time == 0.0
+
+    @property
+    def open_loop_poles(self) -> ComplexArray:
+        """The poles of the open loop's rational part: the zeros of f where L is negligible."""
+        return np.asarray(np.roots(self.den), dtype=complex)
+
+    @property
+    def is_rational(self) -> bool:
+        """Whether L is a rational function times one dead time."""
+        return True
 
     def __call__(self, s: Any) -> ComplexArray:
         """Evaluate L(s) at complex ``s``."""
         s = np.asarray(s, dtype=complex)
-        value = np.polyval(self.num, s) / np.polyval(self.den, s) * np.exp(-s * self.dead_time)
-        return np.asarray(value if self.plant.is_rational else value * self.plant.delay_free(s))
+        return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s) * np.exp(-s * self.dead_time))
 
     def characteristic(self, s: Any) -> ComplexArray:
         """Evaluate f(s) = D(s) + N(s) g(s) exp(-s dead_time)."""
         s = np.asarray(s, dtype=complex)
-        value = np.polyval(self.num, s) * np.exp(-s * self.dead_time)
-        if not self.plant.is_rational:
-            value = value * self.plant.delay_free(s)
-        return np.asarray(np.polyval(self.den, s) + value)
+        return np.asarray(np.polyval(self.den, s) + np.polyval(self.num, s) * np.exp(-s * self.dead_time))
+
+    def characteristic_slope(self, s: ComplexArray) -> ComplexArray:
+        """Evaluate f'(s)."""
+        top = np.polyval(np.polyder(self.num), s) - self.dead_time * np.polyval(self.num, s)
+        return np.asarray(np.polyval(np.polyder(self.den), s) + top * np.exp(-s * self.dead_time))
+
+    def size(self, s: ComplexArray) -> Array:
+        """Return the sum of the moduli of f's terms: its rounding error is this times the relative precision."""
+        modulus = np.abs(s)
+        top = np.polyval(np.abs(self.num), modulus) * np.abs(np.exp(-s * self.dead_time))
+        return np.asarray(np.polyval(np.abs(self.den), modulus) + top)
 
     def log_derivative(self, s: Any) -> ComplexArray:
         """Evaluate L'(s)/L(s), as exact as the plant's own `Plant.log_derivative`."""
@@ -76,16 +103,19 @@ class LoopTransfer:
         rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(
             np.polyder(self.den), s
         ) / np.polyval(self.den, s)
-        return np.asarray(
-            rational - self.dead_time if self.plant.is_rational else rational + self.plant.log_derivative(s)
-        )
+        return np.asarray(rational - self.dead_time)
 
     @cached_property
     def feedthrough(self) -> float:
         """|L| in the limit of infinite frequency (0 for retarded loops)."""
-        if not self.plant.is_rational or self.num.size < self.den.size:
+        if self.num.size < self.den.size:
             return 0.0
         return float(abs(self.num[0] / self.den[0])) if self.num.size else 0.0
+
+    @property
+    def infinite_at_rest(self) -> bool:
+        """Whether |L| is infinite at s = 0."""
+        return bool(self.den[-1] == 0.0)
 
     @cached_property
     def gain_stationary(self) -> Array:
@@ -103,14 +133,16 @@ class LoopTransfer:
 
     @cached_property
     def gain_crossovers(self) -> Array:
-        """All frequencies at which |L(i w)| = 1, ascending (rational plants)."""
-        roots = _roots(_squared_magnitude(self.num), _squared_magnitude(self.den))
+        """All frequencies at which |L(i w)| = 1, ascending."""
+        n, d = _squared_magnitude(self.num), _squared_magnitude(self.den)
+        roots = _roots(n, d)
         real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots.real))]
         w = np.sort(np.sqrt(real))
         for _ in range(3):  # Newton on log |L|
             slope = (1j * self.log_derivative(1j * w)).real
-            w = w - np.divide(np.log(np.abs(self(1j * w))), slope, out=np.zeros_like(w), where=slope != 0.0)
-        return w
+            step = np.divide(np.log(np.abs(self(1j * w))), slope, out=np.zeros_like(w), where=slope != 0.0)
+            w = w - np.clip(step, -0.5 * w, 0.5 * w)
+        return np.sort(w)
 
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
@@ -121,20 +153,17 @@ class LoopTransfer:
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which |L(i w)| provably stays below ``level`` > `feedthrough`.
 
-        For rational plants |L| is monotone beyond its last stationary point, so one evaluation is a proof. For plants
-        given by a function the decay is checked over eight octaves.
+        |L| is monotone beyond its last stationary point, so one evaluation is a proof.
         """
-        corners = np.abs(self.corner_frequencies)
-        w = max(
-            [1e-6, *self.gain_stationary.tolist(), *corners.tolist()]
-            if self.plant.is_rational
-            else [1.0, *corners.tolist()]
-        )
-        w *= 1.0 + 1e-9
-        for _ in range(200):
-            if abs(self(1j * w)) < level and (
-                self.plant.is_rational or np.all(np.abs(self(1j * w * 2.0 ** np.arange(1, 9))) < level)
-            ):
+        moduli = [*self.gain_stationary.tolist(), *np.abs(self.corner_frequencies).tolist()]
+        return self._fall(max(moduli, default=1.0), level, 0)
+
+    def _fall(self, start: float, level: float, octaves: int) -> float:
+        """Return a frequency from which on |L| is below a level, as seen there and over some octaves beyond."""
+        ahead = 2.0 ** np.arange(octaves + 1)
+        w = start * (1.0 + 1e-9)
+        for _ in range(400):
+            if np.all(np.abs(self(1j * w * ahead)) < level):
                 return float(w)
             w *= 1.5
         msg = f"the loop gain does not fall below {level:g} at high frequency"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +31,12 @@ class Margins:
     phase_crossover, phase_crossover_low, gain_crossover, delay_crossover
         Frequencies that belong to gain, gain_reduction, phase and delay (``nan`` where there is none), rad per
         unit time.
-    phase_crossovers, gain_crossovers
-        All frequencies with arg L = -180 degrees (modulo 360) and with |L| = 1, ascending.
+    gain_crossovers
+        All frequencies with |L| = 1, ascending.
+    phase_crossovers
+        Frequencies with arg L = -180 degrees (modulo 360), ascending. With dead time there are infinitely many: these
+        are all that matter, up to one full turn of the dead time beyond the last frequency at which |L| reaches one
+        half (for a loop whose |L| tends to d > 0, half way between d and one).
     """
 
     gain: float
@@ -46,6 +50,19 @@ class Margins:
     phase_crossovers: tuple[float, ...]
     gain_crossovers: tuple[float, ...]
 
+    def in_time(self, time: float) -> Margins:
+        """Return the margins of the same loop in a unit of time that is ``time`` times smaller."""
+        return replace(
+            self,
+            delay=self.delay * time,
+            phase_crossover=self.phase_crossover / time,
+            phase_crossover_low=self.phase_crossover_low / time,
+            gain_crossover=self.gain_crossover / time,
+            delay_crossover=self.delay_crossover / time,
+            phase_crossovers=tuple(w / time for w in self.phase_crossovers),
+            gain_crossovers=tuple(w / time for w in self.gain_crossovers),
+        )
+
 
 def margins(transfer: LoopTransfer) -> Margins:
     """Return the margins of a stable loop; the caller has checked stability."""
@@ -54,7 +71,7 @@ def margins(transfer: LoopTransfer) -> Margins:
     above, below = factors > 1.0, factors < 1.0
     gain, gain_at = _extreme(factors[above], phase_crossovers[above], np.argmin, float("inf"))
     reduction, reduction_at = _extreme(factors[below], phase_crossovers[below], np.argmax, 0.0)
-    if not transfer.dead_time and transfer.feedthrough:
+    if not transfer.dead_time and transfer.feedthrough and transfer.is_polynomial:
         limit = _algebraic_limit(transfer)
         if 1.0 < limit < gain:
             gain, gain_at = limit, float("inf")
@@ -64,7 +81,7 @@ def margins(transfer: LoopTransfer) -> Margins:
         # the tail of a neutral loop loses stability when |L(i inf)| reaches one
         gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
 
-    w = transfer.gain_crossovers if transfer.plant.is_rational else _gain_crossovers(transfer)
+    w = transfer.gain_crossovers
     lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
     phase, phase_at = _extreme(np.degrees(lag), w, np.argmin, float("inf"))
     delay, delay_at = _extreme(lag / w if w.size else lag, w, np.argmin, float("inf"))
@@ -93,14 +110,14 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
     """Return all frequencies with L real and negative, up to where |L| only falls."""
     if transfer.num.size == 0:
         return np.empty(0)
-    if transfer.plant.is_rational and not transfer.dead_time:
+    if transfer.is_polynomial:
         corners = np.abs(transfer.corner_frequencies)
-        end = 2.0 * max([1e-6, *transfer.real_frequencies.tolist(), *corners.tolist()])
+        end = 2.0 * max([*transfer.real_frequencies.tolist(), *corners.tolist()], default=1.0)
     else:
         end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     if transfer.dead_time:
         end += 2.5 * np.pi / transfer.dead_time  # one full turn more, so that a crossover below one is always included
-    elif not transfer.plant.is_rational:
+    elif not transfer.is_polynomial:
         end = transfer.beyond(1e-6)
     w = loop_grid(transfer, end, per_decade=80)
     value = transfer(1j * w)
@@ -120,15 +137,3 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
     # without integral action the curve starts on the real axis, where a pole can pass through s = 0
     starts_negative = bool(transfer.den[-1]) and float(complex(transfer(0.0)).real) < 0.0
     return np.concatenate([[0.0], roots]) if starts_negative else roots
-
-
-def _gain_crossovers(transfer: LoopTransfer) -> Array:
-    """Return all frequencies with |L| = 1, for plants given by a function."""
-    w = loop_grid(transfer, transfer.beyond(0.5), per_decade=200)
-
-    def excess(x: float) -> float:
-        return float(np.log(np.abs(complex(transfer(1j * x)))))
-
-    level = np.log(np.abs(transfer(1j * w)))
-    changes = np.nonzero(level[:-1] * level[1:] < 0.0)[0]
-    return np.array([brentq(excess, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16) for i in changes])

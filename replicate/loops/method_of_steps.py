@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 DEGREE = 18
 RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at which a piece counts as resolved
 STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
-MAX_PIECES = 400_000
+MOST_PIECES = 2000  # beyond, pieces that adapt are faster
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 
 
@@ -52,10 +52,10 @@ class PieceMap:
 
 def piece_map(chain: Chain, length: float) -> PieceMap:
     """Solve the collocation system of one piece for all its inputs at once."""
-    points, n = DEGREE + 1, chain.b.size
+    points, n = DEGREE + 1, chain.e.size
     half_s = 0.5 * length * chebyshev.integration(DEGREE)
     right = np.zeros((points, n, points + n + 1))
-    right[:, :, :points] = half_s[:, None, :] * chain.b[None, :, None]
+    right[:, :, :points] = half_s[:, None, :] * chain.b[None, :]
     right[:, :, points:-1] = np.eye(n)
     right[:, :, -1] = half_s.sum(axis=1)[:, None] * chain.e
     system = np.eye(points * n) - np.kron(half_s, chain.a)
@@ -63,34 +63,34 @@ def piece_map(chain: Chain, length: float) -> PieceMap:
 
     through = np.zeros((points, points + n + 1))
     through[:, :points] = np.eye(points)
-    output = np.einsum("i,pic->pc", chain.c, states) + chain.d * through
-    basis = np.einsum("wi,pic->wpc", chain.wx, states) + chain.wv[:, None, None] * through
+    output = np.einsum("i,pic->pc", chain.c, states) + chain.d[0] * through
+    basis = np.einsum("wi,pic->wpc", chain.wx, states) + chain.wv[:, :, None] * through
     basis[:, :, -1] += chain.wr[:, None]
     return PieceMap(basis, output, states[-1])
 
 
 def respond(
     plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float
-) -> tuple[float, Array, Array]:
+) -> list[tuple[Array, Array, Array]] | None:
     """Compute output and control signal of one plant under several controllers that differ only in k, ki, kd and b.
 
     Parameters
     ----------
     until
-        Horizon; the last piece may reach beyond it.
+        Horizon.
     setpoint, load
         Heights of the steps at t = 0 in the set-point and at the plant input (before the dead time).
 
     Returns
     -------
-    tuple
-        Piece length, and the Chebyshev coefficients of output and control signal,
-        shape (len(controllers), pieces, DEGREE + 1).
+    list of tuple, or None
+        For each controller breaks and the Chebyshev coefficients of output and control signal,
+        shape (pieces, DEGREE + 1); None if more than MOST_PIECES pieces were needed.
 
     Raises
     ------
     LoopError
-        If the controllers differ in more than their gains, or the response needs too many pieces or grows out of range.
+        If the controllers differ in more than their gains, or the response grows out of range.
     """
     chain, gain_matrix = _common_chain(plant, controllers)
     radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
@@ -101,23 +101,26 @@ def respond(
     previous = float("inf")
     to_coefficients = chebyshev.values_to_coefficients(DEGREE).T
     while True:
-        if plant.dead_time:
-            length = plant.dead_time / splits
-            pieces = _piece_count(until, length)
-            with np.errstate(over="ignore", invalid="ignore"):
+        length = (plant.dead_time or until) / splits
+        pieces = max(int(np.ceil(until / length * (1.0 - 1e-14))), 1)
+        if pieces > MOST_PIECES:
+            return None
+        with np.errstate(over="ignore", invalid="ignore"):
+            if plant.dead_time:
                 y, u = _march(chain, gain_matrix, length, splits, pieces, setpoint, load)
-        else:
-            length = until / splits
-            pieces = _piece_count(until, length)
-            with np.errstate(over="ignore", invalid="ignore"):
+            else:
                 parts = [_march_closed(c, chain, length, pieces, setpoint, load) for c in closed]
-            y, u = np.stack([p[0] for p in parts]), np.stack([p[1] for p in parts])
+                y, u = np.stack([p[0] for p in parts]), np.stack([p[1] for p in parts])
         _require_range(y, u, length)
         y, u = y @ to_coefficients, u @ to_coefficients
         remaining = max(_unresolved(y), _unresolved(u))
         # halving the pieces no longer helps once the tail is the rounding error of an ill-conditioned plant
         if remaining <= RESOLVED or (remaining < 1e-9 and remaining > 0.25 * previous):
-            return length, y, u
+            breaks, share = chebyshev.cut(length, pieces, until)
+            return [
+                (breaks, chebyshev.cut_last(one_y, share), chebyshev.cut_last(one_u, share))
+                for one_y, one_u in zip(y, u, strict=True)
+            ]
         previous = remaining
         splits *= 2
 
@@ -132,15 +135,7 @@ def _common_chain(plant: Plant, controllers: Sequence[PID]) -> tuple[Chain, Arra
                 raise LoopError(msg)
     gain_matrix = np.stack([gains(controller) for controller in controllers], axis=1)
     chain = build_chain(plant, first, integral=bool(gain_matrix[2].any()), derivative=bool(gain_matrix[3].any()))
-    return chain, gain_matrix
-
-
-def _piece_count(until: float, length: float) -> int:
-    count = int(np.ceil(until / length * (1.0 - 1e-14)))
-    if count > MAX_PIECES:
-        msg = f"the response needs {count} pieces of {length:g} up to t = {until:g}; at most {MAX_PIECES} are allowed"
-        raise LoopError(msg)
-    return max(count, 1)
+    return chain.balanced(np.max(np.abs(gain_matrix), axis=1)), gain_matrix
 
 
 def _require_range(y: Array, u: Array, length: float) -> None:
@@ -163,7 +158,7 @@ def _march(
 ) -> tuple[Array, Array]:
     """Step through the pieces; returns node values of y and u, shape (controllers, pieces, points)."""
     fixed = piece_map(chain, length)
-    points, n, sweep = DEGREE + 1, chain.b.size, gain_matrix.shape[1]
+    points, n, sweep = DEGREE + 1, chain.e.size, gain_matrix.shape[1]
     history = np.zeros((pieces + splits, points, sweep))  # u, shifted by one dead time
     output = np.empty((pieces, points, sweep))
     single = sweep == 1
@@ -178,7 +173,7 @@ def _march(
     inputs[-1] = setpoint
     n_basis = blocks.shape[0] - points - n
     impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
-    feedback = gain_matrix[3] * chain.wv[3]  # an impulse in v passes through the ideal derivative into u
+    feedback = gain_matrix[3] * chain.wv[3, 0]  # an impulse in v passes through the ideal derivative into u
     result = np.empty((blocks.shape[0], sweep))
     has_impulse = bool(impulse.any())
     for j in range(pieces):
@@ -186,7 +181,7 @@ def _march(
         if load and j >= splits:
             inputs[:points] += load
         if has_impulse and j >= splits and j % splits == 0:
-            inputs[points:-1] += chain.b[:, None] * impulse
+            inputs[points:-1] += chain.b * impulse
             impulse = feedback * impulse
         np.matmul(blocks, inputs, out=result)
         if single:
@@ -213,13 +208,14 @@ class _Closed:
 
 def _close(chain: Chain, g: Array) -> _Closed:
     # u = g.(W_x X + W_v v + W_r r) with v = u + load
-    algebraic = 1.0 - float(g @ chain.wv)
+    through, b = float((g @ chain.wv)[0]), chain.b[:, 0]
+    algebraic = 1.0 - through
     if abs(algebraic) < 1e-12:
         msg = "the loop without dead time is not well posed: its algebraic feedback equals one"
         raise ImproperLoopError(msg)
-    ux, ud, ur = g @ chain.wx / algebraic, float(g @ chain.wv) / algebraic, float(g @ chain.wr) / algebraic
+    ux, ud, ur = g @ chain.wx / algebraic, through / algebraic, float(g @ chain.wr) / algebraic
     return _Closed(
-        chain.a + np.outer(chain.b, ux), chain.b * (1.0 + ud), chain.e + chain.b * ur, ux, ud, ur,
+        chain.a + np.outer(b, ux), b * (1.0 + ud), chain.e + b * ur, ux, ud, ur,
         g[3] * chain.setpoint_impulse / algebraic,
     )  # fmt: skip
 
@@ -227,7 +223,7 @@ def _close(chain: Chain, g: Array) -> _Closed:
 def _march_closed(
     closed: _Closed, chain: Chain, length: float, pieces: int, setpoint: float, load: float
 ) -> tuple[Array, Array]:
-    points, n = DEGREE + 1, chain.b.size
+    points, n = DEGREE + 1, chain.e.size
     half_s = 0.5 * length * chebyshev.integration(DEGREE)
     drive = closed.b * load + closed.e * setpoint
     right = np.zeros((points, n, n + 1))
@@ -236,10 +232,10 @@ def _march_closed(
     system = np.eye(points * n) - np.kron(half_s, closed.a)
     flow = np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, n + 1) if n else right
     states = np.empty((pieces, points, n))
-    x = np.append(chain.b * closed.impulse * setpoint, 1.0)
+    x = np.append(chain.b[:, 0] * closed.impulse * setpoint, 1.0)
     for j in range(pieces):
         states[j] = flow @ x
         x[:n] = states[j, -1]
     u = states @ closed.ux + closed.ud * load + closed.ur * setpoint
-    y = states @ chain.c + chain.d * (u + load)
+    y = states @ chain.c + chain.d[0] * (u + load)
     return y, u

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from numpy.typing import ArrayLike, NDArray
 
-from replicate.loops import chebyshev
+from replicate.loops import chebyshev, checks
 from replicate.loops.errors import LoopError, NotSettledError
 from replicate.loops.peaks import Peak
 
@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 # signal's range.
 SAMPLES = 40
 MARGIN = 0.02
+NOISE = 1e-13  # of the largest value: a move or a jump that is rounding
+SAME = 1e-12  # relative distance of two times that are one
 
 
 class Piecewise:
@@ -54,22 +56,6 @@ class Piecewise:
         self.final = float(final)
         self.stable = stable
 
-    @classmethod
-    def from_pieces(
-        cls, length: float, coefficients: Array, until: float, *, final: float, stable: Callable[[], bool] | None = None
-    ) -> Self:
-        """Return the signal of equally long pieces, the last one cut at ``until``."""
-        pieces = coefficients.shape[0]
-        breaks = length * np.arange(pieces + 1)
-        if until < breaks[-1]:
-            coefficients = np.array(coefficients)
-            share = (until - breaks[-2]) / length
-            degree = coefficients.shape[1] - 1
-            inside = cheb.chebval((chebyshev.nodes(degree) + 1.0) * share - 1.0, coefficients[-1])
-            coefficients[-1] = chebyshev.values_to_coefficients(degree) @ inside
-            breaks[-1] = until
-        return cls(breaks, coefficients, final=final, stable=stable)
-
     # ---- a function -----------------------------------------------------------------------------------------------
 
     @property
@@ -90,7 +76,11 @@ class Piecewise:
         LoopError
             If a time lies beyond the horizon.
         """
-        times = np.asarray(t, dtype=float)
+        try:
+            times = np.asarray(t, dtype=float)
+        except (TypeError, ValueError):
+            msg = f"the times must be real numbers, not {checks.shown(t)}"
+            raise LoopError(msg) from None
         flat = np.atleast_1d(times).ravel()
         end = self.breaks[-1]
         if np.isnan(flat).any():
@@ -164,7 +154,7 @@ class Piecewise:
         end = min(self.horizon, other.horizon)
         breaks = np.union1d(self.breaks, other.breaks)
         breaks = breaks[breaks < end * (1.0 - 1e-13)]
-        keep = np.concatenate([[True], np.diff(breaks) > 1e-12 * max(end, 1.0)])
+        keep = np.concatenate([[True], np.diff(breaks) > SAME * breaks[1:]])
         breaks = np.append(breaks[keep], end)
         degree = max(self.degree, other.degree)
         values = self._resampled(breaks, degree) + other._resampled(breaks, degree)
@@ -205,7 +195,7 @@ class Piecewise:
     def _extreme(self, sign: float) -> Peak:
         samples = sign * self._samples
         highest = samples.max(axis=1)
-        margin = MARGIN * max(float(np.ptp(self._samples)), 1e-300)
+        margin = MARGIN * float(np.ptp(self._samples))
         # only pieces whose neighbourhood of samples comes close to the top can hold the extremum
         spread = np.minimum(np.max(np.abs(np.diff(samples, axis=1)), axis=1), margin)
         candidates = np.nonzero(highest + spread >= highest.max())[0]
@@ -225,17 +215,32 @@ class Piecewise:
         return self._extreme(-1.0)
 
     def extrema(self) -> list[Peak]:
-        """Return all local extrema inside (0, horizon), in order of time."""
-        found: list[Peak] = []
+        """Return all local extrema inside (0, horizon), in order of time, kinks and jumps at breaks included.
+
+        Of an extremum that lasts, the beginning is returned.
+        """
         slopes = self.coefficients @ chebyshev.differentiation(self.degree)
         sampled = slopes @ chebyshev.evaluation(self.degree - 1, SAMPLES)
-        changes = np.nonzero((sampled.min(axis=1) <= 0.0) & (sampled.max(axis=1) >= 0.0))[0]
-        level = 1e-13 * float(np.max(np.abs(self._samples)))
-        for piece in changes:
-            if np.ptp(self._samples[piece]) <= level:
-                continue
-            roots = chebyshev.real_roots(slopes[piece])
-            found += [Peak(float(cheb.chebval(x, self.coefficients[piece])), self._time(int(piece), x)) for x in roots]
+        turning = (sampled.min(axis=1) <= 0.0) & (sampled.max(axis=1) >= 0.0)
+        negligible = NOISE * float(np.max(np.abs(self._samples)))
+        turning &= np.ptp(self._samples, axis=1) > negligible
+        found: list[Peak] = []
+        last = Peak(float(self._samples[0, 0]), 0.0)  # where the last move that counts has ended
+        rising: bool | None = None
+        for piece in range(self._samples.shape[0]):
+            places = np.array([-1.0, 1.0])
+            if turning[piece]:
+                places = np.unique([-1.0, *chebyshev.real_roots(slopes[piece]), 1.0])
+            values = cheb.chebval(places, self.coefficients[piece])
+            # the first move is the jump from the piece before
+            for value, x in zip(values.tolist(), places.tolist(), strict=True):
+                move = value - float(last)
+                if abs(move) <= negligible:
+                    continue
+                if rising is not None and (move > 0.0) != rising:
+                    found.append(last)
+                rising = move > 0.0
+                last = Peak(value, self._time(piece, x))
         return found
 
     def crossings(self, level: float) -> Array:
@@ -248,10 +253,11 @@ class Piecewise:
             times += [self._time(int(piece), x) for x in roots]
         ends, starts = self._samples[:-1, -1] - level, self._samples[1:, 0] - level
         jumps = np.nonzero(ends * starts < 0.0)[0]
-        times += [float(self.breaks[j + 1]) for j in jumps if np.abs(ends[j] - starts[j]) > 1e-13]
+        negligible = NOISE * float(np.max(np.abs(self._samples)))
+        times += [float(self.breaks[j + 1]) for j in jumps if np.abs(ends[j] - starts[j]) > negligible]
         merged = np.sort(np.asarray(times))
         if merged.size > 1:  # a crossing exactly at a break is found from both sides
-            merged = merged[np.concatenate([[True], np.diff(merged) > 1e-12 * self.horizon])]
+            merged = merged[np.concatenate([[True], np.diff(merged) > SAME * merged[1:]])]
         return merged
 
     def _crossing_roots(self, piece: int, level: float) -> Array:

@@ -1,14 +1,20 @@
-"""The plant: a rational transfer function times a dead time, or any transfer function analytic for Re s > 0."""
+"""The plant: a rational transfer function times a dead time, and the ways to make a plant of any kind.
+
+A `Plant` made by its constructor is rational times one dead time. `Plant.from_function` gives a `FunctionPlant`,
+`Plant.from_terms`, sums and products give a `SumPlant` where there are several dead times; both are plants, too.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from math import factorial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 
 if TYPE_CHECKING:
@@ -31,7 +37,8 @@ class Plant:
     Raises
     ------
     LoopError
-        If the rational part is improper or zero, a coefficient is not finite, or the dead time is negative.
+        If the rational part is improper or zero, a coefficient is not a finite real number, or the dead time is not a
+        finite number >= 0.
 
     Examples
     --------
@@ -40,27 +47,22 @@ class Plant:
     True
     """
 
+    function: Callable[[Any], Any] | None = None
+
     def __init__(self, num: ArrayLike, den: ArrayLike, dead_time: float = 0.0) -> None:
-        self.num: Array = np.trim_zeros(np.atleast_1d(np.asarray(num, dtype=float)), "f")
-        self.den: Array = np.trim_zeros(np.atleast_1d(np.asarray(den, dtype=float)), "f")
-        if self.num.ndim != 1 or self.den.ndim != 1:
-            msg = (
-                f"the plant's coefficients must be two lists of numbers, not {self.num.shape} / {self.den.shape} arrays"
-            )
+        if np.ndim(np.asarray(num, dtype=object)) > 1 or np.ndim(np.asarray(den, dtype=object)) > 1:
+            msg = f"the plant's coefficients must be two lists of numbers, not {np.shape(num)} / {np.shape(den)} arrays"
             raise LoopError(msg)
-        self.dead_time = _checked_dead_time(dead_time)
-        self.function: Callable[[Any], Any] | None = None
-        if self.num.size == 0 or self.den.size == 0:
-            msg = "the plant's numerator and denominator must not be zero"
-            raise LoopError(msg)
-        if not (np.isfinite(self.num).all() and np.isfinite(self.den).all()):
-            msg = f"the plant's coefficients must be finite numbers, not {self.num.tolist()} / {self.den.tolist()}"
-            raise LoopError(msg)
+        self.num: Array = checks.coefficients("the plant's numerator", num)
+        self.den: Array = checks.coefficients("the plant's denominator", den)
+        self.dead_time = checks.non_negative("the dead time", dead_time)
         if self.num.size > self.den.size:
             msg = f"the plant must be proper: numerator degree {self.num.size - 1} exceeds denominator degree {self.den.size - 1}"  # noqa: E501
             raise LoopError(msg)
-        self.num = self.num / self.den[0]
-        self.den = self.den / self.den[0]
+        self.num, self.den = self.num / self.den[0], self.den / self.den[0]
+        if not (np.isfinite(self.num).all() and np.isfinite(self.den).all() and self.num.any()):
+            msg = "the plant's coefficients, divided by the leading one of the denominator, exceed the range of floats"
+            raise LoopError(msg)
 
     @classmethod
     def foptd(cls, gain: float, time_constant: float, dead_time: float) -> Plant:
@@ -75,11 +77,13 @@ class Plant:
         dead_time
             L >= 0.
         """
-        return cls([gain], [time_constant, 1.0], dead_time)
+        return Plant([checks.finite("gain", gain)], [checks.finite("time_constant", time_constant), 1.0], dead_time)
 
     @classmethod
     def from_control(cls, system: control.TransferFunction | control.StateSpace, dead_time: float = 0.0) -> Plant:
         """Return the plant of a single-input, single-output python-control system, times a dead time.
+
+        Coefficients of a state-space model that differ from zero by no more than the rounding of its matrices are zero.
 
         Parameters
         ----------
@@ -91,18 +95,12 @@ class Plant:
         Raises
         ------
         LoopError
-            If the system is discrete or has several inputs or outputs.
+            If the system is neither a transfer function nor a state-space model, is discrete, or has several inputs or
+            outputs.
         """
-        import control  # takes seconds to import
+        from replicate.loops.control_systems import polynomials_of
 
-        transfer = control.tf(system)
-        if transfer.ninputs != 1 or transfer.noutputs != 1:
-            msg = f"the plant must have one input and one output, not {transfer.ninputs} and {transfer.noutputs}"
-            raise LoopError(msg)
-        if transfer.dt not in (0, None):
-            msg = f"the plant must be in continuous time, not sampled with dt = {transfer.dt}"
-            raise LoopError(msg)
-        return cls(transfer.num[0][0], transfer.den[0][0], dead_time)
+        return Plant(*polynomials_of(system), dead_time)
 
     @classmethod
     def from_function(cls, function: Callable[[Any], Any], dead_time: float = 0.0) -> Plant:
@@ -118,21 +116,59 @@ class Plant:
             f, for arrays of complex numbers.
         dead_time
             L >= 0.
+
+        Raises
+        ------
+        LoopError
+            If ``function`` is not callable.
         """
-        plant = cls([1.0], [1.0], dead_time)
-        plant.function = function
-        return plant
+        from replicate.loops.function_plant import FunctionPlant
+
+        return FunctionPlant(function, dead_time)
+
+    @classmethod
+    def from_terms(cls, terms: Iterable[tuple[ArrayLike, ArrayLike, float]]) -> Plant:
+        r"""Return the plant :math:`\sum_i N_i(s)/D_i(s)\, e^{-sL_i}` of terms (num, den, dead time).
+
+        Parameters
+        ----------
+        terms
+            For each term the coefficients of N and D, descending powers of s, and its dead time L >= 0.
+
+        Raises
+        ------
+        LoopError
+            If there is no term, a term is not a plant of its own, or the terms cancel.
+
+        Examples
+        --------
+        The mean of the input over the last unit of time:
+
+        >>> window = Plant.from_terms([([1.0], [1.0, 0.0], 0.0), ([-1.0], [1.0, 0.0], 1.0)])
+        >>> bool(abs(window(2j) - (1 - np.exp(-2j)) / 2j) < 1e-15)
+        True
+        """
+        from replicate.loops.sum_plant import sum_of
+
+        return sum_of([Plant(*checks.triple("each term of a plant", term, "(num, den, dead_time)")) for term in terms])
+
+    # ---- what kind of plant it is ---------------------------------------------------------------------------------
 
     @property
     def is_rational(self) -> bool:
-        """Whether the plant is a rational function times a dead time."""
-        return self.function is None
+        """Whether the plant is a rational function times one dead time."""
+        return True
+
+    @property
+    def parts(self) -> tuple[Plant, ...]:
+        """The rational plants with one dead time each whose sum the plant is; a function has none."""
+        return (self,)
+
+    # ---- values ---------------------------------------------------------------------------------------------------
 
     def delay_free(self, s: ArrayLike) -> ComplexArray:
-        """Evaluate the part without dead time at complex ``s``."""
+        """Evaluate the part without (its shortest) dead time at complex ``s``."""
         s = np.asarray(s, dtype=complex)
-        if self.function is not None:
-            return np.asarray(self.function(s), dtype=complex)
         return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s))
 
     def __call__(self, s: ArrayLike) -> ComplexArray:
@@ -149,38 +185,37 @@ class Plant:
             Complex frequencies, any shape.
         """
         s = np.asarray(s, dtype=complex)
-        if self.function is None:
-            rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(
-                np.polyder(self.den), s
-            ) / np.polyval(self.den, s)
-            return np.asarray(rational - self.dead_time)
-        h = 2e-3 * np.abs(s)
-        g = self.delay_free
-        slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
-        return np.asarray(slope / (60 * h * g(s)) - self.dead_time)
+        rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(
+            np.polyder(self.den), s
+        ) / np.polyval(self.den, s)
+        return np.asarray(rational - self.dead_time)
 
-    def __neg__(self) -> Plant:
-        """Return the plant with its sign changed."""
-        if self.function is None:
-            return Plant(-self.num, self.den, self.dead_time)
-        function = self.function
-        return Plant.from_function(lambda s: -function(s), self.dead_time)
+    def taylor(self, s: ComplexArray, order: int) -> ComplexArray:
+        """Return the Taylor coefficients of the part without dead time at ``s``, shape (order + 1, len(s))."""
+        from replicate.loops.jets import series_quotient
+
+        def series(polynomial: Array) -> ComplexArray:
+            rows = [np.polyval(np.polyder(polynomial, n), s) / factorial(n) for n in range(order + 1)]
+            return np.array(rows, dtype=complex)
+
+        return series_quotient(series(self.num), series(self.den))
+
+    # ---- properties -----------------------------------------------------------------------------------------------
 
     @property
     def integrators(self) -> int:
         """The number of poles at s = 0 (0 for plants given by a function)."""
-        if self.function is not None:
-            return 0
         return int(self.den.size - np.trim_zeros(self.den, "b").size)
 
     @property
     def gain(self) -> float:
         """The steady-state gain G(0); ``inf`` for an integrating plant, ``nan`` if a function has no value there."""
-        if self.function is not None:
-            with np.errstate(all="ignore"):
-                at_rest = float(np.real(self.delay_free(0.0)))
-            return at_rest if np.isfinite(at_rest) else float("nan")
         return float("inf") if self.integrators else float(self.num[-1] / self.den[-1])
+
+    @property
+    def gain_is_negative(self) -> bool:
+        """Whether only a negative integral gain can stabilise the plant: N(0) D(0) with D monic has that sign."""
+        return bool(self.num[-1] < 0.0)
 
     def poles(self) -> ComplexArray:
         """Return the poles of the rational part (empty for plants given by a function)."""
@@ -189,6 +224,16 @@ class Plant:
     def zeros(self) -> ComplexArray:
         """Return the zeros of the rational part (empty for plants given by a function)."""
         return np.asarray(np.roots(self.num), dtype=complex)
+
+    @property
+    def corners(self) -> tuple[float, float]:
+        """Lowest and highest corner frequency of the part without dead time; one over the dead time if it has none."""
+        moduli = np.abs(np.concatenate([self.poles(), self.zeros()]))
+        moduli = moduli[moduli > 0.0]
+        if moduli.size:
+            return float(moduli.min()), float(moduli.max())
+        at = 1.0 / self.dead_time if self.dead_time else 1.0
+        return at, at
 
     def state_space(self) -> tuple[Array, Array, Array, float]:
         """Return (A, B, C, D) of the rational part, a balanced companion form.
@@ -200,9 +245,6 @@ class Plant:
         LoopError
             If the plant is given by a function.
         """
-        if self.function is not None:
-            msg = "a plant given by a function has no state-space model"
-            raise LoopError(msg)
         order = self.den.size - 1
         padded = np.concatenate([np.zeros(self.den.size - self.num.size), self.num])
         feedthrough = float(padded[0])
@@ -217,16 +259,51 @@ class Plant:
             a, b, c = a * scale[None, :] / scale[:, None], b / scale, c * scale
         return a, b, c, feedthrough
 
+    # ---- algebra --------------------------------------------------------------------------------------------------
+
+    def rescaled(self, time: float, gain: float) -> Plant:
+        """Return the plant in another unit of time, its gain divided by ``gain``; exact for powers of two."""
+        shift = time ** np.arange(self.den.size, dtype=float)
+        offset = self.den.size - self.num.size
+        scaled = Plant.__new__(Plant)
+        scaled.num, scaled.den = self.num * shift[offset:] / gain, self.den * shift
+        scaled.dead_time = self.dead_time / time
+        return scaled
+
+    def __neg__(self) -> Plant:
+        """Return the plant with its sign changed."""
+        return self.rescaled(1.0, -1.0)
+
+    def __mul__(self, other: Plant | float) -> Plant:
+        """Return the plants in series, or the plant with its gain multiplied by a number."""
+        from replicate.loops.sum_plant import product_of
+
+        if not isinstance(other, Plant):
+            return self.rescaled(1.0, 1.0 / checks.finite("the factor of a plant", other)) if other else _no_plant()
+        return product_of(self, other)
+
+    __rmul__ = __mul__
+
+    def __add__(self, other: Plant | float) -> Plant:
+        """Return the plants in parallel; a number is a static gain."""
+        from replicate.loops.sum_plant import sum_of
+
+        if not isinstance(other, Plant):
+            if not other:
+                return self
+            other = Plant([checks.finite("the gain in parallel to a plant", other)], [1.0])
+        return sum_of([*self.parts, *other.parts] if self.parts and other.parts else [self, other])
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Plant | float) -> Plant:
+        """Return the difference of two plants."""
+        return self + (-other)
+
     def __repr__(self) -> str:
-        if self.function is not None:
-            return (
-                f"Plant.from_function({getattr(self.function, '__name__', 'function')}, dead_time={self.dead_time:g})"
-            )
         return f"Plant({self.num.tolist()}, {self.den.tolist()}, dead_time={self.dead_time:g})"
 
 
-def _checked_dead_time(dead_time: float) -> float:
-    if not (np.isfinite(dead_time) and dead_time >= 0.0):
-        msg = f"the dead time must be a finite number >= 0, not {dead_time}"
-        raise LoopError(msg)
-    return float(dead_time)
+def _no_plant() -> Plant:
+    msg = "the factor of a plant must not be zero"
+    raise LoopError(msg)

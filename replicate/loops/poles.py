@@ -1,10 +1,10 @@
-"""Closed-loop poles of loops with dead time.
+"""Closed-loop poles of loops with dead time, all of them and multiple ones, too.
 
 Candidates are the eigenvalues of the infinitesimal generator, discretised by Chebyshev collocation of the transport of
 the control signal through the dead time (Breda, Maset and Vermiglio, "Stability of Linear Delay Differential
 Equations",
 2015, chapter 4); each is polished by Newton's method on the exact characteristic function. The discretisation only says
-where to look: what is returned satisfies f(s) = 0 to rounding, and stability is decided by the argument principle.
+where to look: what is returned satisfies f(s) = 0 to rounding, and the argument principle says whether it is complete.
 """
 
 from __future__ import annotations
@@ -20,72 +20,198 @@ from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
+from replicate.loops.stability import argument_change
+from replicate.loops.zero_search import Box, zero_in_circle, zeros_in_box
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 NEWTON_STEPS = 40
 MOST_STARTS = 24
+EPS = float(np.finfo(float).eps)
+CLOSE = 0.03  # distance, relative to the modulus, of points that may be one multiple pole
+NOISE = 200.0  # rounding errors of f, in units of eps times its terms, within which it is zero
+MOST_TURNS = 3000.0  # rad of the longest dead time up to which poles are counted
+TIE = 1e-9  # relative difference of real parts that are equal
 
 
 def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
     """Return the rightmost closed-loop poles, sorted by descending real part, Im >= 0 (a pair counts once).
 
-    A static loop has none.
+    A multiple pole is returned once; of equal real parts the lowest frequency comes first. A static loop has none.
 
     Raises
     ------
     LoopError
         If no pole is found.
     """
-    polynomial = plant.is_rational and plant.dead_time == 0.0
-    if not plant.is_rational:
-        starts = _starts_on_grid(transfer)
-    elif polynomial:
+    if transfer.is_polynomial:
         starts = np.asarray(np.roots(np.polyadd(transfer.den, transfer.num)), dtype=complex)
-        if starts.size == 0:  # a static loop
-            return starts
-    else:
+    elif transfer.num.size == 0:  # no feedback: what is left are the poles of the open loop
+        starts = transfer.open_loop_poles
+    elif plant.parts:
         starts = _generator_eigenvalues(plant, controller, transfer)
+    else:
+        starts = _starts_on_grid(transfer)
+    if starts.size == 0 and (transfer.is_polynomial or transfer.num.size == 0):  # a static loop
+        return starts
     starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]
-    polished, converged = _newton(transfer, starts.real + 1j * np.abs(starts.imag))
-    if polynomial:  # a multiple root has no slope for Newton: there the eigenvalue is as good as it gets
-        polished, converged = np.where(converged, polished, starts), np.ones(starts.size, dtype=bool)
-    found: list[complex] = []
-    for value in polished[converged]:
-        pole = complex(value.real, abs(value.imag))
-        if abs(pole.imag) < 1e-12 * abs(pole):
-            pole = complex(pole.real, 0.0)
-        if not plant.is_rational and pole.imag < 1e-9 * max(1.0, abs(pole)) and pole.real <= 0.0:
-            continue  # on the cut
-        if all(abs(pole - other) > 1e-8 * max(1e-3, abs(pole)) for other in found):
-            found.append(pole)
+    starts = starts.real + 1j * np.abs(starts.imag)
+    polished, converged = _newton(transfer, starts)
+    # a multiple root has no slope for Newton: there the eigenvalue is as good as it gets
+    points = np.where(converged, polished, starts) if transfer.is_polynomial else polished[converged]
+    found = _ordered(_distinct(transfer, points, count))
+    if plant.parts and not transfer.is_polynomial and transfer.num.size:
+        found = _completed(transfer, found, count)
     if not found:
         msg = "no closed-loop pole was found"
         raise LoopError(msg)
-    ordered = sorted(found, key=lambda p: (-p.real, p.imag))
-    return np.array(ordered[:count])
+    return np.array(found[:count])
+
+
+def _ordered(poles: list[complex]) -> list[complex]:
+    """Return poles by descending real part; of equal ones the lowest frequency first."""
+    ordered: list[complex] = []
+    left = sorted(poles, key=lambda p: (-p.real, p.imag))
+    while left:
+        tied = [p for p in left if left[0].real - p.real <= TIE * abs(left[0].real)]
+        first = min(tied, key=lambda p: p.imag)
+        left.remove(first)
+        ordered.append(first)
+    return ordered
+
+
+def _distinct(transfer: LoopTransfer, points: ComplexArray, count: int) -> list[complex]:
+    """Return each pole once: points that are one to rounding become one, near ones the multiple pole they are."""
+    found: list[complex] = []
+    ordered = [complex(p) for p in points[np.argsort(-points.real)]]
+    while ordered and len(found) < 2 * count + MOST_STARTS:
+        first = ordered.pop(0)
+        near = [p for p in ordered if abs(p - first) <= CLOSE * abs(first)]
+        pole = complex(first.real, abs(first.imag))
+        if near and max(abs(p - first) for p in near) > 1e-13 * abs(first):
+            others = [abs(p - first) for p in [*found, *ordered] if p not in near]
+            multiple = _multiple(transfer, first, near, min(others, default=np.inf))
+            if multiple is not None:
+                pole = multiple
+                ordered = [p for p in ordered if p not in near]
+        if abs(pole.imag) < 1e-10 * abs(pole):
+            pole = complex(pole.real, 0.0)
+        if not transfer.plant.parts and pole.imag < 1e-9 * abs(pole) and pole.real <= 0.0:
+            continue  # on the cut of a plant given by a function
+        if all(abs(pole - other) > 1e-8 * abs(pole) for other in found):
+            found.append(pole)
+    return found
+
+
+def _multiple(transfer: LoopTransfer, first: complex, near: list[complex], clear: float) -> complex | None:
+    """Return the multiple pole that neighbouring points are to rounding, or None if they are poles of their own.
+
+    ``clear`` is the distance of the next point that is not one of them.
+    """
+    spread = max(abs(p - first) for p in near)
+    radius = max(min(0.4 * clear, 0.1 * abs(first)), 2.0 * spread)
+    if radius > 0.7 * clear:
+        return None
+    zero = zero_in_circle(transfer.characteristic, transfer.characteristic_slope, first, radius)
+    if zero is None or zero.order < 2:
+        return None
+    at = np.array([zero.place])
+    size = transfer.size(at)[0]
+    return zero.place if abs(complex(transfer.characteristic(at)[0])) <= NOISE * EPS * size else None
+
+
+def _completed(transfer: LoopTransfer, found: list[complex], count: int) -> list[complex]:
+    """Return the poles with those that are missing to the right of the last one asked for.
+
+    All poles to the right of a vertical line are counted along it. The line lies between two poles found.
+    """
+    known = found[:count]
+    if not known:
+        return found
+    last = known[-1].real
+    after = [p.real for p in found[count:] if p.real < last - 1e-6 * abs(last)]
+    line = 0.5 * (last + after[0]) if after else last - 0.05 * abs(last)
+    # the nearer the line is to the poles, the lower the frequencies up to which it has to be followed
+    line = max(line, last - 0.2 * max(abs(last), 1.0 / _longest(transfer)))
+    expected = _count_right_of(transfer, line)
+    right = [p for p in found if p.real > line]
+    if expected is None or expected == sum(2 if p.imag else 1 for p in right):
+        return found
+    top, edge = _reach(transfer, line)
+    box = Box(line, edge, -0.0123 * top, top)
+    zeros = zeros_in_box(transfer.characteristic, transfer.characteristic_slope, box)
+    if zeros is None:
+        return found
+    # a multiple zero is where its parts are, as far as they were told apart
+    places = [zero.place * (1.0 + 1e-9 * n) for zero in zeros for n in range(zero.order)]
+    return _ordered(_distinct(transfer, np.array([*places, *(p for p in found if p.real <= line)]), count))
+
+
+def _longest(transfer: LoopTransfer) -> float:
+    return max(part.dead_time for part in transfer.plant.parts) or 1.0
+
+
+def _reach(transfer: LoopTransfer, line: float) -> tuple[float, float]:
+    """Return the height and the right end of a rectangle that holds all poles to the right of a vertical line."""
+    growth = float(np.exp(-min(line, 0.0) * _longest(transfer)))
+    level = max(0.9, 0.5 * (1.0 + transfer.feedthrough * growth)) / growth
+    top = 1.01 * transfer.beyond(level) + abs(line)
+    return top, max(top, 1.1 * abs(line))
+
+
+def _count_right_of(transfer: LoopTransfer, line: float) -> int | None:
+    """Return the number of zeros of f with Re s > line, or None if that cannot be said."""
+    growth = float(np.exp(-min(line, 0.0) * _longest(transfer)))
+    if transfer.feedthrough * growth >= 0.98:
+        return None
+    top, edge = _reach(transfer, line)
+    if top * _longest(transfer) > MOST_TURNS:
+        return None
+    box = Box(line, edge, -0.0, top)
+    steps = max(64, int(4.0 * top * _longest(transfer)))
+    up = np.unique(np.concatenate([np.linspace(0.0, top, steps), np.geomspace(1e-6 * top, top, 64)]))
+    path = np.concatenate([
+        np.linspace(edge, edge + 1j * top, 64), np.linspace(edge + 1j * top, box.left + 1j * top, 96)[1:],
+        box.left + 1j * up[::-1][1:],
+    ])  # fmt: skip
+    # f is real on the real axis, so the upper half of the contour turns by half of the whole
+    turn = argument_change(transfer.characteristic, path)
+    return None if turn is None else round(turn / np.pi)
 
 
 def _generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer) -> ComplexArray:
     chain = build_chain(plant, controller, integral=controller.ki != 0.0, derivative=controller.kd != 0.0)
+    chain = chain.balanced(gains(controller))
     # the set-point filter's states are outside the loop
     outside = controller.setpoint_filter_polynomials()[1].size - 1
-    n = chain.b.size - outside
+    n = chain.e.size - outside
     g = gains(controller)
-    a, b, ux, uv = chain.a[:n, :n], chain.b[:n], (g @ chain.wx)[:n], float(g @ chain.wv)
+    a, b, ux, uv = chain.a[:n, :n], chain.b[:n], (g @ chain.wx)[:n], g @ chain.wv
+    delays = np.array([part.dead_time for part in plant.parts])
+    longest = float(delays[-1])
+    if delays[0] == 0.0:  # close the path without dead time
+        direct = 1.0 - float(uv[0])
+        ux, uv = ux / direct, uv / direct
+        a, b = a + np.outer(b[:, 0], ux), b + np.outer(b[:, 0], np.where(delays > 0.0, uv, 0.0))
+        delays, b, uv = delays[1:], b[:, 1:], uv[1:]
     # enough nodes to resolve the phase that the loop can turn during one dead time at its fastest relevant frequency
     crossing = transfer.beyond(max(0.3, 0.5 * (1.0 + transfer.feedthrough)))
-    degree = int(min(160, max(24, np.ceil(1.2 * crossing * plant.dead_time) + 16)))
-    d = _differentiation_matrix(degree) * (2.0 / plant.dead_time)
+    degree = int(min(160, max(24, np.ceil(1.2 * crossing * longest) + 16)))
+    d = _differentiation_matrix(degree) * (2.0 / longest)
     # unknowns: X and u(t + theta) at the nodes theta = -L..0; the last node is u itself, given by the controller
     size = n + degree
+    values = chebyshev.basis(1.0 - 2.0 * delays / longest, degree).T @ chebyshev.values_to_coefficients(degree)
+    inputs = values[:, :degree]  # v_i = u(t - L_i) from the nodes; u(t) itself has no part in it
+    inputs[np.abs(inputs) < 1e-13] = 0.0
+    own = np.where(np.abs(values[:, degree]) < 1e-13, 0.0, values[:, degree])
+    control = np.concatenate([ux, uv @ inputs]) / (1.0 - float(uv @ own))
     matrix = np.zeros((size, size))
     matrix[:n, :n] = a
-    matrix[:n, n] = b  # v = u(t - L), the first node
+    matrix[:n, n:] = b @ inputs
+    matrix[:n] += np.outer(b @ own, control)
     matrix[n:, n:] = d[:degree, :degree]
-    matrix[n:, :n] += np.outer(d[:degree, degree], ux)
-    matrix[n:, n] += d[:degree, degree] * uv
+    matrix[n:] += np.outer(d[:degree, degree], control)
     eigenvalues = np.asarray(scipy.linalg.eigvals(matrix), dtype=complex)
     return eigenvalues[eigenvalues.imag >= 0.0]
 
@@ -122,20 +248,9 @@ def _newton(transfer: LoopTransfer, s: ComplexArray) -> tuple[ComplexArray, NDAr
             if not moving.any():
                 break
             at = s[moving]
-            change = transfer.characteristic(at) / _characteristic_slope(transfer, at)
-            longest = 0.3 * np.maximum(np.abs(at), 1e-6)
+            change = transfer.characteristic(at) / transfer.characteristic_slope(at)
+            longest = 0.3 * np.maximum(np.abs(at), 1e-300)
             change *= np.minimum(1.0, longest / np.abs(change))
             step[moving] = change
             s[moving] = at - change
     return s, np.isfinite(s) & (s != 0.0) & (np.abs(step) <= 1e-6 * np.abs(s))
-
-
-def _characteristic_slope(transfer: LoopTransfer, s: ComplexArray) -> ComplexArray:
-    slope = np.polyval(np.polyder(transfer.den), s)
-    fed_back = np.exp(-s * transfer.dead_time)
-    if transfer.plant.is_rational:
-        top = np.polyval(np.polyder(transfer.num), s) - transfer.dead_time * np.polyval(transfer.num, s)
-        return np.asarray(slope + top * fed_back)
-    value = np.polyval(transfer.num, s) * fed_back * transfer.plant.delay_free(s)
-    den_slope = slope / np.polyval(transfer.den, s)
-    return np.asarray(slope + value * (transfer.log_derivative(s) + den_slope))

@@ -31,6 +31,7 @@ class _Kind:
     magnitude: Callable[[Array], Array]
     slope: Callable[[float], float]
     bound: Callable[[float], float]
+    at_infinite_gain: float
     ratio: tuple[Array, Array]  # of the rational part; the magnitude itself if there is no dead time
 
 
@@ -49,6 +50,7 @@ def sensitivity_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], cent
         lambda w: np.abs(1.0 / (center + transfer(1j * w))),
         slope,
         lambda gain: 1.0 / (center - gain),
+        0.0,
         (transfer.den, np.asarray(np.polyadd(center * transfer.den, transfer.num), dtype=float)),
     )
     return _peak(transfer, poles, kind)
@@ -66,13 +68,13 @@ def complementary_peak(transfer: LoopTransfer, poles: NDArray[np.complex128]) ->
         return float((1j * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
 
     closed = (transfer.num, np.asarray(np.polyadd(transfer.den, transfer.num), dtype=float))
-    return _peak(transfer, poles, _Kind(magnitude, slope, lambda gain: gain / (1.0 - gain), closed))
+    return _peak(transfer, poles, _Kind(magnitude, slope, lambda gain: gain / (1.0 - gain), 1.0, closed))
 
 
 def _peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: _Kind) -> FrequencyPeak:
     if transfer.num.size == 0:  # no feedback at all
         return FrequencyPeak(kind.bound(0.0), 0.0)
-    if transfer.feedthrough and not transfer.dead_time:
+    if transfer.feedthrough and transfer.is_polynomial:
         return _rational_peak(transfer, poles, kind)
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = peak_grid(transfer, end, poles)
@@ -93,7 +95,7 @@ def _rational_peak(transfer: LoopTransfer, poles: NDArray[np.complex128], kind: 
     """Return the peak of a loop without dead time whose gain does not vanish at infinite frequency."""
     # beyond its last stationary point the magnitude is monotone and tends to its limit
     stationary = stationary_frequencies(*kind.ratio)
-    end = 2.0 * max([1e-6, *stationary.tolist(), *np.abs(transfer.corner_frequencies).tolist()])
+    end = 2.0 * max([*stationary.tolist(), *np.abs(transfer.corner_frequencies).tolist()], default=1.0)
     best = highest_peak(kind.magnitude, kind.slope, peak_grid(transfer, end, poles))
     num, den = kind.ratio
     limit = float(abs(num[0] / den[0])) if num.size == den.size else 0.0
@@ -105,15 +107,16 @@ def _with_ends(transfer: LoopTransfer, kind: _Kind, best: FrequencyPeak, limit: 
     at_rest = _at_rest(transfer, kind)
     if at_rest >= best.value:
         best = FrequencyPeak(at_rest, 0.0)
-    if limit > best.value and transfer.feedthrough:
+    if limit > best.value:
         best = FrequencyPeak(limit, float("inf"))
     return best
 
 
 def _at_rest(transfer: LoopTransfer, kind: _Kind) -> float:
-    if transfer.den[-1] == 0.0:  # integral action: S = 0, T = 1
-        return 1.0 if kind.bound(0.0) == 0.0 else 0.0
-    return float(kind.magnitude(np.array([0.0]))[0])
+    if transfer.infinite_at_rest:  # S = 0, T = 1
+        return kind.at_infinite_gain
+    at_rest = float(kind.magnitude(np.array([0.0]))[0])
+    return at_rest if np.isfinite(at_rest) else 0.0
 
 
 def highest_peak(magnitude: Callable[[Array], Array], slope: Callable[[float], float], w: Array) -> FrequencyPeak:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
+from replicate.loops import chebyshev, checks
 from replicate.loops.errors import LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.piecewise import MARGIN, SAMPLES, Piecewise
 
@@ -79,9 +79,7 @@ class Signal(Piecewise):
             If the response is outside the band at the end of its horizon.
         """
         self._require_stable("settling time")
-        if not 0.0 < band < np.inf:
-            msg = f"the settling band must be a positive fraction, not {band}"
-            raise LoopError(msg)
+        band = checks.positive("the settling band", band, allowed="a positive fraction")
         width = band * (abs(self.final) if self.final else 1.0)
         error = np.abs(self._samples - self.final)
         if error[-1, -1] > width:
@@ -112,6 +110,7 @@ class Signal(Piecewise):
         """Return the time from first reaching ``low`` to first reaching ``high``, fractions of the final value."""
         self._require_stable("rise time")
         self._require_final("rise time")
+        low, high = checks.finite("the rise time's low", low), checks.finite("the rise time's high", high)
         if not 0.0 <= low < high:
             msg = f"the rise time runs from a fraction low >= 0 to a larger one, not from {low} to {high}"
             raise LoopError(msg)
@@ -121,9 +120,9 @@ class Signal(Piecewise):
         """Return the first time at which the response reaches ``fraction`` of its final value, dead time included."""
         self._require_stable("delay time")
         self._require_final("delay time")
-        if not fraction >= 0.0:
-            msg = f"the delay time belongs to a fraction >= 0 of the final value, not to {fraction}"
-            raise LoopError(msg)
+        fraction = checks.non_negative(
+            "the delay time's fraction", fraction, allowed="a fraction >= 0 of the final value"
+        )
         return self.first_reach(fraction * self.final)
 
     # ---- integrals ------------------------------------------------------------------------------------------------

@@ -5,26 +5,36 @@ Z of zeros in the open right half-plane follows from the continuous change of it
 
 .. math:: \Delta_{0\to\infty} \arg f(i\omega) = (n - 2 Z) \frac{\pi}{2}.
 
-Beyond the frequency where |L| < 1 for good, 1 + L cannot encircle the origin, so the remainder is known in closed form.
-The axis may be shifted to Re s = sigma.
+Between two gain crossovers 1 + L cannot encircle the origin where |L| < 1, nor 1 + 1/L where |L| > 1. As
+f = D (1 + L) = N e^{-sL} (1 + 1/L) and the arguments of D, N and the dead time are known in closed form, the gain
+crossovers of a rational loop alone decide, however many turns its dead time makes in between. For other plants the
+argument is followed on a grid that is refined where it turns fast.
 
 Reference: Michiels and Niculescu, "Stability, Control, and Computation for Time-Delay Systems" (2014), chapter 1.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 LARGEST_TURN = 0.8  # rad between neighbouring points; anything below pi/2 identifies the branch
 ON_AXIS = 1e-14  # relative distance from the axis at which a root is on it to rounding
 DEEPEST = 60  # bisections of one interval before a zero is taken to lie on the axis
+TOUCHING = 1e-13  # |1 + L| at a gain crossover at which a pole is on the axis to rounding
+PER_DECADE = 30  # of the grid on which gain crossovers are checked
+ARC_POINTS = 33
 
 
 def unstable_poles(transfer: LoopTransfer) -> int:
@@ -36,25 +46,26 @@ def unstable_poles(transfer: LoopTransfer) -> int:
         If the loop is of neutral type with |L| >= 1 at infinite frequency and dead time: it then has infinitely many
         unstable poles.
     """
-    if transfer.feedthrough >= 1.0 and transfer.dead_time > 0.0:
+    if transfer.feedthrough >= 1.0 and not transfer.is_polynomial:
         msg = f"|L| tends to {transfer.feedthrough:g} >= 1 at infinite frequency: the loop has infinitely many unstable poles"  # noqa: E501
         raise ImproperLoopError(msg)
-    if transfer.dead_time == 0.0 and transfer.plant.is_rational:
-        closed = np.polyadd(transfer.den, transfer.num)
-        roots = np.roots(closed)
+    if transfer.is_polynomial:
+        roots = np.roots(np.polyadd(transfer.den, transfer.num))
         return int(np.sum(roots.real >= -ON_AXIS * np.abs(roots)))
+    if transfer.is_rational:
+        return _from_crossovers(transfer)
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = loop_grid(transfer, end)
-    w = np.concatenate([[0.0], w]) if transfer.plant.is_rational else w
-    turn = _argument_change(transfer, w)
+    # f is real on the positive real axis: around s = 0, where it may branch, and up the imaginary axis
+    around = w[0] * np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, ARC_POINTS))
+    turn = argument_change(transfer.characteristic, np.concatenate([around, 1j * w[1:]]))
     if turn is None:
         return 1  # a zero on the axis itself
-    poles = np.roots(transfer.den)
+    poles = transfer.open_loop_poles
     # arg D from the last point to infinity, root by root
-    remainder = float(np.sum(0.5 * np.pi - np.angle(1j * end - poles)))
-    closing = -float(np.angle(1.0 + transfer(1j * end)))
-    degree = transfer.den.size - 1
-    zeros = 0.5 * degree - (turn + remainder + closing) / np.pi
+    remainder = float(np.sum(0.5 * np.pi - np.angle(1j * w[-1] - poles)))
+    closing = -float(np.angle(1.0 + transfer(1j * w[-1])))
+    zeros = 0.5 * poles.size - (turn + remainder + closing) / np.pi
     return max(0, round(zeros))
 
 
@@ -66,19 +77,88 @@ def is_stable(transfer: LoopTransfer) -> bool:
         return False
 
 
-def _argument_change(transfer: LoopTransfer, w: Array) -> float | None:
-    """Return the continuous change of arg f along ascending frequencies, or None if a zero lies on the way."""
-    f = transfer.characteristic(1j * w)
+def _from_crossovers(transfer: LoopTransfer) -> int:
+    """Return the number of unstable poles of a rational loop with dead time."""
+    poles, zeros = np.roots(transfer.den).astype(complex), np.roots(transfer.num).astype(complex)
+    if transfer.num.size == 0:
+        return int(np.sum(poles.real >= -ON_AXIS * np.abs(poles)))
+    if transfer.den[-1] + transfer.num[-1] == 0.0:
+        return 1
+    crossovers = _all_crossovers(transfer)
+    if crossovers.size and np.min(np.abs(1.0 + transfer(1j * crossovers))) < TOUCHING:
+        return 1
+    sign = np.pi if transfer.num[0] < 0.0 else 0.0
+
+    def argument(w: float, small: bool) -> float:
+        if small:
+            return _argument(poles, w) + _principal(1.0 + transfer(1j * w)) if w < np.inf else 0.5 * np.pi * poles.size
+        inverse = 1.0 / complex(transfer(1j * w)) if w else _inverse_at_rest(transfer)
+        return sign + _argument(zeros, w) - w * transfer.dead_time + _principal(1.0 + inverse)
+
+    edges = [0.0, *crossovers.tolist(), np.inf]
+    change = 0.0
+    for low, high in pairwise(edges):
+        middle = (low * high) ** 0.5 if low and high < np.inf else 0.5 * high if high < np.inf else 2.0 * low or 1.0
+        small = abs(complex(transfer(1j * middle))) < 1.0
+        change += argument(high, small) - argument(low, small)
+    return max(0, round(0.5 * poles.size - change / np.pi))
+
+
+def _all_crossovers(transfer: LoopTransfer) -> Array:
+    """Return all gain crossovers; those that the roots of an ill-conditioned polynomial miss are found on a grid."""
+    roots = transfer.gain_crossovers
+    roots = roots[np.isfinite(roots) & (roots > 0.0)]
+    corners = np.concatenate([np.abs(transfer.corner_frequencies), roots])
+    if corners.size == 0:
+        return roots
+    low, high = 1e-3 * corners.min(), 1e3 * corners.max()
+    grid = np.geomspace(low, high, max(2, int(PER_DECADE * np.log10(high / low))))
+    w = np.unique(np.concatenate([grid, np.sqrt(roots[1:] * roots[:-1])]))
+    with np.errstate(divide="ignore"):
+        level = np.log(np.abs(transfer(1j * w)))
+
+    def excess(x: float) -> float:
+        return float(np.log(np.abs(complex(transfer(1j * x)))))
+
+    found: list[float] = []
+    for i in np.nonzero((level[:-1] < 0.0) != (level[1:] < 0.0))[0]:
+        inside = roots[(roots > w[i]) & (roots <= w[i + 1])]
+        if inside.size % 2:
+            found += inside.tolist()
+        else:
+            found.append(float(brentq(excess, w[i], w[i + 1], xtol=1e-300)))
+    return np.unique(found)
+
+
+def _argument(roots: ComplexArray, w: float) -> float:
+    """Return the argument of the product of i w - root, continuous in w >= 0."""
+    right = roots.real > 0.0
+    left_sum = np.sum(np.angle(1j * w - np.where(right, -1.0, roots)), where=~right)
+    right_sum = np.sum(np.pi + np.angle(np.where(right, roots, 1.0) - 1j * w), where=right)
+    return float(left_sum + right_sum)
+
+
+def _principal(value: object) -> float:
+    return float(np.angle(complex(value)))  # type: ignore[call-overload]
+
+
+def _inverse_at_rest(transfer: LoopTransfer) -> complex:
+    return complex(transfer.den[-1] / transfer.num[-1])
+
+
+def argument_change(f: Callable[[ComplexArray], ComplexArray], path: ComplexArray) -> float | None:
+    """Return the continuous change of arg f along a path, or None if a zero lies on the way."""
+    value = f(path)
     for _ in range(DEEPEST):
-        if np.any(f == 0.0):
+        if np.any(value == 0.0):
             return None
-        turns = np.angle(f[1:] / f[:-1])
+        turns = np.angle(value[1:] / value[:-1])
         coarse = np.nonzero(np.abs(turns) > LARGEST_TURN)[0]
         if coarse.size == 0:
             return float(np.sum(turns))
-        middle = 0.5 * (w[coarse] + w[coarse + 1])
-        if np.any((middle <= w[coarse]) | (middle >= w[coarse + 1])):
+        middle = 0.5 * (path[coarse] + path[coarse + 1])
+        if np.any((middle == path[coarse]) | (middle == path[coarse + 1])):
             return None
-        w = np.insert(w, coarse + 1, middle)
-        f = np.insert(f, coarse + 1, transfer.characteristic(1j * middle))
+        path = np.insert(path, coarse + 1, middle)
+        value = np.insert(value, coarse + 1, f(middle))
     return None

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import lambertw
 
-from replicate.loops import PI, Plant, method_of_steps
+from replicate.loops import PI, Plant
+from replicate.loops.responses import responses
 from replicate.papers.khan.peaks import ROUNDING, Responses
 
 Array = NDArray[np.float64]
@@ -88,10 +89,11 @@ def sweep(ph: float, kh: Array) -> Sweep:
     decay = ph - lambertw(-kh[slow] * np.exp(ph)).real
     until = float(np.ceil(max(SHORTEST, 2.0 + 3.5 / decay.min(initial=1.0))))
     plant = Plant([1.0], [1.0, ph], dead_time=1.0)
-    length, coefficients, _ = method_of_steps.respond(plant, [PI(float(k)) for k in kh], until, setpoint=1.0, load=0.0)
+    found = responses(plant, [PI(float(k)) for k in kh], until, setpoint=1.0, load=0.0)
+    length = float(found[0][0][1])  # all pieces are equal: the horizon is a whole number of dead times
     final = kh / (kh + ph)
-    responses = Responses(coefficients, length, final)
-    highest, at = responses.maximum()
+    outputs = Responses(np.array([y for _, y, _ in found]), length, final)
+    highest, at = outputs.maximum()
     if np.any((highest > 1.001 * final) & (at > 0.7 * until)):
         msg = f"ph = {ph:g}: the highest peak comes late; {until:g} dead times are too few"
         raise ValueError(msg)
@@ -99,8 +101,8 @@ def sweep(ph: float, kh: Array) -> Sweep:
         np.full(kh.size, ph),
         kh,
         _percent(highest, final),
-        _percent(responses.first_maximum(), final),
-        responses.first_reach(0.9) - responses.first_reach(0.1),
+        _percent(outputs.first_maximum(), final),
+        outputs.first_reach(0.9) - outputs.first_reach(0.1),
         kh / limit,
     )
 

@@ -154,7 +154,9 @@ def noise_gain(controller: PID, cut: float = inf) -> float:
         )
         best = max(best, -float(found.fun))
     if cut == inf and controller.measurement_filter_order == 1:
-        best = max(best, controller.kd / controller.measurement_filter)  # the limit for w -> infinity
+        best = max(
+            best, controller.kd / float(controller.measurement_filter_polynomials()[1][0])
+        )  # the limit for w -> infinity
     return best
 
 

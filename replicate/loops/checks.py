@@ -1,0 +1,117 @@
+"""Arguments checked once, in one line that names the argument, what was given and what is allowed.
+
+Every real number is a number: int, float, numpy scalars, `fractions.Fraction`, `decimal.Decimal`, mpmath's mpf.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.errors import LoopError
+
+Array = NDArray[np.float64]
+
+
+def real(value: object) -> float:
+    """Return a real number as a float; ``ValueError`` for anything else, ``nan`` and ``inf`` are let through."""
+    if isinstance(value, str | bytes | bool) or np.iscomplexobj(value) or np.ndim(value):  # type: ignore[arg-type]
+        raise ValueError
+    try:
+        return float(value)  # type: ignore[arg-type]
+    except (TypeError, OverflowError) as error:
+        raise ValueError from error
+
+
+def finite(name: str, value: object, *, allowed: str = "a finite number") -> float:
+    """Return a finite real number as a float.
+
+    Raises
+    ------
+    LoopError
+        If it is not one.
+    """
+    return _within(name, value, allowed, -math.inf, closed=True)
+
+
+def positive(name: str, value: object, *, allowed: str = "a finite number > 0") -> float:
+    """Return a finite number > 0 as a float; LoopError otherwise."""
+    return _within(name, value, allowed, 0.0, closed=False)
+
+
+def non_negative(name: str, value: object, *, allowed: str = "a finite number >= 0") -> float:
+    """Return a finite number >= 0 as a float; LoopError otherwise."""
+    return _within(name, value, allowed, 0.0, closed=True)
+
+
+def instance(name: str, value: object, kind: type, allowed: str) -> None:
+    """Check what kind of thing an argument is; LoopError otherwise."""
+    if not isinstance(value, kind):
+        msg = f"{name} must be {allowed}, not {type(value).__name__}"
+        raise LoopError(msg)
+
+
+def function(name: str, value: object) -> None:
+    """Check that an argument can be called; LoopError otherwise."""
+    if not callable(value):
+        raise LoopError(_message(name, value, "callable with a complex array s"))
+
+
+def triple(name: str, value: object, allowed: str) -> tuple[Any, Any, Any]:
+    """Return three things as a tuple; LoopError otherwise."""
+    if not isinstance(value, tuple | list) or len(value) != 3:
+        raise LoopError(_message(name, value, allowed))
+    return value[0], value[1], value[2]
+
+
+def whole(name: str, value: object) -> int:
+    """Return an integer >= 1; LoopError otherwise."""
+    if not isinstance(value, int | np.integer) or value < 1:
+        msg = f"{name} must be at least 1 and whole, not {shown(value)}"
+        raise LoopError(msg)
+    return int(value)
+
+
+def coefficients(name: str, values: object) -> Array:
+    """Return the coefficients of a polynomial, descending powers, without leading zeros; never empty.
+
+    Raises
+    ------
+    LoopError
+        If they are not a list of finite real numbers, or all zero.
+    """
+    allowed = "a list of finite real numbers, descending powers of s, not all zero"
+    if isinstance(values, str | bytes) or not (isinstance(values, Iterable) or np.isscalar(values)):
+        raise LoopError(_message(name, values, allowed))
+    items = list(np.atleast_1d(np.asarray(values, dtype=object)))
+    try:
+        array = np.trim_zeros(np.array([real(item) for item in items], dtype=float), "f")
+    except ValueError:
+        raise LoopError(_message(name, values, allowed)) from None
+    if array.size == 0 or not np.isfinite(array).all():
+        raise LoopError(_message(name, values, allowed))
+    return array
+
+
+def _within(name: str, value: object, allowed: str, low: float, *, closed: bool) -> float:
+    try:
+        number = real(value)
+    except ValueError:
+        raise LoopError(_message(name, value, allowed)) from None
+    if not math.isfinite(number) or number < low or (number == low and not closed):
+        raise LoopError(_message(name, value, allowed))
+    return number
+
+
+def _message(name: str, value: object, allowed: str) -> str:
+    return f"{name} must be {allowed}, not {shown(value)}"
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it: on one line, and not at length."""
+    text = " ".join((str(value) if isinstance(value, float | int) else repr(value)).split())
+    return text if len(text) <= 60 else text[:57] + "..."

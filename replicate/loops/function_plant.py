@@ -1,0 +1,143 @@
+"""A plant given by a function: any transfer function analytic for Re s > 0, times a dead time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from replicate.loops import checks
+from replicate.loops.errors import LoopError
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+CIRCLE_POINTS = 48
+CIRCLE_RADIUS = 0.35  # of |w|; a cut or poles on the negative real axis stay well outside
+LOWEST, HIGHEST, PER_OCTAVE = -100, 100, 4  # octaves of frequency in which a function's corners are looked for
+BENT = 0.3  # change of slope, or of phase in rad, at which a frequency response has left its asymptote
+LAG = 4.0 * np.pi  # phase beyond which nothing of a frequency response matters to a loop
+
+
+class FunctionPlant(Plant):
+    r"""A plant :math:`f(s) e^{-sL}`; made by `Plant.from_function`."""
+
+    def __init__(self, function: Callable[[Any], Any], dead_time: float = 0.0) -> None:
+        checks.function("the plant's function", function)
+        self.num = self.den = np.ones(1)
+        self.dead_time = checks.non_negative("the dead time", dead_time)
+        self.function = function
+
+    @property
+    def is_rational(self) -> bool:
+        """False: the plant is a function."""
+        return False
+
+    @property
+    def parts(self) -> tuple[Plant, ...]:
+        """None: a function is not a sum of rational plants."""
+        return ()
+
+    def _values(self, s: ArrayLike) -> ComplexArray:
+        assert self.function is not None  # noqa: S101  -- set above
+        s = np.asarray(s, dtype=complex)
+        return np.asarray(np.asarray(self.function(s), dtype=complex) + np.zeros_like(s))
+
+    def delay_free(self, s: ArrayLike) -> ComplexArray:
+        """Evaluate the function itself at complex ``s``."""
+        return self._values(s)
+
+    def log_derivative(self, s: ArrayLike) -> ComplexArray:
+        """Evaluate G'(s)/G(s), dead time included, by a sixth-order difference."""
+        s = np.asarray(s, dtype=complex)
+        h = 2e-3 * np.abs(s)
+        g = self.delay_free
+        slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
+        return np.asarray(slope / (60 * h * g(s)) - self.dead_time)
+
+    def taylor(self, s: ComplexArray, order: int) -> ComplexArray:
+        """Return Taylor coefficients of the function at ``s`` by Cauchy's integral, shape (order + 1, len(s))."""
+        turn = np.exp(2j * np.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
+        radius = CIRCLE_RADIUS * np.abs(s)
+        around = self.delay_free(s[:, None] + radius[:, None] * turn)
+        powers = np.exp(-2j * np.pi * np.outer(np.arange(CIRCLE_POINTS), np.arange(order + 1)) / CIRCLE_POINTS)
+        return np.asarray((around @ powers / CIRCLE_POINTS).T / radius ** np.arange(order + 1)[:, None])
+
+    def __neg__(self) -> Plant:
+        """Return the plant with its sign changed."""
+        return self.rescaled(1.0, -1.0)
+
+    def rescaled(self, time: float, gain: float) -> FunctionPlant:
+        """Return the plant in another unit of time, its gain divided by ``gain``."""
+        return FunctionPlant(lambda s: self._values(np.asarray(s) / time) / gain, self.dead_time / time)
+
+    @property
+    def integrators(self) -> int:
+        """0: a function's behaviour at s = 0 is its own."""
+        return 0
+
+    @property
+    def gain(self) -> float:
+        """The steady-state gain f(0), ``inf`` for a pole there, ``nan`` if the function has no value there."""
+        with np.errstate(all="ignore"):
+            at_rest = complex(self.delay_free(0.0))
+        return float(at_rest.real) if np.isfinite(at_rest) else float("nan")
+
+    @property
+    def gain_is_negative(self) -> bool:
+        """Whether the gain is negative at low frequency."""
+        low, _ = self.corners
+        return bool(complex(self.delay_free(1e-3 * low)).real < 0.0)
+
+    def poles(self) -> ComplexArray:
+        """Return nothing: the poles of a function are not known."""
+        return np.empty(0, dtype=complex)
+
+    def zeros(self) -> ComplexArray:
+        """Return nothing: the zeros of a function are not known."""
+        return np.empty(0, dtype=complex)
+
+    @cached_property
+    def corners(self) -> tuple[float, float]:
+        """Frequencies between which the function bends, from where it leaves its asymptote at rest to where it ends.
+
+        A function without any corner, such as a power of s, has both at one over the dead time, or at 1.
+        """
+        exponent = np.arange(LOWEST * PER_OCTAVE, HIGHEST * PER_OCTAVE + 1) / PER_OCTAVE
+        w = 2.0**exponent
+        with np.errstate(all="ignore"):
+            value = self.delay_free(1j * w)
+        known = np.isfinite(value) & (value != 0.0) & (np.abs(value) > 1e-290) & (np.abs(value) < 1e290)
+        first = int(np.argmax(known)) if known.any() else 0
+        gone = np.nonzero(~known[first:])[0]
+        last = first + int(gone[0]) if gone.size else known.size
+        w, value = w[first:last], value[first:last]
+        if w.size > 2 * PER_OCTAVE:
+            slope = np.diff(np.log(np.abs(value))) * PER_OCTAVE / np.log(2.0)
+            phase = np.unwrap(np.angle(value))
+            bent = np.abs(slope - np.median(slope[:PER_OCTAVE])) > BENT
+            turned = np.abs(phase[1:] - np.median(phase[:PER_OCTAVE])) > BENT
+            left = np.nonzero(bent | turned)[0]
+            if left.size:
+                lagged = np.nonzero(np.abs(phase - phase[0]) > LAG)[0]
+                end = int(lagged[0]) if lagged.size else w.size - 1
+                settled = np.abs(slope[: end + 1] - np.median(slope[-PER_OCTAVE:])) > BENT
+                high = int(np.nonzero(settled)[0][-1]) if settled.any() and not lagged.size else min(end, w.size - 1)
+                if not settled.any() and not lagged.size:
+                    high = int(left[0])
+                return float(w[left[0]]), float(max(w[high], w[left[0]]))
+        at = 1.0 / self.dead_time if self.dead_time else 1.0
+        return at, at
+
+    def state_space(self) -> tuple[Array, Array, Array, float]:
+        """Refuse: a function has no state-space model; LoopError always."""
+        msg = "a plant given by a function has no state-space model"
+        raise LoopError(msg)
+
+    def __repr__(self) -> str:
+        name = getattr(self.function, "__name__", "function")
+        return f"Plant.from_function({name}, dead_time={self.dead_time:g})"

@@ -1,0 +1,33 @@
+"""Time responses of loops with rational plants: by equal pieces where few are enough, else by pieces that adapt."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops import adaptive_steps, method_of_steps
+from replicate.loops.controller import PID
+from replicate.loops.plant import Plant
+
+Array = NDArray[np.float64]
+
+
+def responses(
+    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float
+) -> list[tuple[Array, Array, Array]]:
+    """Return (breaks, output, control signal) for each controller; they may differ in k, ki, kd and b.
+
+    Output and control signal are Chebyshev coefficients, shape (pieces, degree + 1); the last break is ``until``.
+
+    Raises
+    ------
+    LoopError
+        If the controllers differ in more than their gains, or a response grows out of range.
+    """
+    if plant.is_rational:
+        found = method_of_steps.respond(plant, controllers, until, setpoint=setpoint, load=load)
+        if found is not None:
+            return found
+    return [adaptive_steps.respond(plant, c, until, setpoint=setpoint, load=load) for c in controllers]

@@ -1,0 +1,109 @@
+"""Units in which a loop's own numbers are of the order of one.
+
+Every computation is made in them, so that its result does not depend on whether the user counts in nanoseconds or in
+years, in volts or in microvolts. Both units are powers of two: the change of units is exact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from replicate.loops.controller import PID, Filter
+from replicate.loops.plant import Plant
+
+
+@dataclass(frozen=True)
+class Units:
+    """The unit of time, in the user's, and the unit of the plant's gain."""
+
+    time: float = 1.0
+    gain: float = 1.0
+
+    @classmethod
+    def of(cls, plant: Plant, controller: PID | None = None) -> Units:
+        """Return the units of a loop: a mean of its corner frequencies, and the plant's gain there."""
+        frequency = _mean(_corners(plant))
+        if frequency is None and controller is not None:
+            frequency = _mean(_controller_corners(controller)) or _mean(_crossover(plant, controller))
+        time = 1.0 if frequency is None else _power_of_two(1.0 / frequency)
+        with np.errstate(all="ignore"):
+            gain = float(np.abs(plant.delay_free(np.array([1j / time]))[0]))
+        if not (np.isfinite(gain) and gain > 0.0):
+            gain = 1.0 / abs(controller.k) if controller is not None and controller.k else 1.0
+        return cls(time, _power_of_two(gain))
+
+    def plant(self, plant: Plant) -> Plant:
+        """Return the plant in these units."""
+        return plant.rescaled(self.time, self.gain)
+
+    def controller(self, controller: PID) -> PID:
+        """Return the controller in these units."""
+        return PID(
+            controller.k * self.gain,
+            controller.ki * self.gain * self.time,
+            controller.kd * self.gain / self.time,
+            controller.b,
+            controller.c,
+            derivative_filter=controller.derivative_filter / self.time,
+            measurement_filter=self._filter(controller.measurement_filter),
+            measurement_filter_order=controller.measurement_filter_order,
+            setpoint_filter=self._filter(controller.setpoint_filter),
+        )
+
+    def _filter(self, given: Filter) -> Filter:
+        if not isinstance(given, tuple):
+            return given / self.time
+        num, den = (np.array(part) for part in given)
+        scale = self.time ** np.arange(den.size - 1, -1, -1.0)
+        return tuple((num / scale[den.size - num.size :]).tolist()), tuple((den / scale).tolist())
+
+
+def _corners(plant: Plant) -> list[float]:
+    """Return frequencies, each as often as it counts: moduli of poles and zeros, and one over each dead time."""
+    if not plant.parts:
+        low, high = plant.corners
+        return [low, high, *([1.0 / plant.dead_time] if plant.dead_time else [])]
+    found = []
+    for part in plant.parts:
+        for polynomial in (part.num, part.den):
+            trimmed = np.trim_zeros(polynomial, "b")
+            degree = trimmed.size - 1
+            if degree:  # the product of the roots needs no roots
+                size = np.log2(np.abs(trimmed[-1])) - np.log2(np.abs(trimmed[0]))
+                found += [float(np.exp2(size / degree))] * degree
+        if part.dead_time:
+            found.append(1.0 / part.dead_time)
+    return found
+
+
+def _controller_corners(controller: PID) -> list[float]:
+    found = [1.0 / controller.derivative_filter] if controller.derivative_filter else []
+    _, den = controller.measurement_filter_polynomials()
+    found += [float(abs(root)) for root in np.roots(den)]
+    if controller.k and controller.ki:
+        found.append(abs(controller.ki / controller.k))
+    elif controller.kd and controller.ki:
+        found.append(float(np.sqrt(abs(controller.ki / controller.kd))))
+    if controller.k and controller.kd:
+        found.append(abs(controller.k / controller.kd))
+    return found
+
+
+def _crossover(plant: Plant, controller: PID) -> list[float]:
+    """Return the gain crossover of integrators alone: |k| K = w^n."""
+    size = abs(controller.k) or abs(controller.kd) or abs(controller.ki)
+    if not plant.integrators or not size or not plant.parts:
+        return []
+    return [float((size * abs(plant.parts[0].num[-1])) ** (1.0 / plant.integrators))]
+
+
+def _mean(frequencies: Iterable[float]) -> float | None:
+    logs = [np.log2(f) for f in frequencies if np.isfinite(f) and f > 0.0]
+    return float(np.exp2(np.mean(logs))) if logs else None
+
+
+def _power_of_two(value: float) -> float:
+    return float(np.exp2(np.round(np.log2(value))))
