@@ -40,6 +40,7 @@ SMOOTHEST = 12  # order of a derivative whose jump no longer has to fall on the 
 SMALLEST_JUMP = 1e-17
 START = 1e-4  # of the set-point step: an output below this is resolved as if it were this large
 SAME = 1e-12  # relative distance of two times that are one
+CLOCK = 4.0 * float(np.finfo(float).eps)
 MOST_PIECES = 200_000
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 
@@ -81,11 +82,11 @@ class _March:
     output: list[Array] = field(default_factory=list)  # node values of y
     control: list[Array] = field(default_factory=list)  # coefficients of u
     impulses: list[tuple[float, int, float]] = field(default_factory=list)  # (arrival, dead time, weight)
-    maps: dict[float, Array] = field(default_factory=dict)
+    maps: dict[str, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.ux, self.uv, self.ur = self.g @ self.chain.wx, self.g @ self.chain.wv, float(self.g @ self.chain.wr)
-        self.x = np.zeros(self.chain.e.size)
+        self.x = self.chain.start * self.setpoint
         # what the output is compared with before it has moved
         self.size_y, self.size_u = START * abs(self.setpoint), 0.0
         self.algebraic = 1.0 - (float(self.uv[0]) if self.delays[0] == 0.0 else 0.0)
@@ -108,7 +109,7 @@ class _March:
             h = rest / pieces if pieces <= 2.0 else length
             self._receive(start)
             y, u, v, end = self._piece(start, h)
-            remaining, smooth = self._check(y, u, v)
+            remaining, smooth = self._check(h, y, u, v)
             if remaining > RESOLVED and not (remaining < 1e-9 and remaining > 0.25 * previous):
                 previous, length = remaining, 0.5 * h
                 if start + length == start:
@@ -223,8 +224,9 @@ class _March:
 
     def _map(self, h: float) -> Array:
         """Return the map of a piece from (known inputs, start state, set-point) to (u, y, inputs, end state)."""
-        if h in self.maps:
-            return self.maps[h]
+        key = f"{h:.13e}"  # lengths that differ by rounding share a map
+        if key in self.maps:
+            return self.maps[key]
         points, n, m = DEGREE + 1, self.x.size, self.delays.size
         half_s = 0.5 * h * chebyshev.integration(DEGREE)
         own = [_own_part(h, float(delay)) for delay in self.delays]
@@ -252,10 +254,10 @@ class _March:
             v.append(part)
         y = np.einsum("i,pic->pc", self.chain.c, x) + sum(d * part for d, part in zip(self.chain.d, v, strict=True))
         flow = np.concatenate([u, y, *v, x[-1]])
-        self.maps[h] = flow
+        self.maps[key] = flow
         return flow
 
-    def _check(self, y: Array, u: Array, v: Array) -> tuple[float, bool]:
+    def _check(self, h: float, y: Array, u: Array, v: Array) -> tuple[float, bool]:
         """Return the size of what is not resolved, and whether a longer piece would be resolved, too."""
         series = chebyshev.values_to_coefficients(DEGREE) @ y
         size_y = max(self.size_y, float(np.max(np.abs(series))))
@@ -264,9 +266,15 @@ class _March:
         if not (size_y < LARGEST and size_u < LARGEST):
             msg = f"the response grows beyond {LARGEST:g} by t = {self.breaks[-1]:g}: choose a shorter horizon"
             raise LoopError(msg)
-        tails = [(np.abs(series), size_y), (np.abs(u), size_u), *((np.abs(row), size_v) for row in v)]
-        remaining = max((float(np.max(c[-2:])) / size for c, size in tails if size), default=0.0)
-        upper = max((float(np.max(c[2 * DEGREE // 3 :])) / size for c, size in tails if size), default=0.0)
+        # times are known to rounding only: what changes fast carries that error
+        blur = CLOCK * self.breaks[-1] * 2.0 / h
+        order = np.arange(DEGREE + 1) ** 2
+        remaining = upper = 0.0
+        for row, size in [(series, size_y), (u, size_u), *((row, size_v) for row in v)]:
+            if size:
+                tail, floor = np.abs(row), blur * float(np.max(order * np.abs(row)))
+                remaining = max(remaining, (float(np.max(tail[-2:])) - floor) / size)
+                upper = max(upper, (float(np.max(tail[2 * DEGREE // 3 :])) - floor) / size)
         if remaining <= RESOLVED:
             self.size_y, self.size_u = size_y, size_u
         return remaining, upper <= SMOOTH

@@ -44,6 +44,7 @@ class Chain:
     wv: Array
     wr: Array
     setpoint_impulse: float  # weight of the impulse that an ideal derivative makes of a set-point step, per unit of kd
+    start: Array  # states right after a unit step of the set-point, shape (n,)
 
     def balanced(self, g: Array) -> Chain:
         """Return the chain with its states scaled by powers of two, so that the loop closed by gains ``g`` is balanced.
@@ -60,7 +61,7 @@ class Chain:
         scale = scale[:n] / scale[n]
         return replace(
             self,
-            a=self.a * scale / scale[:, None], b=self.b / scale[:, None], e=self.e / scale,
+            a=self.a * scale / scale[:, None], b=self.b / scale[:, None], e=self.e / scale, start=self.start / scale,
             c=self.c * scale, wx=self.wx * scale,
         )  # fmt: skip
 
@@ -109,26 +110,32 @@ def build_chain(plant: Plant, controller: PID, *, integral: bool = True, derivat
         a[i_integral], b[i_integral], e[i_integral] = error.x, error.v, error.r
         integrated = _Row.state(i_integral, n, inputs)
 
-    differentiated, impulse = _Row(np.zeros(n), np.zeros(inputs), 0.0), 0.0
-    if n_lag:
-        weighted = setpoint * controller.c - measured
-        differentiated = (weighted - _Row.state(i_lag, n, inputs)) * (1.0 / controller.derivative_filter)
-        a[i_lag], b[i_lag], e[i_lag] = differentiated.x, differentiated.v, differentiated.r
-    elif derivative:
-        if slope is None:
-            if np.any(measured.v):
-                msg = "an ideal derivative of an output that jumps with the plant's input is not a causal controller"
-                raise ImproperLoopError(msg)
+    differentiated, impulse, start = _Row(np.zeros(n), np.zeros(inputs), 0.0), 0.0, np.zeros(n)
+    if derivative:
+        if slope is None and not np.any(measured.v):
             slope = _Row(measured.x @ a, measured.x @ b, 0.0)
+        if slope is None and not n_lag:
+            msg = "an ideal derivative of an output that jumps with the plant's input is not a causal controller"
+            raise ImproperLoopError(msg)
         setpoint_slope = _Row(setpoint.x @ a, np.zeros(inputs), float(setpoint.x @ e))
-        differentiated = setpoint_slope * controller.c - slope
-        impulse = controller.c * fd
+        state, lag = _Row.state(i_lag, n, inputs) if n_lag else differentiated, controller.derivative_filter
+        if slope is None:
+            differentiated = (setpoint * controller.c - measured - state) * (1.0 / lag)
+            a[i_lag], b[i_lag], e[i_lag] = differentiated.x, differentiated.v, differentiated.r
+        elif n_lag:  # the filtered slope itself is the state; a jump of the set-point makes it jump
+            change = (setpoint_slope * controller.c - slope - state) * (1.0 / lag)
+            a[i_lag], b[i_lag], e[i_lag] = change.x, change.v, change.r
+            start[i_lag] = controller.c * fd / lag
+            differentiated = state
+        else:
+            differentiated = setpoint_slope * controller.c - slope
+            impulse = controller.c * fd
 
     rows = (setpoint, measured, integrated, differentiated)
     return Chain(
         a, b, e, y.x, d,
         np.array([row.x for row in rows]), np.array([row.v for row in rows]), np.array([row.r for row in rows]),
-        impulse,
+        impulse, start,
     )  # fmt: skip
 
 
@@ -164,12 +171,22 @@ def _measured(controller: PID, y: _Row, own: slice, a: Array, b: Array) -> tuple
         measured = _Row(fd * y.x, fd * y.v, 0.0)
         measured.x[own] = fc
         return measured, None
-    measured, slope = y, None
-    for index in range(own.start, own.stop):  # a chain of equal first-order lags
-        slope = (measured - _Row.state(index, n, inputs)) * (1.0 / lag)
-        a[index], b[index] = slope.x, slope.v
-        measured = _Row.state(index, n, inputs)
-    return measured, slope
+    if np.any(y.v):  # the output jumps: its slope is no state of the chain
+        measured, slope = y, None
+        for index in range(own.start, own.stop):  # a chain of equal first-order lags
+            slope = (measured - _Row.state(index, n, inputs)) * (1.0 / lag)
+            a[index], b[index] = slope.x, slope.v
+            measured = _Row.state(index, n, inputs)
+        return measured, slope
+    # the slope z of the filtered output is the state: lag z' = slope of the output - z; a difference of output and
+    # filtered output, divided by a short lag, would be rounding error
+    measured, slope = y, _Row(y.x @ a, y.x @ b, 0.0)
+    for index in range(own.start, own.stop):
+        state = _Row.state(index, n, inputs)
+        change = (slope - state) * (1.0 / lag)
+        a[index], b[index] = change.x, change.v
+        measured, slope = measured - state * lag, state
+    return measured, slope if own.stop > own.start else None
 
 
 def _plant_state_space(plant: Plant) -> tuple[Array, Array, Array, Array]:

@@ -43,7 +43,7 @@ def control_signal(controller: PID, breaks: Array, output: Array, setpoint: floa
     points = DEGREE + 1
     to_coefficients = chebyshev.values_to_coefficients(DEGREE)
     pending = [(left, right, series) for left, right, series in zip(breaks[:-1], breaks[1:], output, strict=True)][::-1]
-    x = np.zeros(chain.e.size)
+    x = chain.start * setpoint
     ends, control, largest = [0.0], [], abs(setpoint * float(np.max(np.abs(g[:2]))))
     while pending:
         left, right, series = pending.pop()

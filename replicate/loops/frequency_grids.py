@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.errors import LoopError
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-MOST_POINTS = 2_000_000
+MOST_POINTS = 40_000  # on the turns of the dead time from rest on, 20 for each
+POINTS_AROUND = 200
 LARGEST_LAG = 4.0 * np.pi
 
 
@@ -29,10 +29,11 @@ def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Ar
     parts = [_logarithmic(start, end, per_decade)]
     if longest:
         step = np.pi / (10.0 * longest)
+        turns = np.arange(1.0, min(end / step, MOST_POINTS)) * step
+        parts.append(turns)
         if end > step * MOST_POINTS:
-            msg = f"|L| stays near one for {MOST_POINTS // 20} turns of the dead time: stability is not resolved"
-            raise LoopError(msg)
-        parts.append(np.arange(step, end, step))
+            # beyond, the dead time turns L through all phases before |L| changes: what matters is where |L| is largest
+            parts += [w + step * np.arange(-POINTS_AROUND, POINTS_AROUND) for w in transfer.gain_stationary if w < end]
     spread = _two_sided(30.0, 0.1, 12)
     parts += _around(_resonant(corners), spread, narrowest=1e-12)
     w = np.unique(np.concatenate(parts))

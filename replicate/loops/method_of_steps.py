@@ -171,6 +171,7 @@ def _march(
     )
     inputs = np.zeros((points + n + 1, sweep))
     inputs[-1] = setpoint
+    inputs[points:-1] = chain.start[:, None] * setpoint
     n_basis = blocks.shape[0] - points - n
     impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
     feedback = gain_matrix[3] * chain.wv[3, 0]  # an impulse in v passes through the ideal derivative into u
@@ -232,7 +233,7 @@ def _march_closed(
     system = np.eye(points * n) - np.kron(half_s, closed.a)
     flow = np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, n + 1) if n else right
     states = np.empty((pieces, points, n))
-    x = np.append(chain.b[:, 0] * closed.impulse * setpoint, 1.0)
+    x = np.append((chain.b[:, 0] * closed.impulse + chain.start) * setpoint, 1.0)
     for j in range(pieces):
         states[j] = flow @ x
         x[:n] = states[j, -1]
