@@ -191,7 +191,15 @@ class Plant:
         return np.asarray(rational - self.dead_time)
 
     def taylor(self, s: ComplexArray, order: int) -> ComplexArray:
-        """Return the Taylor coefficients of the part without dead time at ``s``, shape (order + 1, len(s))."""
+        """Return the Taylor coefficients of the part without dead time, shape (order + 1, len(s)).
+
+        Parameters
+        ----------
+        s
+            Complex points, shape (n,).
+        order
+            The highest derivative.
+        """
         from replicate.loops.jets import series_quotient
 
         def series(polynomial: Array) -> ComplexArray:
@@ -262,7 +270,15 @@ class Plant:
     # ---- algebra --------------------------------------------------------------------------------------------------
 
     def rescaled(self, time: float, gain: float) -> Plant:
-        """Return the plant in another unit of time, its gain divided by ``gain``; exact for powers of two."""
+        """Return the plant in another unit of time, its gain divided by ``gain``; exact for powers of two.
+
+        Parameters
+        ----------
+        time
+            The new unit of time, in the old one.
+        gain
+            The new unit of the gain, in the old one; a negative one changes the sign.
+        """
         shift = time ** np.arange(self.den.size, dtype=float)
         offset = self.den.size - self.num.size
         scaled = Plant.__new__(Plant)

@@ -196,7 +196,7 @@ class Search:
 def designed(name: str, ms: float, kinds: tuple[str, ...]) -> tuple[PIDDesign, tuple[float, float]]:
     pi = design_pi(plant(name), ms=ms)
     span = search_range(plant(name), pi.k, pi.ki)
-    return design_pid(plant(name), ms=ms, constraints=kinds), span  # type: ignore[arg-type]
+    return design_pid(plant(name), ms=ms, constraints=kinds), span
 
 
 def compare(
@@ -368,7 +368,7 @@ def test_no_controller_is_a_status_and_not_an_error() -> None:
 
 def test_what_cannot_be_asked() -> None:
     with pytest.raises(LoopError, match="'slope' is unknown"):
-        design_pid(plant("G4"), ms=1.4, constraints=["slope"])  # type: ignore[list-item]
+        design_pid(plant("G4"), ms=1.4, constraints=["slope"])
     with pytest.raises(LoopError):
         design_pid(plant("G4"))
 
