@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
-from replicate.errors import PaperDefinitionError
+from replicate.exhibits.definitions import check_function, check_id, check_one_of, check_texts
 from replicate.exhibits.order import module_being_imported
 
 ClaimVerdict = Literal["holds", "fails", "holds-partly", "undecided"]
@@ -65,6 +65,14 @@ class Claim:
     consequence: Consequence = "none"
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        what = f"claim '{self.id}'"
+        check_id("claim", self.id)
+        check_texts(what, text=self.text, where=self.where, printed=self.printed)
+        check_one_of(what, "consequence", self.consequence, get_args(Consequence))
+        check_function(what, "its check", self.check)
+
 
 @dataclass
 class Claims:
@@ -91,6 +99,11 @@ class Claims:
     depends: tuple[str, ...] = ()
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        check_id("exhibit", self.id)
+        check_texts(self.id, title=self.title)
+
     def claim(
         self, id: str, text: str, *, where: str = "", printed: str = "", consequence: Consequence = "none"
     ) -> Callable[[Callable[[], Finding]], Callable[[], Finding]]:
@@ -108,9 +121,7 @@ class Claims:
         """
 
         def register(check: Callable[[], Finding]) -> Callable[[], Finding]:
-            if id in self.claims:
-                msg = f"{self.id}: claim '{id}' is defined twice"
-                raise PaperDefinitionError(msg)
+            check_id("claim", id, self.claims)
             self.claims[id] = Claim(id, text, check, where, printed, consequence)
             return check
 

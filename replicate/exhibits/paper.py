@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
+from replicate.exhibits.definitions import as_keys, check_id, check_lists, check_paper_id, check_texts, refuse
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
 from replicate.exhibits.printed import USUAL, Key, Near, PrintedValue, read_transcription
@@ -74,6 +75,15 @@ class Paper:
     charts: dict[str, Chart] = field(default_factory=dict)
     _loaded: bool = False
     _data_read: set[str] = field(default_factory=set, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        check_paper_id(self.id)
+        what = f"paper '{self.id}'"
+        check_texts(what, package=self.package, title=self.title, citation=self.citation, summary=self.summary)
+        check_lists(what, authors=self.authors, modules=self.modules, numbered=self.numbered)
+        if type(self.year) is not int:
+            refuse(f"{what}: year is {self.year!r}; expected: a whole number")
 
     def load(self) -> Paper:
         """Import the modules that define the exhibits (once), put all in the paper's order, return the paper itself.
@@ -158,9 +168,7 @@ class Paper:
         return {key: float(PrintedValue(cell).value) for key, cell in self.printed_cells(exhibit).items()}
 
     def _add(self, exhibit: Exhibit) -> None:
-        if exhibit.id in self.exhibits:
-            msg = f"{self.id}: exhibit '{exhibit.id}' is defined twice"
-            raise PaperDefinitionError(msg)
+        check_id("exhibit", exhibit.id, self.exhibits)
         self.exhibits[exhibit.id] = exhibit
 
     def table(
@@ -202,15 +210,15 @@ class Paper:
         if printed and not (rows and columns):
             msg = f"{self.id}: {id} has printed values, so its row and column keys must be given"
             raise PaperDefinitionError(msg)
-        own = {*rows, *columns}
+        own = {*as_keys(id, "rows", rows), *as_keys(id, "columns", columns)}
         shared = {key: text for key, text in (shared_labels or {}).items() if key in own}
         exhibit = Table(
             id,
             kind,
             title,
             caption,
-            tuple(rows),
-            tuple(columns),
+            as_keys(id, "rows", rows),
+            as_keys(id, "columns", columns),
             {**shared, **(labels or {})},
             units or {},
             significant_digits,
@@ -299,8 +307,9 @@ class Paper:
         PaperDefinitionError
             If there is a chart of that name, or no parameter.
         """
-        if id in self.charts or not parameters:
-            msg = f"{self.id}: chart '{id}' " + ("is defined twice" if id in self.charts else "has no parameters")
+        check_id("chart", id, self.charts)
+        if not parameters:
+            msg = f"{self.id}: chart '{id}' has no parameters"
             raise PaperDefinitionError(msg)
 
         def register(draw: Callable[..., None]) -> Callable[..., None]:

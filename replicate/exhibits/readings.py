@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
+from replicate.exhibits.definitions import check_function, check_id, check_texts
 from replicate.exhibits.order import module_being_imported
 
 AS_WRITTEN = "as-written"
@@ -46,3 +47,10 @@ class Reading:
     inputs_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tried: Mapping[str, int] = field(default_factory=dict)
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        what = f"reading '{self.id}'"
+        check_id("reading", self.id)
+        check_texts(what, title=self.title, note=self.note)
+        check_function(what, "what computes it", self.compute)

@@ -13,10 +13,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, get_args
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
+from replicate.exhibits.definitions import (
+    check_function,
+    check_id,
+    check_lists,
+    check_mappings,
+    check_one_of,
+    check_size,
+    check_texts,
+)
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
 from replicate.exhibits.printed import USUAL, Key, Near
@@ -93,6 +102,16 @@ class Table:
     depends: tuple[str, ...] = ()
     cases: Literal["rows", "columns", ""] = ""
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        what = f"{self.id}"
+        check_id("exhibit", self.id)
+        check_one_of(what, "kind", self.kind, get_args(TableKind))
+        check_one_of(what, "cases", self.cases, ("rows", "columns", ""))
+        check_texts(what, title=self.title, caption=self.caption)
+        check_lists(what, rows=self.rows, columns=self.columns)
+        check_mappings(what, labels=self.labels, units=self.units)
 
     def check(self) -> None:
         """Check that what is declared of rows and columns speaks of rows and columns of the table.
@@ -216,9 +235,7 @@ class Table:
             if not self.readings and id != AS_WRITTEN:
                 msg = f"{self.id}: the first reading must be '{AS_WRITTEN}', not '{id}'"
                 raise PaperDefinitionError(msg)
-            if id in self.readings:
-                msg = f"{self.id}: reading '{id}' is defined twice"
-                raise PaperDefinitionError(msg)
+            check_id(f"reading of {self.id}", id, self.readings)
             self.readings[id] = Reading(
                 id,
                 title,
@@ -270,6 +287,14 @@ class Figure:
     depends: tuple[str, ...] = ()
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        check_id("exhibit", self.id)
+        check_one_of(self.id, "kind", self.kind, get_args(FigureKind))
+        check_texts(self.id, title=self.title, caption=self.caption, alt=self.alt, stands_for=self.stands_for)
+        check_size(self.id, self.size)
+        check_function(self.id, "what draws it", self.draw)
+
 
 @dataclass(frozen=True)
 class Chart:
@@ -297,6 +322,15 @@ class Chart:
     size: tuple[float, float] = (6.4, 4.0)
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        what = f"chart '{self.id}'"
+        check_id("chart", self.id)
+        check_texts(what, title=self.title)
+        check_mappings(what, parameters=self.parameters)
+        check_size(what, self.size)
+        check_function(what, "what draws it", self.draw)
+
 
 @dataclass(frozen=True)
 class NotComputable:
@@ -321,6 +355,12 @@ class NotComputable:
     title: str
     reason: str
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check the types that Python does not."""
+        check_id("exhibit", self.id)
+        check_one_of(self.id, "kind", self.kind, (*get_args(TableKind), *get_args(FigureKind)))
+        check_texts(self.id, title=self.title, reason=self.reason)
 
 
 Exhibit = Table | Figure | Claims | NotComputable

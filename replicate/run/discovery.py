@@ -101,8 +101,14 @@ def importing(what: str) -> Iterator[None]:
     try:
         with only_ours():
             yield
-    except (PaperDefinitionError, KeyboardInterrupt):
+    except KeyboardInterrupt:
         raise
+    except PaperDefinitionError as error:
+        place = _defined_at(error)
+        if not place:
+            raise
+        msg = f"{place}: {error}"
+        raise PaperDefinitionError(msg) from error
     except BaseException as error:
         if isinstance(error, SystemExit) and error.code == TERMINATED:
             raise
@@ -117,3 +123,10 @@ def importing(what: str) -> Iterator[None]:
             reason = ends if isinstance(error, SystemExit) else f"{type(error).__name__}: {text}"
         msg = f"{what} cannot be loaded: {display_name(Path(file))}:{line}: {reason}"
         raise PaperDefinitionError(msg) from error
+
+
+def _defined_at(error: PaperDefinitionError) -> str:
+    """Return file and line of the paper's own code that made a wrong definition, empty if it is none of its lines."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if frame.name == "<module>"]
+    return f"{display_name(Path(own[-1].filename))}:{own[-1].lineno}" if own else ""

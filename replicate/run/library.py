@@ -13,6 +13,7 @@ from pathlib import Path
 
 from replicate.errors import PaperDefinitionError, ProjectError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
+from replicate.exhibits.definitions import check_id
 from replicate.run.discovery import Found, bundled_papers, find_exhibit, importing, installed_papers
 from replicate.run.paper_folders import papers_in
 from replicate.run.project import Project
@@ -111,6 +112,7 @@ class Library:
         for one in wanted:
             paper = self._loaded(one)
             if paper is not None:
+                check_id("paper", paper.id, [id for id in papers if id != paper.id])
                 papers[paper.id] = paper
         if not papers:
             raise PaperDefinitionError(self.broken[0])

@@ -57,7 +57,7 @@ def example_2_1_three_digits() -> pd.DataFrame:
     return _example_2_1(1.667)
 
 
-@example_2_1.reading("p-5/3", "$p = 5/3$", "The time constant 0.6 of Example 3.1 gives $p = 5/3$.")
+@example_2_1.reading("p-5-3", "$p = 5/3$", "The time constant 0.6 of Example 3.1 gives $p = 5/3$.")
 def example_2_1_fraction() -> pd.DataFrame:
     """Evaluate with p = 1/0.6."""
     return _example_2_1(5.0 / 3.0)

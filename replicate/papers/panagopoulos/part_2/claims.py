@@ -35,7 +35,9 @@ def load_ratio(name: str, ms: float) -> float:
     return load_numbers(row_of(name, ms), optimal(row_of(name, ms)))["undershoot"]
 
 
-@claims.claim("ie-is-1/ki", "Maximising $k_i$ minimises the integrated error after a load step.", where="II, section 2")
+@claims.claim(
+    "ie-is-1-over-ki", "Maximising $k_i$ minimises the integrated error after a load step.", where="II, section 2"
+)
 def integrated_error() -> Finding:
     gaps = [abs(load_experiment(split(row)[0], optimal(row)).output.ie() * optimal(row).ki - 1.0) for row in ROWS]
     verdict, kept, total = share(gap < ROUNDING for gap in gaps)

@@ -1,0 +1,82 @@
+"""Texts of papers, fit for a terminal and a page: UTF-8, and none of the characters that steer what shows them.
+
+An escape sequence can repaint a terminal, a bidirectional control can show ``1.2`` where ``2.1`` stands. A text that is
+defined or read is refused with its place; whatever else is shown has such characters written out.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from importlib.resources.abc import Traversable
+from pathlib import Path
+
+from replicate.errors import ReplicateError
+
+# C0 and C1 controls but for tab and line ends, DEL, marks and overrides of the writing direction, separators of lines
+# and paragraphs, surrogates.
+_STEERING = re.compile(
+    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+
+
+def steering(text: str) -> str:
+    r"""Return the name of the first character that steers what shows a text, empty if there is none.
+
+    Examples
+    --------
+    >>> steering("a\x1b[2Jb"), steering("plain\n")
+    ('U+001B', '')
+    >>> steering("1\u202e2")
+    'U+202E RIGHT-TO-LEFT OVERRIDE'
+    """
+    found = _STEERING.search(text)
+    return _named(found[0]) if found else ""
+
+
+def visible(text: str) -> str:
+    r"""Return a text in which characters that steer are written out.
+
+    Examples
+    --------
+    >>> visible("a\x1b[2Jb")
+    'a\\x1b[2Jb'
+    """
+    return _STEERING.sub(lambda found: found[0].encode("unicode_escape", "backslashreplace").decode("ascii"), text)
+
+
+def read_text(path: Path | Traversable, name: str, error: type[ReplicateError]) -> str:
+    """Read a text file of a paper.
+
+    Parameters
+    ----------
+    name
+        What messages call the file.
+    error
+        Raised if it cannot be read, is not UTF-8 or holds a character that steers; the message has the line.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as why:
+        msg = f"{name}: cannot be read: {why.strerror or why}"
+        raise error(msg) from why
+    try:
+        text = content.decode("utf-8")
+    except UnicodeDecodeError as why:
+        line = content[: why.start].count(b"\n") + 1
+        msg = f"{name}:{line}: is not UTF-8: byte 0x{content[why.start]:02x}; save the file as UTF-8"
+        raise error(msg) from why
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    found = _STEERING.search(text)
+    if found:
+        line = text.count("\n", 0, found.start()) + 1
+        msg = (
+            f"{name}:{line}: holds the character {_named(found[0])}, which pages and terminals must not get; remove it"
+        )
+        raise error(msg)
+    return text
+
+
+def _named(character: str) -> str:
+    name = unicodedata.name(character, "")
+    return f"U+{ord(character):04X}{f' {name}' if name else ''}"

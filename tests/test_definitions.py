@@ -1,0 +1,200 @@
+"""Definitions of the wrong form or type: one line that says what is expected, with file and line."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from replicate.errors import PaperDefinitionError
+from replicate.exhibits import Paper
+from replicate.exhibits.definitions import check_id
+
+Run = Callable[..., tuple[int, str, str]]
+
+BAD_IDS = [
+    "",
+    "../x",
+    "a/b",
+    "a\\b",
+    ".hidden",
+    "-x",
+    "_x",
+    "a b",
+    "a.",
+    "<script>",
+    "é",
+    "a\n",
+    "a\0",
+    "x" * 101,
+    3,
+    None,
+]
+GOOD_IDS = ["table-1", "I-fig-2", "eq-7a", "p-1.667", "a_b", "7"]
+
+
+def paper(**changes: Any) -> Paper:
+    fields: dict[str, Any] = {
+        "id": "lab",
+        "package": "lab",
+        "title": "A laboratory",
+        "authors": ("N. N.",),
+        "citation": "N. N., 2000.",
+        "year": 2000,
+        "modules": (),
+        "numbered": (),
+    }
+    return Paper(**(fields | changes))
+
+
+def with_table(id: Any = "table-1", **changes: Any) -> Paper:
+    made = paper()
+    made.table(id, **({"title": "T", "rows": ("a",), "columns": ("x",)} | changes))
+    return made
+
+
+def with_reading(id: Any, **changes: Any) -> None:
+    table = with_table().exhibits["table-1"]
+    table.reading("as-written", "As written")(dict)  # type: ignore[union-attr]
+    table.reading(id, **({"title": "R"} | changes))(dict)  # type: ignore[union-attr]
+
+
+def with_claim(id: Any, **changes: Any) -> None:
+    paper().claims().claim(id, **({"text": "It is so."} | changes))(dict)  # type: ignore[arg-type]
+
+
+def with_figure(id: Any, **changes: Any) -> None:
+    paper().figure(id, **({"title": "F"} | changes))(print)
+
+
+def with_chart(id: Any, **changes: Any) -> None:
+    paper().chart(id, **({"title": "C", "parameters": {"x": "any"}} | changes))(print)
+
+
+MAKERS: list[Callable[[Any], object]] = [
+    lambda id: paper(id=id),
+    with_table,
+    with_reading,
+    with_claim,
+    with_figure,
+    with_chart,
+    lambda id: paper().not_computable(id, "N", "It is not."),
+    lambda id: paper().claims(id),
+]
+
+
+@pytest.mark.parametrize("make", MAKERS)
+def test_ids_are_checked_where_they_are_defined(make: Callable[[Any], object]) -> None:
+    for good in GOOD_IDS:
+        make(good)
+    for bad in BAD_IDS:
+        with pytest.raises(PaperDefinitionError, match="allowed: letters and digits first"):
+            make(bad)
+
+
+@given(st.text(max_size=8))
+def test_an_id_never_leads_out_of_a_folder_or_into_markup(id: str) -> None:
+    try:
+        check_id("exhibit", id)
+    except PaperDefinitionError:
+        return
+    assert (Path("here") / f"{id}.csv").resolve().parent == Path("here").resolve()
+    assert re.fullmatch(r"[\w.-]+", id, re.ASCII)
+
+
+@pytest.mark.parametrize("id", ["index", "Methods", "errata", "whatif"])
+def test_no_paper_takes_the_name_of_another_page(id: str) -> None:
+    with pytest.raises(PaperDefinitionError, match="the report has pages of the names"):
+        paper(id=id)
+
+
+def test_ids_differ_by_more_than_case() -> None:
+    made = with_table()
+    for id, said in (("table-1", "is defined twice"), ("Table-1", "differs from 'table-1' only in case")):
+        with pytest.raises(PaperDefinitionError, match=said):
+            made.not_computable(id, "N", "It is not.")
+    table = made.exhibits["table-1"]
+    table.reading("as-written", "As written")(dict)  # type: ignore[union-attr]
+    with pytest.raises(PaperDefinitionError, match="only in case"):
+        table.reading("As-Written", "As written")(dict)  # type: ignore[union-attr]
+    claims = made.claims()
+    claims.claim("big", "It is big.")(dict)  # type: ignore[arg-type]
+    with pytest.raises(PaperDefinitionError, match="only in case"):
+        claims.claim("BIG", "It is big.")(dict)  # type: ignore[arg-type]
+
+
+WRONG: list[tuple[Callable[[], object], str]] = [
+    (lambda: paper(authors="A. Author"), "authors is 'A. Author' (str); expected: a list of texts"),
+    (lambda: paper(modules="exhibits"), "modules is 'exhibits' (str); expected: a list of texts"),
+    (lambda: paper(numbered="table-1"), "numbered is 'table-1' (str)"),
+    (lambda: paper(authors=("A", 3)), "an element of authors is 3 (int); expected: a text"),
+    (lambda: paper(authors=None), "authors is missing"),
+    (lambda: paper(title=None), "title is missing; expected: a text"),
+    (lambda: paper(title=b"T"), "title is b'T' (bytes)"),
+    (lambda: paper(year="2000"), "year is '2000'; expected: a whole number"),
+    (lambda: paper(year=True), "year is True"),
+    (lambda: paper(title="a\x1b[2J"), "title holds the character U+001B"),
+    (lambda: paper(citation="1\u202e2"), "citation holds the character U+202E RIGHT-TO-LEFT OVERRIDE"),
+    (lambda: with_table(rows="abc"), "rows is 'abc' (str); expected: a list of texts"),
+    (lambda: with_table(columns=7), "columns is 7 (int)"),
+    (lambda: with_table(rows=("a", 2)), "an element of rows is 2 (int)"),
+    (lambda: with_table(labels={"a": 1}), "labels of 'a' is 1 (int)"),
+    (lambda: with_table(units="s"), "units is 's' (str); expected: texts by key"),
+    (lambda: with_table(kind="tabel"), "kind is 'tabel'; allowed: 'table', 'example', 'formula'"),
+    (lambda: with_figure("fig-1", size="big"), "size is 'big'; expected: width and height in inches"),
+    (lambda: with_figure("fig-1", size=(1.0, -1.0)), "size is (1.0, -1.0)"),
+    (lambda: with_figure("fig-1", alt=3), "alt is 3 (int)"),
+    (lambda: paper().figure("fig-1", "F")("no function"), "what draws it is 'no function' (str)"),  # type: ignore[arg-type]
+    (lambda: with_claim("c", text=None), "text is missing"),
+    (lambda: with_claim("c", printed=1.5), "printed is 1.5 (float); expected: a text"),
+    (lambda: with_claim("c", consequence="death"), "consequence is 'death'; allowed: 'none'"),
+    (lambda: with_reading("other", note=None), "note is missing"),
+    (lambda: paper().not_computable("fig-1", "N", None), "reason is missing"),  # type: ignore[arg-type]
+]
+
+
+@pytest.mark.parametrize(("define", "said"), WRONG)
+def test_wrong_types_are_named(define: Callable[[], object], said: str) -> None:
+    with pytest.raises(PaperDefinitionError, match=re.escape(said)):
+        define()
+
+
+PLACES = [
+    ('authors=("N. N.",)', 'authors="N. N."', "lab_paper/__init__.py:4: paper 'lab': authors is 'N. N.'"),
+    ('modules=("exhibits",)', 'modules="exhibits"', "lab_paper/__init__.py:4: paper 'lab': modules is 'exhibits'"),
+    ('id="lab"', 'id="index"', "lab_paper/__init__.py:4: 'index' is not an id of a paper"),
+    (
+        '"fig-1", "A decaying',
+        '"../fig-1", "A decaying',
+        "lab_paper/exhibits.py:26: '../fig-1' is not an id of an exhibit",
+    ),
+    (
+        '"decimal", "Log',
+        '"as-written", "Log',
+        "lab_paper/exhibits.py:21: reading of table-1 'as-written' is defined twice",
+    ),
+    ('"as-written", "As', '"first", "As', "lab_paper/exhibits.py:14: table-1: the first reading must be 'as-written'"),
+]
+
+
+@pytest.mark.parametrize(("before", "after", "said"), PLACES)
+def test_file_and_line_of_a_wrong_definition(replicate: Run, folder: Path, before: str, after: str, said: str) -> None:
+    for path in folder.glob("*.py"):
+        path.write_text(path.read_text().replace(before, after))
+    status, out, err = replicate("check", "lab", "-j1", "--accepted", "nowhere")
+    assert (status, out) == (2, "")
+    assert said in err
+    assert "Traceback" not in err
+    assert "unexpected" not in err
+
+
+def test_records_cannot_be_changed_into_wrong_ones() -> None:
+    made = with_table()
+    with pytest.raises(PaperDefinitionError):
+        dataclasses.replace(made.exhibits["table-1"], id="a/b")
