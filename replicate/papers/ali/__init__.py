@@ -36,8 +36,8 @@ paper = Paper(
         "example-2",
         *(f"fig-{number}" for number in range(1, 9)),
     ),
-    summary="A PID rule for unstable plants with dead time: it cancels the pole of a Padé model and is to keep a "
-    "specified distance from the critical point. The settings come out at all printed digits and are stable. The "
+    summary="A PID rule for unstable plants with dead time: it cancels the pole of a Padé model and is meant to keep "
+    "a specified distance from the critical point. The settings agree in all printed digits and are stable. The "
     "printed maximum sensitivities are not those of the printed controller, and the specified distance is not kept, "
     "because a square root was taken with the wrong sign.",
 )

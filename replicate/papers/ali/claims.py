@@ -75,8 +75,8 @@ def y_starts() -> Finding:
         largest,
         f"By (7) and (8) $y$ is $1/|S|$, and $q$ is real only for $y \\le 1 - \\sqrt{{\\theta/2T}}$, at most "
         f"{number(largest)} in "
-        "Table 1: with $y \\ge 1.2$ no $T_i$ is real. What is stepped is $M_s^* = 1/y$; with it the column "
-        "$M_s^*$ comes out.",
+        "Table 1: with $y \\ge 1.2$ no $T_i$ is real. It is $M_s^* = 1/y$ that is stepped, which gives the "
+        "column $M_s^*$.",
     )
 
 
@@ -104,7 +104,7 @@ def negative_ti() -> Finding:
         f"Of the {tried} rejected specifications of Table 1, {negative} give a negative $T_i$. All give "
         f"complex roots, because $q$ is imaginary; the real part of the larger one is positive in "
         f"{tried - negative_part} cases and negative in {negative_part}, "
-        "so it is no stop test either. The test that yields the table is “the roots are real”.",
+        "so that is not the stop test either. The test that yields the table is “the roots are real”.",
     )
 
 
@@ -131,7 +131,7 @@ def condition_10() -> Finding:
         min(inside),
         f"In {agree} of {len(TABLE_1)} rows the gain limits of the design loop are those of (10), and $KK_p$ "
         f"is inside them by a factor of at least {number(min(inside))}. The condition also needs $T_i > "
-        "\\theta/2$, which is not said.",
+        "\\theta/2$, which the paper does not say.",
     )
 
 

@@ -35,7 +35,7 @@ def same_speed() -> Finding:
     return Finding(
         "holds" if 0.8 < ratio < 1.25 else "holds-partly",
         ratio,
-        "Only by the eye, because the dead time dominates: half the step is reached after "
+        "Only to the eye, because the dead time dominates: half the step is reached after "
         + by_form(half, VISIOLI, " and ")
         + ", dead time included; but the rise from 10 % to 90 % takes "
         + " and ".join(f"{p}" for p in rise.values())
@@ -89,7 +89,7 @@ def visioli_load_stable() -> Finding:
 
 @claims.claim(
     "visioli-better-load",
-    "Example 2: Visioli's method rejects the load better, but the proposed one rejects it, too.",
+    "Example 2: Visioli's method rejects the load better, but the proposed one rejects it as well.",
     where="section 3, Example 2, Fig. 6",
 )
 def visioli_better_load() -> Finding:

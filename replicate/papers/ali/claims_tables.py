@@ -44,8 +44,8 @@ def true_ms() -> Finding:
         "holds" if equal == len(deviations) else "fails",
         max(deviations),
         f"{equal} of {len(deviations)} agree; the print is {100.0 * min(deviations):.1f} % to "
-        f"{100.0 * max(deviations):.1f} % too high. All are "
-        "met if the derivative filter acts on the derivative term alone, the dead time is a third-order Padé "
+        f"{100.0 * max(deviations):.1f} % too high. All agree "
+        "if the derivative filter acts on the derivative term alone, the dead time is a third-order Padé "
         "model, and the peak comes from a norm routine with a tolerance of 1 %.",
     )
 

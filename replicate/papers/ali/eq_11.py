@@ -116,7 +116,7 @@ def error_as_printed() -> pd.DataFrame:
 @eq_11_error.reading(
     "exact-data",
     "Refitted to the unrounded $T_i$, against the unrounded $T_i$",
-    note="The best cubic is hardly better: the data have a step between 0.5 and 0.6, because $M_s^*$ moves "
+    note="The best cubic is little better: the data have a step between 0.5 and 0.6, because $M_s^*$ moves "
     "in steps of 0.1.",
 )
 def error_refitted() -> pd.DataFrame:

@@ -154,7 +154,7 @@ def _stable(p: Point) -> bool:
 
 
 def _holds_10(p: Point, *, restored: bool) -> bool:
-    """Compare (10) with the roots; restored: with the condition Ti > theta/2, which the print leaves unsaid."""
+    """Compare (10) with the roots; restored: with the condition Ti > theta/2, which the paper does not say."""
     if 2 * p.Ti == p.theta or p.g * p.theta == 2 * p.T:
         return True  # (10) is not defined there, or the loop is degenerate
     return (condition_10(p) and (not restored or p.Ti > p.theta / 2)) == _stable(p)
@@ -168,8 +168,8 @@ equations = paper.table(
     rows=("3", "4", "5", "9", "root", "10"),
     columns=("points", "failures"),
     caption="Each step of the derivation evaluated in exact fractions at many points: at how many of them it "
-    "fails. (5) fails as it stands in the scan and holds with its bracket closed two terms later. (10) needs "
-    "$T_i > \\theta/2$, which the print leaves unsaid. The repeated root of (5) is a frequency only if $q < "
+    "fails. (5) fails as scanned and holds with its bracket closed two terms later. (10) needs "
+    "$T_i > \\theta/2$, which the paper does not say. The repeated root of (5) is a frequency only if $q < "
     "0$.",
     labels={
         "3": "(3) loop with 1/1 Padé delay, $T_d = \\theta/2$",

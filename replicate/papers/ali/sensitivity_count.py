@@ -67,11 +67,11 @@ HYPOTHESES = _hypotheses()
 
 sensitivity_count = paper.table(
     "ms-count",
-    "Printed $M_s$ met, by hypothesis",
+    "Printed $M_s$ reproduced, by hypothesis",
     printed=False,
     rows=tuple(HYPOTHESES),
     columns=("table_1", "table_2", "both", "largest_error", "printed"),
-    caption="How many printed $M_s$ of Tables 1 and 2 come out (rounded or truncated) under each combination "
+    caption="How many printed $M_s$ of Tables 1 and 2 are reproduced (rounded or truncated) under each combination "
     "of controller structure, model of the dead time and way to find the peak, and the largest relative "
     "deviation from the print in per cent. Except where it says unrounded, the settings are those of the reading "
     "*authors*.",
@@ -86,7 +86,7 @@ sensitivity_count = paper.table(
 )
 
 
-@sensitivity_count.reading("as-written", "Number of printed values met")
+@sensitivity_count.reading("as-written", "Number of printed values reproduced")
 def count() -> pd.DataFrame:
     """Count the printed Ms that each hypothesis meets."""
     rows = {}

@@ -43,7 +43,7 @@ stability = paper.table(
     rows=tuple(DESIGNS),
     columns=("pole_re", "pole_im", "KKp_min", "KKp", "KKp_max", "gain_up", "delay_margin"),
     caption="Exact dead time, $T = 1$, unrounded settings. Rightmost closed-loop pole $p$; the interval of $KK_p$ "
-    "in which the loop is stable, all else fixed; by how many per cent the gain and the dead time may grow.",
+    "in which the loop is stable, all else fixed; by how many per cent the gain and the dead time may increase.",
     labels={
         **{id: f"Table {id[6]}, {id[8:]}" for id in DESIGNS if id.startswith("table")},
         **{id: f"(11), {id[6:]}" for id in DESIGNS if id.startswith("eq")},

@@ -33,6 +33,6 @@ paper = Paper(
     numbered=("fig-1", "table-1", "table-2", "fig-2", "table-3", "fig-3", "fig-4", "fig-5"),
     summary="A tuning rule that gives the loop a double pole, compared with ten classical rules. The rule "
     "holds. The comparison does not: the classical rules were run with the integral gain 1/Ti where the "
-    "paper's equation (3) says Kp/Ti. Computed that way, on the authors' own Padé model and sample grid, the "
-    "tables come out digit for digit; computed as written, they do not.",
+    "paper's equation (3) says Kp/Ti. With 1/Ti, on the authors' own Padé model and sample grid, the tables "
+    "are reproduced digit for digit; computed as written, they are not.",
 )

@@ -32,7 +32,7 @@ def no_overshoot() -> Finding:
     return Finding(
         "holds" if worst < 0.0005 else "fails",
         worst,
-        f"With the exact dead time the overshoot is, as a fraction, {listed(values)}: nothing that could be seen.",
+        f"With the exact dead time the overshoot is, as a fraction, {listed(values)}: too little to be visible.",
     )
 
 
@@ -67,7 +67,7 @@ def settles_third() -> Finding:
     return Finding(
         "holds" if list(text)[:3] == ["IAE", "ITAE", "PA"] else "fails",
         rank,
-        f"With the gains of equation (3) PA ({number(text['PA'])}) comes in place {rank}, after "
+        f"With the gains of equation (3) PA ({number(text['PA'])}) comes in at place {rank}, after "
         f"{listed(faster)}. With the gains used for the tables the order begins "
         f"{', '.join(list(authors)[:4])}.",
     )
@@ -162,8 +162,8 @@ def unstable_42() -> Finding:
     return Finding(
         "holds" if set(text) == set(UNSTABLE) else "holds-partly" if agree else "fails",
         agree,
-        f"By equation (3) unstable are {', '.join(text)}; with the printing errors of Table 1 mended, "
-        f"{', '.join(corrected)}. With the gains used for the tables unstable are {', '.join(authors)}. "
+        f"By equation (3) these are unstable: {', '.join(text)}; with the printing errors of Table 1 corrected, "
+        f"{', '.join(corrected)}. With the gains used for the tables: {', '.join(authors)}. "
         "(The paper gives no $\\tau_{cl}$; that of Example 4.1 is used. By equation (3) the IMC loop is "
         "stable for every positive one.)",
     )

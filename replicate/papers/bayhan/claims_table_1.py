@@ -56,7 +56,7 @@ def itse_exponent() -> Finding:
         printed,
         f"For $L/\\tau = 0.5$ the printed rule gives $T_i/\\tau$ = {number(printed)}, with the sign "
         f"changed {number(mended)}. The controllers that minimise ISE and ITSE of the load response have "
-        f"{number(ise)} and {number(itse)}. Example 4.1 has $L/\\tau = 1$ and does not feel the sign; "
+        f"{number(ise)} and {number(itse)}. Example 4.1 has $L/\\tau = 1$ where the sign does not matter; "
         "that ITSE is unstable in Example 4.2 depends on it.",
     )
 
@@ -75,7 +75,7 @@ def itse_label() -> Finding:
     return Finding(
         "fails" if excess["ise"] < 0.2 * excess["itse"] else "holds",
         excess["itse"],
-        "For $L/\\tau = 0.5$, with the sign of its exponent mended, the rule exceeds the smallest possible "
+        "For $L/\\tau = 0.5$, with the sign of its exponent corrected, the rule exceeds the smallest possible "
         f"ITSE by {excess['itse']:.2%} but the smallest possible ISE by only {excess['ise']:.3%}: its "
         "coefficients minimise ISE.",
     )

@@ -89,11 +89,11 @@ def last_digit(value: float) -> float:
 
 match_count = paper.table(
     "match-count",
-    "Printed values met, by assumption",
+    "Printed values reproduced, by assumption",
     printed=False,
     rows=tuple(assumption.id for assumption in (TEXT, TEXT_ON_GRID, GAINS, GAINS_ON_GRID, AUTHORS)),
     columns=("table_2", "table_3", "both", "within_1_percent", "printed"),
-    caption="How many printed values of Tables 2 and 3 come out equal at all six significant digits, under "
+    caption="How many printed values of Tables 2 and 3 agree in all six significant digits, under "
     "each combination of integral gain (equation (3), or $1/T_i$) and method (exact, or Padé model and "
     "sample grid), and how many come within 1 % of the print.",
     labels={
@@ -111,7 +111,7 @@ match_count = paper.table(
 )
 
 
-@match_count.reading("as-written", "Number of printed values met")
+@match_count.reading("as-written", "Number of printed values reproduced")
 def matches() -> pd.DataFrame:
     """Count the printed values that each combination of assumptions meets."""
     rows: dict[str, list[int]] = {}

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     "equation (3) asks for, right with the one that the tables were computed with. The pole assignment "
     "(PA) is the same in both. The grey band is the 2 % settling band.",
     alt="Two panels of eleven unit step responses over time. In the left panel the three set-point rules "
-    "hardly overshoot; in the right one every rule but PA and ZN overshoots clearly. PA rises slowly and "
+    "barely overshoot; in the right one every rule but PA and ZN overshoots clearly. PA rises slowly and "
     "does not overshoot in either.",
     size=(7.4, 4.0),
 )

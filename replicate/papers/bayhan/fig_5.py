@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     "fig-5",
     "Step responses of the PT326 set for different rules",
     caption="All eleven rules on the identified model $G(s) = 0.875\\,e^{-0.43s}/(0.62s+1)$, exact dead "
-    "time, with $a = 1.3$ and $\\tau_{cl} = 0.3$. Which of the two integral gains the experiments used the "
-    "paper does not say.",
+    "time, with $a = 1.3$ and $\\tau_{cl} = 0.3$. The paper does not say which of the two integral "
+    "gains the experiments used.",
     alt="Two panels of eleven unit step responses over time, left with the gains of equation (3), right "
     "with integral gain one over integral time. PA rises to the set point without overshoot; IMC and "
     "ITAESPC overshoot once and settle at about the same time; the others ring or creep.",

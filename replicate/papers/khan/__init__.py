@@ -53,8 +53,8 @@ paper = Paper(
         "example-2-3",
         "example-3-1",
     ),
-    summary="The tables, the rule (7b), its robustness and the fits hold. Misprinted are (7a), which has lost three "
-    "zeros and must read $K_P = -0.0404p^2h + 0.0723p + 0.3852/h$, $K_I = -0.0525p^2 + 0.4104p/h - 0.00024/h^2$; the "
+    summary="The tables, the rule (7b), its robustness and the fits hold. Misprinted are (7a), which lacks three zeros "
+    "and must read $K_P = -0.0404p^2h + 0.0723p + 0.3852/h$, $K_I = -0.0525p^2 + 0.4104p/h - 0.00024/h^2$; the "
     "closed-form ISE, whose second numerator must begin with $K_I - K_P p$; two load settling times of Table I, which "
-    "stand in each other's rows; and a few digits. In place of the fits there are closed forms, exact for most gains.",
+    "are in each other's rows; and a few digits. In place of the fits there are closed forms, exact for most gains.",
 )

@@ -139,7 +139,7 @@ def other_rules() -> Finding:
     return Finding(
         "holds-partly" if gain >= 2.5 and phase >= 60.0 else "holds",
         gain,
-        "The eleven rules are those of another paper and not checked here. But both margins are nothing special: "
+        "The eleven rules are those of another paper and not checked here. But such margins are nothing special: "
         f"Bryant's rule, in this paper's own tables, has a gain margin of {gain:.3f} and a phase margin of "
         f"{phase:.1f} degrees for every $ph$.",
     )
@@ -180,7 +180,7 @@ def proportional_lower() -> Finding:
         verdict,
         float(ratio[0]),
         f"The ratio rises from {ratio[0]:.3f} at $ph = 0.3$ to {ratio[-1]:.3f} at $ph = 1$. Below that range it does "
-        f"not go on falling: it is {below:.3f} at $ph = 0.1$.",
+        f"not keep falling: it is {below:.3f} at $ph = 0.1$.",
     )
 
 
@@ -244,7 +244,7 @@ def td_of_the_text() -> Finding:
     return Finding(
         "holds" if meets("37.4", value) else "fails",
         value,
-        f"It is {value:.3f}: Table I prints {table}, which {'is right' if meets(table, value) else 'is wrong, too'}.",
+        f"It is {value:.3f}: Table I prints {table}, which {'is right' if meets(table, value) else 'is wrong as well'}.",
     )
 
 

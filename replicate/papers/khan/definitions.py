@@ -25,10 +25,10 @@ definitions = paper.table(
     "definitions",
     "Definitions and rule versions tried on Tables I and II",
     printed=False,
-    caption="How many printed cells come out to the last digit, and how many within 0.5 %, under each definition of "
-    "$t_s$ and $t_d$ (all rules, (7a) restored; the two swapped cells of Table I count as they stand), and under each "
+    caption="How many printed cells agree to the last digit, and how many within 0.5 %, under each definition of "
+    "$t_s$ and $t_d$ (all rules, (7a) restored; the two swapped cells of Table I count as printed), and under each "
     "version of a rule (all four quantities). The definition used here is the first of each kind. A rule that gives no "
-    "stable loop meets no cell.",
+    "stable loop reproduces no cell.",
     labels={"equal": "to the last digit", "close": "within 0.5 %", "of": "of"},
 )
 

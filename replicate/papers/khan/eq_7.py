@@ -45,7 +45,7 @@ def as_written() -> pd.DataFrame:
     "restored",
     "three lost zeros of (7a) restored",
     "$0.404 \\to 0.0404$, $0.723 \\to 0.0723$, $0.525 \\to 0.0525$ in (7a): with them the two cases meet, and Table II "
-    "comes out for $ph = 0.1$.",
+    "is reproduced for $ph = 0.1$.",
 )
 def restored() -> pd.DataFrame:
     """Evaluate (7a) with its zeros."""

@@ -21,7 +21,7 @@ swapped = paper.table(
     columns=("printed", "own", "other", "off_own", "off_other", "digits_own", "digits_other"),
     caption="Each printed $t_d$ against the exact value of its own row and of the other row (load at $t = 100$, as the "
     "text says), the differences in per cent, and the number of digits that differ at the precision of the print. In "
-    "its own row neither number is near; in the other's, one meets every digit and the other all but one.",
+    "its own row neither number is close; in the other's row, one agrees in every digit and the other in all but one.",
     labels={
         "printed": "printed", "own": "exact", "other": "exact, other row", "off_own": "off (%)",
         "off_other": "off, other row (%)", "digits_own": "wrong digits", "digits_other": "wrong digits, other row",
@@ -47,7 +47,7 @@ cohen_coon = paper.table(
     "Cohen-Coon at $ph = 1$: what was tried",
     printed=False,
     columns=("KP", "KI", *QUANTITIES, "met_ph1", "met_ph0.1"),
-    caption="Versions of the rule at $ph = 1$, and how many of the four printed numbers each meets, there "
+    caption="Versions of the rule at $ph = 1$, and how many of the four printed numbers each reproduces, there "
     "and at $ph = 0.1$. The first row is the print.",
     labels={"KP": "$K_P$", "KI": "$K_I$", "Mp": "$M_P$ (%)", "ts": "$t_s$", "td": "$t_d$", "Ms": "$M_s$",
             "met_ph1": "met at $ph = 1$", "met_ph0.1": "met at $ph = 0.1$"},

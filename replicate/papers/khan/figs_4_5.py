@@ -63,7 +63,7 @@ def overshoot(fig: Figure) -> None:
     caption="Coloured: exact, up to 0.99 of the stability limit. Dashed: the fit (3). The logarithmic axis shows where "
     "the fit is off: at small gains for $ph = 5$ to 10.",
     alt="Seven falling curves of rise time over dead time against Kh, one for each ph from 0.5 to 10, on a logarithmic "
-    "axis. The dashed fits lie on the curves up to ph of 2.5; for 5 and 10 they part from them at small gains.",
+    "axis. The dashed fits lie on the curves up to ph of 2.5; for 5 and 10 they leave them at small gains.",
     size=(7.2, 4.4),
 )
 def rise_time(fig: Figure) -> None:

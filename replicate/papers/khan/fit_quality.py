@@ -55,7 +55,7 @@ eq_3 = paper.table(
 )
 edges = paper.table(
     "case-edges",
-    "Where the cases of (2) meet, and what they leave out",
+    "Where the cases of (2) meet, and what they miss",
     kind="formula",
     printed=False,
     columns=("value", "ph", "Kh"),

@@ -58,7 +58,7 @@ def margins() -> Answer:
     "printed-and-restored",
     "Margins of (7a), printed and restored",
     alt="Two panels over ph from 0.01 to 0.2: gain margin and sensitivity peak. The dashed curves of the printed "
-    "formula part from the solid ones of the restored formula as ph grows, but stay inside the claimed limits, "
+    "formula diverge from the solid ones of the restored formula as ph grows, but stay inside the claimed limits, "
     "which are dotted.",
     size=(6.4, 1.7),
 )

@@ -39,7 +39,7 @@ refit = paper.table(
     printed=False,
     caption="Least-squares fits on the stable loops with $Kh$ up to 0.95 of the limit. Errors are in percentage points "
     "for the overshoot cases, in per cent of the exact value for the rise time. The rise time is fitted by its "
-    "relative error, for which $r^2$ may fall while the errors do, too: for the absolute error the best coefficients "
+    "relative error, for which $r^2$ may fall even as the errors do: for the absolute error the best coefficients "
     "of the printed form grow without bound.",
     labels=NAMES
     | {

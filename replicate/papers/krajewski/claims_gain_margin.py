@@ -47,7 +47,7 @@ def margins_compatible_iff_curves_cross() -> Finding:
         least,
         "For inequalities they are always compatible: a small enough loop gain meets any bounds. For τ = "
         f"{TAU} and {MARGIN:g} degrees the curves cross for {least:.5g} < g* < {most:.5g} only, but for g* "
-        f"= {wanted:.3g}, too, there are loops that meet both, for example a = {a:.3g}, b = 0 with "
+        f"= {wanted:.3g} as well there are loops that meet both, for example a = {a:.3g}, b = 0 with "
         f"{margin:.4g} degrees.",
     )
 

@@ -273,5 +273,5 @@ def large_margin_acceptable_gain() -> Finding:
         f"With 60 degrees or more g is at most {largest[TAUS[0]]:.3g} for τ = 0.1, {largest[TAU]:.3g} for "
         f"0.5 and {largest[1.0]:.3g} for 1: the gain margin 1/g is at least 2 for short dead times, but "
         f"can be as low as {1.0 / largest[worst]:.3g} at the upper end of the curve for τ = {worst:g}, "
-        "where hardly any integral action is left.",
+        "where almost no integral action is left.",
     )

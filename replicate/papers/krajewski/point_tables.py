@@ -84,7 +84,7 @@ def point_table(exhibit: str, title: str, *, responses: bool = True, caption: st
         table.reading(
             "exact-point",
             "Everything at the exact point",
-            "The margins and the response, too, are those of the point that the text defines, not of its "
+            "The margins and the response are also those of the point that the text defines, not of its "
             "printed coordinates.",
         )(lambda: frame(lambda named: named.exact()))
     if any(named.caption_b != named.b for named in points.values()):

@@ -65,7 +65,7 @@ def _frame(fits: Iterable[tuple[float, float]]) -> pd.DataFrame:
     "as-written",
     "Least squares",
     note="“Mean square values”: $b_u$ fitted by least squares, all points with the same weight, on $\\tau "
-    "= 0.1, 0.2, \\ldots, 1$, the dead times of the charts. The paper does not name the points; these "
+    "= 0.1, 0.2, \\ldots, 1$, the dead times of the charts. The paper does not state the points; these "
     "give its columns for 30, 60, 90 and 120 degrees.",
 )
 def as_written() -> pd.DataFrame:
