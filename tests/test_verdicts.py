@@ -387,8 +387,7 @@ def test_numbered_exhibits_must_be_in_the_inventory() -> None:
 
 def test_explanations_pull_results_of_any_exhibit() -> None:
     text = (
-        "{{ row }} {{ column }}: {{ printed('table-1', 'A', 'x') }} for "
-        "{{ value('table-1', 'A', 'x', 'authors') }}, "
+        "{{ row }} {{ column }}: {{ printed('table-1', 'A', 'x') }} for {{ value('table-1', 'A', 'x', 'authors') }}, "
         "{{ count('table-1', 'discrepant') }} so, {{ claim('big').evidence }}"
     )
     found = verdict(judged(entry(explanation=text), ax="1.7"))

@@ -6,9 +6,8 @@
     p1,ZN,1.5,1.24,0.05,0.02
     p2,ZN,3.0,1.02,0.05,0.02
 
-``curve`` is the label of the curve in our drawing. A column ``panel`` names the axes by their title where
-several have a curve of that label. Errors are those of reading the page: half the
-width within which the point surely lies.
+``curve`` is the label of the curve in our drawing. A column ``panel`` names the axes by their title where several have
+a curve of that label. Errors are those of reading the page: half the width within which the point surely lies.
 """
 
 from __future__ import annotations

@@ -2,14 +2,12 @@ r"""PI design by non-convex optimisation: the largest integral gain with a bound
 
 Maximise :math:`k_i` subject to :math:`|C + (k + k_i/s) G(s)| \ge R` on the imaginary axis and closed-loop stability.
 
-For a fixed frequency the constraint forbids the interior of an ellipse in the (k, ki) plane; for a fixed k it
-forbids an interval of ki at every frequency. What is left between the intervals are gaps, and inside a connected gap
-stability cannot
-change, because the point -1 lies inside the circle. The design therefore looks at the upper ends of the gaps
-over k, keeps
-the local maxima that are stable, and polishes each: tangency at one frequency by the equation h(w) = 0 (18),
-tangency at
-two frequencies (a corner of the envelope) by the four equations (15). Every solution is verified on all frequencies.
+For a fixed frequency the constraint forbids the interior of an ellipse in the (k, ki) plane; for a fixed k it forbids
+an interval of ki at every frequency. What is left between the intervals are gaps, and inside a connected gap stability
+cannot change, because the point -1 lies inside the circle. The design therefore looks at the upper ends of the gaps
+over k, keeps the local maxima that are stable, and polishes each: tangency at one frequency by the equation h(w) = 0
+(18), tangency at two frequencies (a corner of the envelope) by the four equations (15). Every solution is verified on
+all frequencies.
 
 Reference: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on non-convex optimization", Automatica 34
 (1998) 585-601.

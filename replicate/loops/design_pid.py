@@ -51,10 +51,9 @@ def design_pid(
     ms, mp
         Bounds > 1 on the sensitivity and the complementary sensitivity; with both, the combined circle is used.
     constraints
-        Besides the circle: ``"curvature"``, ``"phase"``, or `Constraint` records with their own range and
-        margin. A bare
-        name is asked for on `search_range`. Default: both, without curvature for integrating plants, for which
-        it is too severe. An empty sequence leaves the circle alone.
+        Besides the circle: ``"curvature"``, ``"phase"``, or `Constraint` records with their own range and margin. A
+        bare name is asked for on `search_range`. Default: both, without curvature for integrating plants, for which it
+        is too severe. An empty sequence leaves the circle alone.
     start
         Gains (k, ki, kd) to start from besides the usual starts.
 

@@ -3,8 +3,7 @@ r"""Time responses of loops around plants given by a function, by contour invers
 .. math:: y(t) = \frac{1}{2\pi i} \int_\Gamma e^{st} Y(s)\, ds
 
 The contour is a hyperbola that opens to the left, so that :math:`e^{st}` decays along it. It must leave every
-closed-loop
-pole on its left: the winding of 1 + L along it is counted, and the flattest hyperbola that passes is taken.
+closed-loop pole on its left: the winding of 1 + L along it is counted, and the flattest hyperbola that passes is taken.
 The integrand is analytic near the contour, so the trapezoidal rule converges exponentially; it is refined until two
 successive sets of quadrature points agree.
 

@@ -6,9 +6,8 @@ With :math:`L(i\omega) = \sum_j x_j \varphi_j(\omega)` linear in the gains, all 
 * curvature: :math:`-\mathrm{Im}(\bar{\dot L} \ddot L) \ge 0`, the curve only ever bends clockwise;
 * phase: :math:`-\mathrm{Im}(\bar L \dot L) \ge 0`, the phase only ever falls.
 
-Dots are derivatives with respect to frequency. Each value is divided by what makes it dimensionless, so that
-one tolerance
-serves all: the sensitivity by R^2, the phase slope becomes d(arg L)/d(log w), the bend the curvature of the
+Dots are derivatives with respect to frequency. Each value is divided by what makes it dimensionless, so that one
+tolerance serves all: the sensitivity by R^2, the phase slope becomes d(arg L)/d(log w), the bend the curvature of the
 curve itself.
 
 Reference: Panagopoulos, thesis (2000), supplement to paper II, (1) to (5).

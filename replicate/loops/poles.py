@@ -2,9 +2,9 @@
 
 Candidates are the eigenvalues of the infinitesimal generator, discretised by Chebyshev collocation of the transport of
 the control signal through the dead time (Breda, Maset and Vermiglio, "Stability of Linear Delay Differential
-Equations",
-2015, chapter 4); each is polished by Newton's method on the exact characteristic function. The discretisation only says
-where to look: what is returned satisfies f(s) = 0 to rounding, and the argument principle says whether it is complete.
+Equations", 2015, chapter 4); each is polished by Newton's method on the exact characteristic function. The
+discretisation only says where to look: what is returned satisfies f(s) = 0 to rounding, and the argument principle says
+whether it is complete.
 """
 
 from __future__ import annotations

@@ -1,9 +1,8 @@
 r"""Peaks of the sensitivity S = 1/(1+L) and the complementary sensitivity T = L/(1+L).
 
-A peak is found on a grid that resolves every resonance and dead-time rotation and polished by bracketing the
-root of the
-derivative of log|1+L|. The band is cut where :math:`|S| \le 1/(1-|L|)` proves that nothing beyond can exceed
-the peak found.
+A peak is found on a grid that resolves every resonance and dead-time rotation and polished by bracketing the root of
+the derivative of log|1+L|. The band is cut where :math:`|S| \le 1/(1-|L|)` proves that nothing beyond can exceed the
+peak found.
 """
 
 from __future__ import annotations

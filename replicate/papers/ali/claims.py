@@ -53,12 +53,11 @@ def minimum_distance() -> Finding:
     return Finding(
         "holds" if ratio[worst] < 1.01 else "fails",
         ratio[worst],
-        "Not even in the design loop (3): with the printed $T_i$ its $|S|$ only approaches "
-        "$1/(1 - \\sqrt{\\theta/2T})$ as $\\omega \\to \\infty$, which equals $M_s^*$ in "
-        f"{len(met)} of {len(TABLE_1)} rows, the one with $q = 0$. The cause is the sign of $q$: with $q < 0$ the "
-        f"design loop meets $M_s^*$ in {len(touching)} of {len(TABLE_1)} rows. With the exact dead time and the "
-        f"controller (2) the true $M_s$ is {number(min(ratio.values()))} to {number(ratio[worst])} times the "
-        "specified one.",
+        "Not even in the design loop (3): with the printed $T_i$ its $|S|$ only approaches $1/(1 - "
+        f"\\sqrt{{\\theta/2T}})$ as $\\omega \\to \\infty$, which equals $M_s^*$ in {len(met)} of {len(TABLE_1)} rows, "
+        "the one with $q = 0$. The cause is the sign of $q$: with $q < 0$ the design loop meets $M_s^*$ in "
+        f"{len(touching)} of {len(TABLE_1)} rows. With the exact dead time and the controller (2) the true $M_s$ is "
+        f"{number(min(ratio.values()))} to {number(ratio[worst])} times the specified one.",
     )
 
 
@@ -73,10 +72,9 @@ def y_starts() -> Finding:
     return Finding(
         "fails" if largest < float(START) else "holds",
         largest,
-        f"By (7) and (8) $y$ is $1/|S|$, and $q$ is real only for $y \\le 1 - \\sqrt{{\\theta/2T}}$, at most "
-        f"{number(largest)} in "
-        "Table 1: with $y \\ge 1.2$ no $T_i$ is real. It is $M_s^* = 1/y$ that is stepped, which gives the "
-        "column $M_s^*$.",
+        "By (7) and (8) $y$ is $1/|S|$, and $q$ is real only for $y \\le 1 - \\sqrt{\\theta/2T}$, at most "
+        f"{number(largest)} in Table 1: with $y \\ge 1.2$ no $T_i$ is real. It is $M_s^* = 1/y$ that is stepped, which "
+        "gives the column $M_s^*$.",
     )
 
 
@@ -101,10 +99,10 @@ def negative_ti() -> Finding:
     return Finding(
         "holds" if negative == tried else "holds-partly" if negative else "fails",
         negative,
-        f"Of the {tried} rejected specifications of Table 1, {negative} give a negative $T_i$. All give "
-        f"complex roots, because $q$ is imaginary; the real part of the larger one is positive in "
-        f"{tried - negative_part} cases and negative in {negative_part}, "
-        "so that is not the stop test either. The test that yields the table is “the roots are real”.",
+        f"Of the {tried} rejected specifications of Table 1, {negative} give a negative $T_i$. All give complex roots, "
+        f"because $q$ is imaginary; the real part of the larger one is positive in {tried - negative_part} cases and "
+        f"negative in {negative_part}, so that is not the stop test either. The test that yields the table is “the "
+        "roots are real”.",
     )
 
 
@@ -151,10 +149,9 @@ def all_stable() -> Finding:
     return Finding(
         "holds" if stable == len(loops) else "fails",
         rightmost,
-        f"{stable} of {len(loops)} loops ({len(DESIGNS)} designs: the rows of both tables and those with "
-        "$T_i$ from (11); in (2), "
-        "with the filter on D only and without filter) are stable with the exact dead time; the rightmost "
-        f"pole of all is at Re $p$ = {number(rightmost)}.",
+        f"{stable} of {len(loops)} loops ({len(DESIGNS)} designs: the rows of both tables and those with $T_i$ from "
+        "(11); in (2), with the filter on D only and without filter) are stable with the exact dead time; the "
+        f"rightmost pole of all is at Re $p$ = {number(rightmost)}.",
     )
 
 

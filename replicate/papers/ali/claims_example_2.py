@@ -117,11 +117,9 @@ def two_settings() -> Finding:
     return Finding(
         "holds" if settings["visioli-setpoint"] != settings["visioli-load"] else "fails",
         other.iae() / own.iae(),
-        "Two are quoted. One would do, though: with Visioli's set-point setting the IAE of the load response "
-        "is "
-        f"{number(other.iae())}, below the {number(own.iae())} of the load setting and the "
-        f"{number(proposed.iae())} of the proposed one "
-        "(parallel form).",
+        "Two are quoted. One would do, though: with Visioli's set-point setting the IAE of the load response is "
+        f"{number(other.iae())}, below the {number(own.iae())} of the load setting and the {number(proposed.iae())} of "
+        "the proposed one (parallel form).",
     )
 
 

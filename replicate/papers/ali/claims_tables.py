@@ -44,9 +44,9 @@ def true_ms() -> Finding:
         "holds" if equal == len(deviations) else "fails",
         max(deviations),
         f"{equal} of {len(deviations)} agree; the print is {100.0 * min(deviations):.1f} % to "
-        f"{100.0 * max(deviations):.1f} % too high. All agree "
-        "if the derivative filter acts on the derivative term alone, the dead time is a third-order Padé "
-        "model, and the peak comes from a norm routine with a tolerance of 1 %.",
+        f"{100.0 * max(deviations):.1f} % too high. All agree if the derivative filter acts on the derivative term "
+        "alone, the dead time is a third-order Padé model, and the peak comes from a norm routine with a tolerance of "
+        "1 %.",
     )
 
 
@@ -146,8 +146,7 @@ def cubic_time_unit() -> Finding:
     return Finding(
         "fails" if literal != needed else "holds",
         literal / needed,
-        f"(11) has no unit of time: it gives $T_i/T$. For $T = {slow:g}$ and $\\theta/T = {float(x)}$ it "
-        f"returns {number(literal)} where {number(needed)} is meant; taken literally, $M_s$ is "
-        f"{number(as_printed)} instead of "
+        f"(11) has no unit of time: it gives $T_i/T$. For $T = {slow:g}$ and $\\theta/T = {float(x)}$ it returns "
+        f"{number(literal)} where {number(needed)} is meant; taken literally, $M_s$ is {number(as_printed)} instead of "
         f"{number(exact_peak(float(x), series(Settings(gain, literal, float(x / 2)))))}.",
     )

@@ -101,11 +101,10 @@ def add_readings(table: Table) -> None:
             tabulated,
             (
                 "Reconstructed from the printed digits. The derivative filter acts on the derivative term alone, "
-                "$K_p(1+1/sT_i)(1 + sT_d/(1+s\\alpha T_d))$; the dead time is a third-order Padé approximation; "
-                "and $M_s$ is the lower bound at which Bruinsma and Steinbuch's algorithm stops at a relative "
-                "tolerance of 0.01, the documented default of MATLAB's `norm(sys, inf)`, started from the "
-                "peaking frequencies of the closed loop's "
-                f"modes. Settings: {gain} and the printed $T_i$."
+                "$K_p(1+1/sT_i)(1 + sT_d/(1+s\\alpha T_d))$; the dead time is a third-order Padé approximation; and "
+                "$M_s$ is the lower bound at which Bruinsma and Steinbuch's algorithm stops at a relative tolerance of "
+                "0.01, the documented default of MATLAB's `norm(sys, inf)`, started from the peaking frequencies of "
+                f"the closed loop's modes. Settings: {gain} and the printed $T_i$."
             ),
         ),
         (

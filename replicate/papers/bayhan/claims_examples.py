@@ -163,9 +163,8 @@ def unstable_42() -> Finding:
         "holds" if set(text) == set(UNSTABLE) else "holds-partly" if agree else "fails",
         agree,
         f"By equation (3) these are unstable: {', '.join(text)}; with the printing errors of Table 1 corrected, "
-        f"{', '.join(corrected)}. With the gains used for the tables: {', '.join(authors)}. "
-        "(The paper gives no $\\tau_{cl}$; that of Example 4.1 is used. By equation (3) the IMC loop is "
-        "stable for every positive one.)",
+        f"{', '.join(corrected)}. With the gains used for the tables: {', '.join(authors)}. (The paper gives no "
+        "$\\tau_{cl}$; that of Example 4.1 is used. By equation (3) the IMC loop is stable for every positive one.)",
     )
 
 

@@ -78,8 +78,8 @@ def break_point() -> Finding:
         verdict,
         first,
         f"The double pole is where the formula says (largest relative error {error:.0e}). Overshoot starts there in "
-        f"principle, but at $ph = 0$ it reaches 0.01 % only at $Kh = {first:.4f}$, against "
-        f"$K_b h = {np.exp(-1.0):.4f}$.",
+        f"principle, but at $ph = 0$ it reaches 0.01 % only at $Kh = {first:.4f}$, against $K_b h = "
+        f"{np.exp(-1.0):.4f}$.",
     )
 
 

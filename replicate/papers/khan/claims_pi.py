@@ -244,7 +244,7 @@ def td_of_the_text() -> Finding:
     return Finding(
         "holds" if meets("37.4", value) else "fails",
         value,
-        f"It is {value:.3f}: Table I prints {table}, which {'is right' if meets(table, value) else 'is wrong as well'}.",
+        f"It is {value:.3f}: Table I prints {table}, which is {'right' if meets(table, value) else 'wrong as well'}.",
     )
 
 

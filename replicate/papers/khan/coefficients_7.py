@@ -61,9 +61,10 @@ def _combinations(gain: str) -> tuple[tuple[float, tuple[float, ...]], ...]:
 @coefficients.reading(
     "as-written",
     "As the rest of the paper implies",
-    "A formula's coefficients cannot be recomputed from the formula. The rest of the paper provides the evidence. (7a): of "
-    "all ways to shift decimal points by one place, the one that agrees with (7b) at $ph = 0.2$; it also gives the Table II "
-    "row for $ph = 0.1$. (7b): one half of $K_{Popt}$ and 0.85 of $K_{Iopt}$ of the Appendix, case II.",
+    "A formula's coefficients cannot be recomputed from the formula. The rest of the paper provides the evidence. "
+    "(7a): of all ways to shift decimal points by one place, the one that agrees with (7b) at $ph = 0.2$; it also "
+    "gives the Table II row for $ph = 0.1$. (7b): one half of $K_{Popt}$ and 0.85 of $K_{Iopt}$ of the Appendix, case "
+    "II.",
 )
 def implied() -> pd.DataFrame:
     """Take (7a) from continuity and (7b) from the Appendix."""

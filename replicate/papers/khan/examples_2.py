@@ -103,8 +103,7 @@ example_2_3 = paper.table(
     rows=("Kh", "tr", "overshoot"),
     columns=("value",),
     caption="The gain for which $t_r$ is exactly one second; rise time and overshoot of the printed gain 0.375. "
-    "The paper "
-    "reads all three off its figures, as approximate values.",
+    "The paper reads all three off its figures, as approximate values.",
     labels={"Kh": "$Kh$ for $t_r = 1$", "tr": "$t_r$ at $Kh = 0.375$", "overshoot": "overshoot at $Kh = 0.375$ (%)"},
 )
 

@@ -69,8 +69,7 @@ def small(fig: Figure) -> None:
     "Gain margin, phase margin and $M_s$ of the proposed rule",
     caption="The phase margin is in radians, as in the paper. (7a) with its zeros restored.",
     alt="Three curves against ph from 0.01 to 20, logarithmic axis: gain margin falling from four to 2.6, M_s "
-    "rising from 1.4 "
-    "to 1.7, phase margin nearly constant above one radian.",
+    "rising from 1.4 to 1.7, phase margin nearly constant above one radian.",
     size=(7.2, 3.8),
 )
 def margins(fig: Figure) -> None:

@@ -139,7 +139,7 @@ def not_too_small_g() -> Finding:
     return Finding(
         "holds" if count >= len(figures) / 2 else "fails",
         count,
-        f"In {count} of the {len(figures)} figures with step responses the curve with the smallest g is "
-        "the one that settles last; the exception is "
+        f"In {count} of the {len(figures)} figures with step responses the curve with the smallest g is the one that "
+        "settles last; the exception is "
         f"{', '.join(figure for figure, ok in zip(figures, slowest, strict=True) if not ok) or 'none'}.",
     )

@@ -57,10 +57,10 @@ def similar() -> Finding:
         max(swings[1.4]) - min(swings[1.4]),
         "The swing back, as a fraction of the peak, is alike for the lags in series $G_4$ to $G_7$: "
         f"{number(min(without[1.4]), 3)} to {number(max(without[1.4]), 3)} for $M_s = 1.4$ and "
-        f"{number(min(without[2.0]), 3)} to "
-        f"{number(max(without[2.0]), 3)} for 2.0. Over all processes with the curvature constraint it runs from "
-        f"{number(min(swings[1.4]), 3)} to {number(max(swings[1.4]), 3)} and from {number(min(swings[2.0]), 3)} to "
-        f"{number(max(swings[2.0]), 3)}; the optimal responses of $G_1$ and $G_3$ do not swing at all.",
+        f"{number(min(without[2.0]), 3)} to {number(max(without[2.0]), 3)} for 2.0. Over all processes with the "
+        f"curvature constraint it runs from {number(min(swings[1.4]), 3)} to {number(max(swings[1.4]), 3)} and from "
+        f"{number(min(swings[2.0]), 3)} to {number(max(swings[2.0]), 3)}; the optimal responses of $G_1$ and $G_3$ do "
+        "not swing at all.",
     )
 
 
@@ -107,9 +107,8 @@ def settling_shorter() -> Finding:
     return Finding(
         verdict,
         max(exact[n] for n in REGULAR),
-        f"Exact, to ±2 % of the unit load: shorter for {kept} of {total} (ratios {listed(exact, 2)}). The "
-        "errata's own column "
-        f"contradicts the sentence for {' and '.join(wrong)}, Table 1's for "
+        f"Exact, to ±2 % of the unit load: shorter for {kept} of {total} (ratios {listed(exact, 2)}). The errata's own "
+        f"column contradicts the sentence for {' and '.join(wrong)}, Table 1's for "
         f"{' and '.join(n for n in PROCESSES if old[n] >= 1.0)}.",
     )
 
@@ -137,8 +136,7 @@ def zero_weight() -> Finding:
         "holds" if count else "fails",
         max(above.values()),
         f"In {count} of the {len(above)} rows with $b = 0$ the gain from the set point is above one at "
-        f"$\\omega_{{mp}}$, up to "
-        f"{number(max(above.values()), 3)}.",
+        f"$\\omega_{{mp}}$, up to {number(max(above.values()), 3)}.",
     )
 
 
@@ -153,8 +151,7 @@ def close_to_one() -> Finding:
     return Finding(
         "holds" if off == 0 else "holds-partly",
         as_printed[worst],
-        f"With the printed $b$ and $T_{{sp}}$ of the errata the peak exceeds 1.1 in {off} of {len(ROWS)} "
-        "rows, most in "
+        f"With the printed $b$ and $T_{{sp}}$ of the errata the peak exceeds 1.1 in {off} of {len(ROWS)} rows, most in "
         f"{worst}: {number(as_printed[worst], 3)}.",
     )
 
@@ -168,10 +165,8 @@ def better_than_pi() -> Finding:
         verdict,
         gain[worst],
         f"The absolute error after a load step falls in {kept} of {total} cases, by factors up to "
-        f"{number(max(gain.values()), 3)}. "
-        f"For {worst} the optimum of the stated problem is worse than PI ({number(gain[worst], 3)} times): there "
-        "the PI loop "
-        "itself violates the phase constraint.",
+        f"{number(max(gain.values()), 3)}. For {worst} the optimum of the stated problem is worse than PI "
+        f"({number(gain[worst], 3)} times): there the PI loop itself violates the phase constraint.",
     )
 
 
@@ -187,9 +182,8 @@ def too_severe() -> Finding:
     return Finding(
         "holds-partly",
         min(costs.values()),
-        f"It lowers the largest $k_i$ by factors {listed(costs, 3)}. But the phase constraint alone, which the "
-        "text keeps, already "
-        f"lowers it by {listed(loss, 3)} against the circle alone.",
+        f"It lowers the largest $k_i$ by factors {listed(costs, 3)}. But the phase constraint alone, which the text "
+        f"keeps, already lowers it by {listed(loss, 3)} against the circle alone.",
     )
 
 

@@ -75,8 +75,7 @@ tried = paper.table(
     rows=TRIED_ROWS,
     columns=tuple(_TRIED),
     caption="Integrated error $T_i/k$ of the optimum under each set of constraints, beside the printed one. An "
-    "empty cell: "
-    "no controller satisfies the constraints.",
+    "empty cell: no controller satisfies the constraints.",
     shared_labels=ROW_LABELS,
     labels=_TRIED,
 )

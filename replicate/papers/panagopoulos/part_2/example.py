@@ -69,11 +69,9 @@ envelope = paper.table(
     rows=("kd=1", "kd=2", "kd=3", "kd=4"),
     columns=("ki", "k", "touches", "vertices", "k_example", "ki_example", "Ms"),
     caption="For each $k_d$: the largest feasible $k_i$ and its $k$, at how many frequencies the Nyquist curve "
-    "touches the "
-    "circle there (one: smooth; two: an edge), the largest $k_i$ on the locus of the bottom vertices; and the "
-    "supplement's "
-    "own choice with its true $M_s$ (1.4 is asked for). No number: no controller with this $k_d$ satisfies the "
-    "constraint.",
+    "touches the circle there (one: smooth; two: an edge), the largest $k_i$ on the locus of the bottom vertices; and "
+    "the supplement's own choice with its true $M_s$ (1.4 is asked for). No number: no controller with this $k_d$ "
+    "satisfies the constraint.",
     shared_labels=ROW_LABELS,
     labels={
         "ki": "largest $k_i$",

@@ -45,8 +45,7 @@ def load_responses(fig: Figure) -> None:
     "Bode diagrams of the loop transfer functions",
     caption="Gain and phase of $L$. With $k_d = 3$ the phase first lags, then leads.",
     alt="Bode diagram. Both gains fall; the phase of the full line falls steadily, that of the dashed line "
-    "drops below it, "
-    "rises again around 0.6 rad/s and then falls.",
+    "drops below it, rises again around 0.6 rad/s and then falls.",
     size=(6.0, 4.6),
 )
 def bode(fig: Figure) -> None:
@@ -74,8 +73,7 @@ def bode(fig: Figure) -> None:
     "bend that the "
     "supplement calls a cusp.",
     alt="Two Nyquist curves with a circle around minus one. The left one bends smoothly around the circle, the "
-    "right one turns "
-    "sharply to the left of it and then follows it.",
+    "right one turns sharply to the left of it and then follows it.",
     size=(7.0, 3.6),
 )
 def nyquist(fig: Figure) -> None:

@@ -15,12 +15,10 @@ if TYPE_CHECKING:
     "The design problem",
     kind="diagram",
     caption="A controller with two degrees of freedom: feedforward $G_{ff}$ from the set point, feedback $G_c$ "
-    "from the "
-    "measurement. The load $l$ enters at the input of the process, the noise $n$ at its output.",
+    "from the measurement. The load $l$ enters at the input of the process, the noise $n$ at its output.",
     alt="Block diagram. The set point goes through Gff to a summing junction, where the feedback signal from Gc "
-    "is subtracted. "
-    "The sum u and the load l drive the process G. Noise n is added to the process output, and the measurement "
-    "y feeds Gc.",
+    "is subtracted. The sum u and the load l drive the process G. Noise n is added to the process output, and the "
+    "measurement y feeds Gc.",
     size=(6.4, 2.3),
 )
 def draw(fig: Figure) -> None:

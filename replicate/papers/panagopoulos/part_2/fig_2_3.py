@@ -59,11 +59,9 @@ for _id, _ms in (("II-fig-2", 1.4), ("II-fig-3", 2.0)):
         _id,
         f"PID and PI responses for $M_s = {_ms}$",
         caption="A unit step of the set point, then a load step halfway (unit size unless the panel says "
-        "otherwise); output "
-        "above, control signal below. PID: the optimum of the stated problem, for $G_1$ and $G_3$ the "
-        "controllers of the "
-        "errata; set-point weight by (13) and (15), filter by the corrected (16). PI: paper I with its "
-        "set-point weight.",
+        "otherwise); output above, control signal below. PID: the optimum of the stated problem, for $G_1$ and $G_3$ "
+        "the controllers of the errata; set-point weight by (13) and (15), filter by the corrected (16). PI: paper I "
+        "with its set-point weight.",
         alt=f"Eight pairs of panels, one per process, Ms = {_ms}. The PID responses to the load have smaller "
         f"peaks and return "
         "sooner than the PI responses; "

@@ -47,14 +47,11 @@ def filtered(column: str) -> PID:
     "IIs-fig-7",
     "Load response, then measurement noise",
     caption="A unit load step; from $t = 30$ on a sinusoid of 40 rad/s and amplitude 0.1 is added to the "
-    "measurement (time scale stretched). "
-    "Measured output and control signal; left with filters of first, right of second order, designed as the "
-    "text says. Dashed: "
-    "the load response of the design without filter. First-order filters let more of the "
-    "noise through to the control signal than those of second order.",
+    "measurement (time scale stretched). Measured output and control signal; left with filters of first, right of "
+    "second order, designed as the text says. Dashed: the load response of the design without filter. First-order "
+    "filters let more of the noise through to the control signal than those of second order.",
     alt="Twelve panels, three filter constants in pairs of rows for y and u, two filter orders in columns. Load "
-    "responses "
-    "hardly differ between columns; the noise in the control signal is much smaller in the right column and "
+    "responses hardly differ between columns; the noise in the control signal is much smaller in the right column and "
     "grows with N.",
     size=(7.4, 9.6),
 )
@@ -94,8 +91,7 @@ def load_and_noise(fig: Figure) -> None:
     r"order (right) as "
     "the text describes them; dotted in grey the filter that the table's columns headed 2 belong to, $N = 1$.",
     alt="Two panels of amplitude over frequency. Left, first order: the curves level off at a value that grows "
-    "with N. Right, "
-    "second order: they peak and then fall.",
+    "with N. Right, second order: they peak and then fall.",
     size=(7.0, 3.5),
 )
 def amplitudes(fig: Figure) -> None:

@@ -40,9 +40,8 @@ def errata_optimal() -> Finding:
     return Finding(
         verdict,
         kept,
-        f"True for {kept} of {total} rows, with {100 * min(inside):.4g} to {100 * max(inside):.4g} % of the "
-        "largest $k_i$; "
-        f"$k$, $T_i$ and $T_d$ within {100 * CLOSE:g} %. The other $k_i$ are "
+        f"True for {kept} of {total} rows, with {100 * min(inside):.4g} to {100 * max(inside):.4g} % of the largest "
+        f"$k_i$; $k$, $T_i$ and $T_d$ within {100 * CLOSE:g} %. The other $k_i$ are "
         f"{listed({row: value for row, value in shares.items() if row not in good}, 3)} times that of the stated "
         "problem.",
     )
@@ -97,9 +96,8 @@ def derivative_time() -> Finding:
     return Finding(
         "holds" if count > 5 else "fails" if count < 4 else "holds-partly",
         count,
-        f"True for {larger(tables[0])} of {len(PROCESSES)} in Table 1, for {larger(tables[1])} in the errata "
-        "that replace it, "
-        f"and for {count} of the optimal designs: the sentence belongs to the superseded table.",
+        f"True for {larger(tables[0])} of {len(PROCESSES)} in Table 1, for {larger(tables[1])} in the errata that "
+        f"replace it, and for {count} of the optimal designs: the sentence belongs to the superseded table.",
     )
 
 
@@ -112,7 +110,6 @@ def complex_zeros() -> Finding:
     return Finding(
         verdict,
         max(ratios.values()),
-        f"$T_i/T_d$ must be below 4: true for {kept} of {total} optimal designs ({listed(ratios, 3)}) and for "
-        f"{also} of {total} "
-        "printed ones.",
+        f"$T_i/T_d$ must be below 4: true for {kept} of {total} optimal designs ({listed(ratios, 3)}) and for {also} "
+        f"of {total} printed ones.",
     )

@@ -29,11 +29,9 @@ def eq_15() -> Finding:
     return Finding(
         "fails" if above else "holds",
         max(peaks.values()),
-        f"With $b$ at the limit (15) the left side of (14) exceeds one in {above} of {len(ROWS)} designs, up "
-        "to "
+        f"With $b$ at the limit (15) the left side of (14) exceeds one in {above} of {len(ROWS)} designs, up to "
         f"{number(max(peaks.values()), 4)}. (15) compares corner frequencies; (14) itself is $b \\leq "
-        f"\\sqrt{{1-2T_d/T_i}}$ and "
-        "cannot be met at all if $T_i < 2T_d$.",
+        "\\sqrt{1-2T_d/T_i}$ and cannot be met at all if $T_i < 2T_d$.",
     )
 
 
@@ -77,9 +75,9 @@ def filter_b_one() -> Finding:
     return Finding(
         "holds-partly" if all(slower) else "fails",
         max(ratio.values()),
-        f"The rise time grows in {sum(slower)} of {len(slower)} cases. The settling time (2 %) stays within a "
-        f"tenth in {same} of "
-        f"them; it changes by factors between {number(min(ratio.values()), 3)} and {number(max(ratio.values()), 3)}.",
+        f"The rise time grows in {sum(slower)} of {len(slower)} cases. The settling time (2 %) stays within a tenth in "
+        f"{same} of them; it changes by factors between {number(min(ratio.values()), 3)} and "
+        f"{number(max(ratio.values()), 3)}.",
     )
 
 
@@ -93,7 +91,6 @@ def weight_helps() -> Finding:
     return Finding(
         verdict,
         max(found.values()),
-        f"With the corrected formulas the overshoot stays below 20 % in {kept} of {total} designs; the "
-        "largest is "
+        f"With the corrected formulas the overshoot stays below 20 % in {kept} of {total} designs; the largest is "
         f"{number(max(found.values()), 3)} percent ({max(found, key=lambda row: found[row])}).",
     )

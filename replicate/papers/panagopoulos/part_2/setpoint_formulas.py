@@ -67,12 +67,10 @@ table = paper.table(
     rows=ROWS,
     columns=COLUMNS,
     caption=r"For the optimal controllers. $b$ of (13) (empty: $|T|$ has no resonance, (13) is 0/0); the limit "
-    r"on $b$ that (15) "
-    r"or the exact condition gives, and the largest value of the left side of (14) with that $b$, which should "
-    r"not exceed one; "
-    r"$T_{sp}$ of (16) where $b = 0$, and $|F_{sp}G_{sp}|$ at $\omega_{mp}$ with it, which should be one; the "
-    r"same for the "
-    r"filter of a controller with $b = 1$; and the true peak $M_{sp}$ of $|F_{sp}G_{sp}|$ over all frequencies.",
+    r"on $b$ that (15) or the exact condition gives, and the largest value of the left side of (14) with that $b$, "
+    r"which should not exceed one; $T_{sp}$ of (16) where $b = 0$, and $|F_{sp}G_{sp}|$ at $\omega_{mp}$ with it, "
+    r"which should be one; the same for the filter of a controller with $b = 1$; and the true peak $M_{sp}$ of "
+    r"$|F_{sp}G_{sp}|$ over all frequencies.",
     labels=ROW_LABELS
     | {
         "b13": "$b$ (13)",
@@ -124,8 +122,8 @@ def as_written() -> pd.DataFrame:
     "corrected",
     "Put right",
     r"$b \leq \sqrt{1-2T_d/T_i}$ in place of (15) (no $b$ at all if $T_i < 2T_d$; then $M_{sp}$ is with $b = 0$); "
-    r"$T_{sp} = \sqrt{k_i^2M_p^2/A-1}/\omega_{mp}$; and for $b = 1$ "
-    r"$T_{sp} = \sqrt{((k_i^2+k^2\omega_{mp}^2)M_p^2-A)/A}/\omega_{mp}$.",
+    r"$T_{sp} = \sqrt{k_i^2M_p^2/A-1}/\omega_{mp}$; and for $b = 1$ $T_{sp} = "
+    r"\sqrt{((k_i^2+k^2\omega_{mp}^2)M_p^2-A)/A}/\omega_{mp}$.",
 )
 def corrected() -> pd.DataFrame:
     """Return what the corrected formulas give."""

@@ -114,10 +114,9 @@ shifted = paper.table(
     rows=ROWS,
     columns=(*_COLUMNS, *(f"{key}_errata" for key in _COLUMNS)),
     caption="The printed $t_s$ of both tables beside the last time at which the response to a unit load is "
-    "above $+0.05$, "
-    "counted from the end of the dead time, and how much later the print is. In paper I the prints are one to "
-    "six percent "
-    "late by this measure, as if read off a coarse grid. $G_1$ would need a smaller load, $G_3$ a larger one.",
+    "above $+0.05$, counted from the end of the dead time, and how much later the print is. In paper I the prints are "
+    "one to six percent late by this measure, as if read off a coarse grid. $G_1$ would need a smaller load, $G_3$ a "
+    "larger one.",
     labels=ROW_LABELS | _COLUMNS | {f"{key}_errata": f"errata: {label}" for key, label in _COLUMNS.items()},
 )
 

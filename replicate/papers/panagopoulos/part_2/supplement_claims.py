@@ -30,9 +30,8 @@ def smooth_then_edge() -> Finding:
     return Finding(
         "holds" if len(changes) == 1 and kinds[min(kinds)] else "fails",
         float(changes[0]) if changes else float("nan"),
-        f"For $1/(s+1)^4$ and $M_s = 1.4$ one frequency touches the circle up to $k_d = "
-        f"{number(changes[0], 2)}$, two beyond "
-        f"$k_d = {number(changes[0] + 0.1, 2)}$.",
+        f"For $1/(s+1)^4$ and $M_s = 1.4$ one frequency touches the circle up to $k_d = {number(changes[0], 2)}$, two "
+        f"beyond $k_d = {number(changes[0] + 0.1, 2)}$.",
     )
 
 
@@ -60,9 +59,8 @@ def envelope() -> Finding:
     return Finding(
         "holds-partly",
         excess["$k_d=3$"],
-        f"The highest bottom vertex exceeds the largest feasible $k_i$ by the factors {listed(excess, 3)}; for "
-        "$k_d = 4$ nothing "
-        f"is feasible, and the locus still reaches {number(bottom_maximum(4.0), 3)}.",
+        f"The highest bottom vertex exceeds the largest feasible $k_i$ by the factors {listed(excess, 3)}; for $k_d = "
+        f"4$ nothing is feasible, and the locus still reaches {number(bottom_maximum(4.0), 3)}.",
     )
 
 
@@ -104,10 +102,8 @@ def faster_less_damped() -> Finding:
         verdict,
         three["omega2"],
         f"{kept} of {total} comparisons agree: both pairs lose damping ({number(one['zeta1'], 3)} to "
-        f"{number(three['zeta1'], 3)}, "
-        f"{number(one['zeta2'], 3)} to {number(three['zeta2'], 3)}), but the slow pair, which dominates, becomes "
-        "slower "
-        f"({number(one['omega2'], 3)} to {number(three['omega2'], 3)}).",
+        f"{number(three['zeta1'], 3)}, {number(one['zeta2'], 3)} to {number(three['zeta2'], 3)}), but the slow pair, "
+        f"which dominates, becomes slower ({number(one['omega2'], 3)} to {number(three['omega2'], 3)}).",
     )
 
 
@@ -154,11 +150,9 @@ def cusp() -> Finding:
     return Finding(
         "holds-partly",
         curvature,
-        f"Not in the strict sense: the curve never stands still ($|dL/d\\ln\\omega| \\geq "
-        f"{number(float(speed.min()), 3)}$). It "
-        f"turns back in a narrow loop, clockwise throughout (largest curvature {number(curvature, 2)}): of "
-        "the two constraints "
-        "added to prevent it, only the one on the phase does.",
+        "Not in the strict sense: the curve never stands still ($|dL/d\\ln\\omega| \\geq "
+        f"{number(float(speed.min()), 3)}$). It turns back in a narrow loop, clockwise throughout (largest curvature "
+        f"{number(curvature, 2)}): of the two constraints added to prevent it, only the one on the phase does.",
     )
 
 
@@ -216,9 +210,7 @@ def filtering_alike() -> Finding:
     return Finding(
         "holds-partly",
         ratio["$N=2$"],
-        "The text says both. With the filters of (8), $M_n$ and IAE are close indeed; at 40 rad/s the "
-        "first-order filter "
-        f"lets through {listed(ratio, 3)} times as much. In the printed table the second-order columns look more "
-        "efficient because "
-        "their filters are slower than (8) says.",
+        "The text says both. With the filters of (8), $M_n$ and IAE are close indeed; at 40 rad/s the first-order "
+        f"filter lets through {listed(ratio, 3)} times as much. In the printed table the second-order columns look "
+        "more efficient because their filters are slower than (8) says.",
     )

@@ -23,17 +23,12 @@ COARSE = (1.6, 161)
     "IIs-fig-1",
     "The surface $k_i(k, k_d)$ of the sensitivity constraint",
     caption="$G = 1/(s+1)^4$, $M_s = 1.4$. Left: sections of constant $k_d$, each drawn a little further back; "
-    "between the "
-    "upper (full) and the lower surface (dashed) the loop is stable and outside the circle. Right: the upper "
-    "surface along its "
-    "ridge. For small $k_d$ the lower surface is zero and the top is smooth (one touching frequency); beyond "
-    "the kink the top "
-    "is an edge, where upper and lower surface meet.",
+    "between the upper (full) and the lower surface (dashed) the loop is stable and outside the circle. Right: the "
+    "upper surface along its ridge. For small $k_d$ the lower surface is zero and the top is smooth (one touching "
+    "frequency); beyond the kink the top is an edge, where upper and lower surface meet.",
     alt="Left: six sections of the surface in an oblique view; those for small kd are hills with a flat top, "
-    "those for large "
-    "kd narrow to a wedge whose tip is the maximum. Right: the largest ki over kd, rising, smooth up to kd of "
-    "about two, "
-    "then with a maximum at about two and a half and falling steeply.",
+    "those for large kd narrow to a wedge whose tip is the maximum. Right: the largest ki over kd, rising, smooth up "
+    "to kd of about two, then with a maximum at about two and a half and falling steeply.",
     size=(7.4, 3.7),
 )
 def surface(fig: Figure) -> None:
@@ -87,12 +82,11 @@ def _shade(axes: Axes, kd: float) -> None:
     "IIs-fig-2",
     "How the region of feasible $(k, k_i)$ arises",
     caption="$k_d = 1$. Left: the ellipses that the constraint forbids, one per frequency, with the loci of "
-    "their left, right "
-    "and bottom vertices. Right: what is left free (shaded) is bounded by the ellipses, not quite by the vertices.",
+    "their left, right and bottom vertices. Right: what is left free (shaded) is bounded by the ellipses, not quite by "
+    "the vertices.",
     alt="Left: a family of ellipses in the plane of k and ki that rises from left to right, with dashed curves through "
-    "their left, right and bottom vertices. Right: the shaded region below all ellipses, close to the dashed "
-    "curves near "
-    "its top and below them at its left end.",
+    "their left, right and bottom vertices. Right: the shaded region below all ellipses, close to the dashed curves "
+    "near its top and below them at its left end.",
     size=(7.4, 3.6),
 )
 def ellipses(fig: Figure) -> None:
@@ -118,14 +112,11 @@ def ellipses(fig: Figure) -> None:
     "IIs-fig-3",
     "Vertex loci and true regions for $k_d$ = 1 to 4",
     caption="$G = 1/(s+1)^4$, $C = 1$, $R = 1/1.4$. Shaded: where the loop is stable and the constraint holds. "
-    "Dashed: the loci of "
-    "the vertices, from which the supplement reads the region. Crosses: the controllers it chooses, both "
-    "outside the region. "
-    "For $k_d = 4$ nothing is left.",
+    "Dashed: the loci of the vertices, from which the supplement reads the region. Crosses: the controllers it "
+    "chooses, both outside the region. For $k_d = 4$ nothing is left.",
     alt="Four panels of ki over k. For kd = 1 the shaded hill nearly fills the space below the vertex loci, for "
-    "kd = 2 it ends "
-    "at an edge on the right, for kd = 3 it is a small wedge far below the crossing of the loci, for kd = 4 it "
-    "is empty.",
+    "kd = 2 it ends at an edge on the right, for kd = 3 it is a small wedge far below the crossing of the loci, for kd "
+    "= 4 it is empty.",
     size=(7.0, 6.2),
 )
 def regions(fig: Figure) -> None:

@@ -94,13 +94,11 @@ def _add_readings(table: Table) -> None:
     table.reading(
         "as-written",
         "The optimum of the stated problem",
-        "The largest $k_i$ under the circle, negative curvature and falling phase on the search range of "
-        "section 4 of the "
-        "supplement; for $G_1$ (integrating) and $G_3$ (a pole close to zero, seen from its other poles) without the "
-        "curvature, as the text says. The other columns follow from these gains: $b$ by (13) and (15), $T_{sp}$ "
-        "by (16) as "
-        "printed. The text gives no band for $t_s$: here it is the time after which the response to a unit load stays "
-        "within ±0.02.",
+        "The largest $k_i$ under the circle, negative curvature and falling phase on the search range of section 4 of "
+        "the supplement; for $G_1$ (integrating) and $G_3$ (a pole close to zero, seen from its other poles) without "
+        "the curvature, as the text says. The other columns follow from these gains: $b$ by (13) and (15), $T_{sp}$ by "
+        "(16) as printed. The text gives no band for $t_s$: here it is the time after which the response to a unit "
+        "load stays within ±0.02.",
     )(_designs(table, "stated"))
     table.reading(
         "printed-gains",
@@ -134,8 +132,7 @@ def _add_readings(table: Table) -> None:
         "paper-1-settling",
         "The settling time of paper I",
         "$t_s$ as the numbers of paper I show it: the last time at which the load response is above $+0.05$, "
-        "undershoot "
-        "ignored, counted from the end of the dead time; for the printed gains.",
+        "undershoot ignored, counted from the end of the dead time; for the printed gains.",
     )(lambda: table.frame({row: {"ts": one_sided_settling(table.id, row)} for row in ROWS}))
     table.reading(
         "ms-only",

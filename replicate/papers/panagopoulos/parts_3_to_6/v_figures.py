@@ -120,8 +120,7 @@ def _side_by_side(
     "V-fig-4",
     "Starch boiler: PI and PID controller",
     caption="Unit set-point step at $t = 0$ and a load step of $-0.5$ at 400 s, with $b = 1$ as the mill's "
-    "system demands "
-    "and the derivative filter $N = 8$. The PID controller rejects the load better but overshoots more.",
+    "system demands and the derivative filter $N = 8$. The PID controller rejects the load better but overshoots more.",
     alt="Two columns. Left the PI controller: the output overshoots moderately, and the load step pulls it down for "
     "about 150 seconds. Right the PID controller: more overshoot, and a smaller and shorter deviation after the load "
     "step.",
@@ -184,8 +183,7 @@ def cascade(fig: Figure) -> None:
     "Drying section: set-point change with PI and PID controller",
     caption="Unit set-point step; the PID controller has the set-point filter $T_f = 5.32$ s and an ideal derivative.",
     alt="Two columns. Left the PI controller: fast rise, overshoot and a slow tail. Right the PID controller "
-    "with filter: "
-    "slower rise, less overshoot, and also a slow tail.",
+    "with filter: slower rise, less overshoot, and also a slow tail.",
     size=(6.8, 4.0),
     stands_for=MEASURED.format(what="a set-point step")
     + " On this nominal model both loops settle several times more slowly than the paper reports for the plant.",
@@ -220,8 +218,7 @@ def drying_pi(fig: Figure) -> None:
     caption="The same experiment with the PID controller and its set-point filter. With an ideal derivative "
     "the control signal has a kink or jump at every multiple of the dead time.",
     alt="Output and control signal of the PID loop: an overshoot after the set-point step, and a deviation "
-    "after the load "
-    "step that is smaller than with PI.",
+    "after the load step that is smaller than with PI.",
     size=(6.4, 3.6),
     stands_for=MEASURED.format(what="a set-point step and a load step"),
 )

@@ -181,8 +181,8 @@ def zeta_a() -> Finding:
         "holds" if max(inner) < 1.2 * min(inner) else "fails",
         max(inner) / min(inner),
         "In the example the smallest damping ratio of the inner loop is "
-        f"{', '.join(f'{number(value, 3)} (for {zeta:g})' for zeta, value in found.items())}; the chosen 0.5 "
-        "is the best of them.",
+        f"{', '.join(f'{number(value, 3)} (for {zeta:g})' for zeta, value in found.items())}; the chosen 0.5 is the "
+        "best of them.",
     )
 
 
