@@ -471,7 +471,7 @@ def texts(axes: Any) -> None:
 
 
 @figure
-def annotations(axes: Any) -> None:
+def annotated(axes: Any) -> None:
     axes.annotate("", xy=(0.2, 0.3), xytext=(0.7, 0.3), arrowprops={"arrowstyle": "<->"})
     axes.annotate("peak", xy=(0.5, 0.5), xytext=(20, 30), textcoords="offset points", arrowprops={"arrowstyle": "->"})
 
@@ -648,7 +648,7 @@ def solid_lines(fig: Figure) -> None:
 
 @whole
 def solid_surface(fig: Figure) -> None:
-    fig.add_subplot(projection="3d").plot_surface(X[::3, ::3], Y[::3, ::3], Z[::3, ::3], cmap="viridis")  # type: ignore[attr-defined]
+    fig.add_subplot(projection="3d").plot_surface(X[::3, ::3], Y[::3, ::3], Z[::3, ::3], cmap="viridis")
 
 
 @whole
@@ -713,7 +713,8 @@ def mosaic(fig: Figure) -> None:
 
 @whole
 def sub_figures(fig: Figure) -> None:
-    left, right = fig.subfigures(1, 2)
+    parts: Any = fig.subfigures(1, 2)
+    left, right = parts
     left.subplots().plot([0, 1])
     left.suptitle("left part")
     right.subplots().plot([1, 0])
