@@ -1,20 +1,13 @@
 """How a paper describes itself: the words for its exhibits, its printed values, and what computing them gives."""
 
 from replicate.exhibits.claims import Claim, Claims, ClaimVerdict, Consequence, Finding
+from replicate.exhibits.drawn import Chart, Figure, FigureKind
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.notation import Notation
 from replicate.exhibits.paper import Paper
 from replicate.exhibits.printed import Near
 from replicate.exhibits.readings import AS_WRITTEN, Reading
-from replicate.exhibits.vocabulary import (
-    Chart,
-    Exhibit,
-    Figure,
-    FigureKind,
-    NotComputable,
-    Table,
-    TableKind,
-)
+from replicate.exhibits.vocabulary import Exhibit, NotComputable, Table, TableKind
 
 __all__ = [
     "AS_WRITTEN",

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
-from replicate.exhibits.vocabulary import Figure
+from replicate.exhibits.drawn import Figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure

@@ -15,20 +15,13 @@ from typing import TYPE_CHECKING, Literal
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
 from replicate.exhibits.definitions import as_keys, check_id, check_lists, check_paper_id, check_texts, refuse
+from replicate.exhibits.drawn import Chart, Figure, FigureKind
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
 from replicate.exhibits.printed import USUAL, Key, Near, PrintedValue, read_transcription
 from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_points
 from replicate.exhibits.readings import AS_WRITTEN
-from replicate.exhibits.vocabulary import (
-    Chart,
-    Exhibit,
-    Figure,
-    FigureKind,
-    NotComputable,
-    Table,
-    TableKind,
-)
+from replicate.exhibits.vocabulary import Exhibit, NotComputable, Table, TableKind
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
