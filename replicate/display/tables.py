@@ -12,7 +12,8 @@ from replicate.exhibits.frames import FrameCells
 from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import Ranges, TableResult
-from replicate.verdicts.rows import HOLDING, VerdictRow
+from replicate.verdicts.rows import HOLDING, Computed, VerdictRow
+from replicate.verdicts.strength import Strength, strengths
 
 _MANY_CELLS = 6
 
@@ -81,6 +82,7 @@ class TableView:
     errors: dict[str, str]
     verdicts: list[VerdictRow]
     shortened: list[tuple[str, str]] = field(default_factory=list)  # quantities with truncated cells, and the count
+    strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
 
     @staticmethod
     def lines(row: list[Cell]) -> list[tuple[list[str], list[Value]]]:
@@ -137,6 +139,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         dict(result.errors),
         list(by_cell.values()),
         _shortened(table, by_cell.values()),
+        _strengths(table, frames, by_cell),
     )
 
 
@@ -179,6 +182,16 @@ def _shortened(table: Table, verdicts: Iterable[VerdictRow]) -> list[tuple[str, 
     }
     counts = tallies(table, matches)
     return [(quantity, count.sentence) for quantity, count in counts.items() if count.truncated]
+
+
+def _strengths(table: Table, readings: Iterable[str], verdicts: Mapping[Key, VerdictRow]) -> dict[str, Strength]:
+    """Return how strong the match of each reading is that is judged by some printed value."""
+    computed: dict[str, dict[Key, Computed]] = {id: {} for id in readings}
+    for key, verdict in verdicts.items():
+        for one in verdict.values:
+            if one.reading in computed:
+                computed[one.reading][key] = one
+    return {id: one for id, one in strengths(table, computed).items() if one.compared}
 
 
 def _texts(cell: Cell) -> list[str]:

@@ -47,7 +47,7 @@ def reading_matches(
     for key, (one, convention) in settled.items():
         number = alone[key][1]
         computed = Computed(reading, None, one, number) if isinstance(number, str) else Computed(reading, number, one)
-        computed = replace(computed, convention=convention)
+        computed = replace(computed, convention=convention, printed=printed[key])
         if ranges is not None and key in ranges.lower:
             low, high = ranges.lower[key], ranges.upper[key]
             if math.isfinite(low) and math.isfinite(high):

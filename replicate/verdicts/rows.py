@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Literal, get_args
+from typing import TYPE_CHECKING, Literal, get_args
 
 from replicate.exhibits import ClaimVerdict, Consequence
 from replicate.exhibits.matching import Match, MatchHow, MatchKind, computed_text
 from replicate.exhibits.printed import PrintedValue
+
+if TYPE_CHECKING:
+    from replicate.verdicts.strength import Strength
 
 ValueVerdict = Literal[
     "reproduced",
@@ -61,6 +64,8 @@ class Computed:
         Its range over the printed inputs of the reading; ``None`` if it takes none from the print.
     convention
         How the column's cells were shortened, judged by this reading.
+    printed
+        The print that it is compared with.
     """
 
     reading: str
@@ -70,6 +75,7 @@ class Computed:
     lower: float | None = None
     upper: float | None = None
     convention: str = ""
+    printed: PrintedValue | None = None
 
     @property
     def text(self) -> str:
@@ -164,11 +170,14 @@ class Judgement:
     ----------
     problems
         One line each: what keeps `replicate check` from passing.
+    strengths
+        How strong the match of a reading with its exhibit is, by paper, exhibit and reading.
     """
 
     verdicts: list[VerdictRow] = field(default_factory=list)
     exhibits: list[ExhibitRow] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    strengths: dict[tuple[str, str, str], Strength] = field(default_factory=dict)
 
     @property
     def results(self) -> list[ResultRow]:
@@ -185,3 +194,4 @@ class Judgement:
         self.verdicts.extend(part.verdicts)
         self.exhibits.extend(part.exhibits)
         self.problems.extend(part.problems)
+        self.strengths.update(part.strengths)

@@ -7,13 +7,14 @@ from dataclasses import dataclass, field, replace
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.exhibits.conventions import tallies
-from replicate.exhibits.matching import MatchKind, computed_text
+from replicate.exhibits.matching import computed_text
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.corrections import correction
 from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
 from replicate.verdicts.matches import other_convention, reading_matches, share_points
 from replicate.verdicts.rows import ERRORS, Computed, Judgement, ValueVerdict, VerdictRow
+from replicate.verdicts.strength import Strength, strengths
 
 _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "misprint": "misprint",
@@ -27,8 +28,6 @@ _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "unavailable": "not-computable",
     "unknown": "unexplained",
 }
-
-_HELD: tuple[tuple[MatchKind, ValueVerdict], ...] = (("equal", "reconstructed"), ("consistent", "consistent"))
 
 
 @dataclass
@@ -53,6 +52,7 @@ class TableJudge:
     judgement: Judgement = field(default_factory=Judgement)
     numbers: dict[str, dict[Key, float]] = field(default_factory=dict)  # by reading
     computed: dict[str, dict[Key, Computed]] = field(default_factory=dict)  # by reading
+    strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
 
     def judge(self) -> list[tuple[int, LedgerEntry]]:
         """Fill the judgement, and return which of its verdicts come from which ledger entry."""
@@ -61,6 +61,8 @@ class TableJudge:
             self._read(reading)
         points = [reading for reading in self.table.readings if reading in self.result.ranges]
         share_points(self.table, self.printed, self.computed, points)
+        self.strengths = strengths(self.table, self.computed)
+        self.judgement.strengths.update({(self.paper, self.table.id, id): one for id, one in self.strengths.items()})
         held = {key: self._held(key) for key in self.printed}
         entries = dict(self._assign({key for key, verdict in held.items() if verdict is None}))
         for key, value in self.printed.items():
@@ -104,12 +106,20 @@ class TableJudge:
             return self._verdict_row(key, "reproduced", AS_WRITTEN)
         if as_written == "consistent":
             return self._verdict_row(key, "consistent", AS_WRITTEN)
-        for kind, verdict in _HELD:
-            for id in others:
-                if self.computed[id][key].match.kind == kind:
-                    row = self._verdict_row(key, verdict, id)
-                    return replace(row, explanation=self.table.readings[id].title)
+        for id in others:
+            if self.computed[id][key].match.kind == "equal" and self._strong(id, key):
+                return self._under(id, key, "reconstructed")
+        for id in others:
+            kind = self.computed[id][key].match.kind
+            if kind == "consistent" or (kind == "equal" and id in self.result.ranges):
+                return self._under(id, key, "consistent")
         return None
+
+    def _under(self, reading: str, key: Key, verdict: ValueVerdict) -> VerdictRow:
+        return replace(self._verdict_row(key, verdict, reading), explanation=self.table.readings[reading].title)
+
+    def _strong(self, reading: str, key: Key) -> bool:
+        return self.strengths[reading].holds_for(self.table.quantity(*key))
 
     def _assign(self, open_keys: set[Key]) -> Iterator[tuple[Key, LedgerEntry]]:
         """Give each value that does not hold its ledger entry, and report entries that do not apply."""
@@ -179,8 +189,12 @@ class TableJudge:
         return self._verdict_row(key, "unexplained", AS_WRITTEN)
 
     def _remark(self, key: Key, reading: str) -> str:
-        """Say by which convention a near value would hold, and by which its column does."""
+        """Say by which convention a near value would hold, or under which reading that is too weak."""
         one = self.computed[reading][key]
+        weak = [id for id, found in self.computed.items() if found[key].match.kind == "equal"]
+        if weak and not other_convention(one):
+            strength = self.strengths[weak[0]]
+            return f"Equal under the reading “{weak[0]}”, which is too weak to tell. {strength.sentence}"
         if not other_convention(one):
             return ""
         count = tallies(self.table, {place: other.match for place, other in self.computed[reading].items()})

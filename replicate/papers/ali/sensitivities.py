@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 EXPONENTS = {"table-1": Fraction(1, 2), "table-2": Fraction(2, 5)}
 PADE_ORDER = 3
+TRIED = 15  # combinations of structure, dead time and way to find the peak, all in `sensitivity_count`
 
 Peak = Callable[[float, PID], float]  # of theta and controller
 
@@ -139,7 +140,8 @@ def add_readings(table: Table) -> None:
         ) -> pd.DataFrame:
             return compute(table, structure, peak, settings)
 
-        table.reading(id, title, note)(computed)
+        tried = {} if id == AS_WRITTEN else {"structure, dead time and way to find the peak": TRIED}
+        table.reading(id, title, note, tried=tried)(computed)
 
 
 LABELS = {"KKp": "$KK_p$", "Ti": "$T_i/T$", "Ms": "$M_s$", "Ms_star": "$M_s^*$"}

@@ -1,0 +1,176 @@
+r"""How strong a match is: the chance that a reading that explains nothing would meet as many printed values.
+
+A value that comes about by accident is taken to lie, with equal probability, as far from the print on either side as
+the farthest of the other readings of the exhibit does, but at most as far as the print is from zero. It meets the
+print with the probability
+
+.. math::
+
+    p = \frac{u + r}{2 w},
+
+with the unit :math:`u` of the last printed digit, the length :math:`r` of the value's range over printed inputs, and
+that distance :math:`w`. The number of values met by accident is then a sum of independent events, and the chance of at
+least as many as were met follows by convolution. A reading that was chosen among :math:`k` alternatives had :math:`k`
+chances, :math:`1 - (1 - P)^k` together. A reading other than as written is judged by the values in which it differs
+from that one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from replicate.exhibits import AS_WRITTEN, Table
+from replicate.exhibits.printed import Key
+from replicate.verdicts.rows import Computed
+
+LEVEL = 0.01  # a reading whose matches are less likely than this to be accidents is strong
+_FEWEST_NEIGHBOURS = 3  # cells of one quantity, which can tell of it
+_SAME = 1e-9  # relative: readings that give the same number
+_MEETS = frozenset({"equal", "consistent"})
+
+
+@dataclass(frozen=True)
+class Strength:
+    """How strong the match of one reading with its exhibit is.
+
+    Attributes
+    ----------
+    compared, met
+        How many printed values the reading is judged by, and how many of them it meets.
+    digits
+        How many printed digits that explains: the sum of the decimal logarithms of 1/p over the values met.
+    choices
+        How many alternatives were tried.
+    chance
+        The chance that as good a match arises by accident.
+    lines
+        By quantity: values compared, and values met.
+    """
+
+    compared: int
+    met: int
+    digits: float
+    choices: int
+    chance: float
+    lines: Mapping[str, tuple[int, int]] = field(default_factory=dict)
+
+    @property
+    def strong(self) -> bool:
+        """Whether an accident is unlikely."""
+        return self.chance < LEVEL
+
+    def holds_for(self, quantity: str) -> bool:
+        """Whether the reading is strong and explains a quantity, not just single cells whose neighbours fail.
+
+        It must meet half of the quantity's values, or half of the exhibit's where the quantity has too few to tell.
+        """
+        compared, met = self.lines.get(quantity, (0, 0))
+        if compared < _FEWEST_NEIGHBOURS:
+            compared, met = self.compared, self.met
+        return self.strong and 2 * met >= compared
+
+    @property
+    def sentence(self) -> str:
+        """The strength in one sentence.
+
+        Examples
+        --------
+        >>> Strength(20, 18, 31.2, 6, 3e-25).sentence
+        'Meets 18 of 20 values, 31 digits, with 6 alternatives tried: by accident once in more than a million cases.'
+        >>> Strength(20, 3, 4.4, 6, 0.31).sentence
+        'Meets 3 of 20 values, 4 digits, with 6 alternatives tried: by accident in 31 % of cases.'
+        """
+        tried = f"{self.choices} alternative{'s' if self.choices != 1 else ''} tried"
+        return f"Meets {self.met} of {self.compared} values, {self.digits:.0f} digits, with {tried}: {self.odds}."
+
+    @property
+    def odds(self) -> str:
+        """The chance in words."""
+        if self.chance >= LEVEL:
+            return f"by accident in {100 * self.chance:.2g} % of cases"
+        if self.chance < 1e-6:
+            return "by accident once in more than a million cases"
+        return f"by accident once in {float(f'{1 / self.chance:.2g}'):.0f} cases"
+
+
+def strengths(table: Table, computed: Mapping[str, Mapping[Key, Computed]]) -> dict[str, Strength]:
+    """Return the strength of every reading of a table.
+
+    Parameters
+    ----------
+    computed
+        By reading and (row, column): what it gives for each printed value, compared with it.
+    """
+    return {reading: _strength(table, reading, computed) for reading in computed}
+
+
+def _strength(table: Table, reading: str, computed: Mapping[str, Mapping[Key, Computed]]) -> Strength:
+    cells = {key: one for key, one in computed[reading].items() if _judged(one, computed.get(AS_WRITTEN, {}).get(key))}
+    odds = {key: _odds(key, reading, computed) for key in cells}
+    met = {key for key, one in cells.items() if one.match.kind in _MEETS}
+    choices = choices_of(table, reading)
+    lines: dict[str, list[Key]] = {}
+    for key in cells:
+        lines.setdefault(table.quantity(*key), []).append(key)
+    return Strength(
+        len(cells),
+        len(met),
+        sum(-math.log10(odds[key]) for key in met),
+        choices,
+        _repeated(at_least(len(met), list(odds.values())), choices),
+        {quantity: (len(keys), len(met.intersection(keys))) for quantity, keys in lines.items()},
+    )
+
+
+def choices_of(table: Table, reading: str) -> int:
+    """Return how many alternatives were tried to find a reading: those it declares, and at least the other readings."""
+    if reading == AS_WRITTEN:
+        return 1
+    return max(math.prod(table.readings[reading].tried.values()), len(table.readings) - 1)
+
+
+def _judged(one: Computed, as_written: Computed | None) -> bool:
+    """Say whether a value counts: it must be a number, and another one than as written."""
+    if one.number is None or not math.isfinite(one.number) or one.match.kind == "none":
+        return False
+    if one.reading == AS_WRITTEN or as_written is None or as_written.number is None:
+        return True
+    return abs(one.number - as_written.number) > _SAME * abs(as_written.number)
+
+
+def _odds(key: Key, reading: str, computed: Mapping[str, Mapping[Key, Computed]]) -> float:
+    """Return the probability that a value meets its print by accident."""
+    one = computed[reading][key]
+    value = one.printed
+    if value is None or not value.states_number:
+        return 0.5  # a bound or a word: one of two
+    printed, unit = float(value.value), float(value.unit)
+    others = [other[key].number for id, other in computed.items() if id != reading and key in other]
+    distances = [abs(number - printed) for number in others if number is not None and math.isfinite(number)]
+    limit = abs(printed) or max([*distances, unit])
+    width = min(max(distances, default=limit), limit)
+    window = unit if one.lower is None or one.upper is None else unit + one.upper - one.lower
+    return min(window / (2 * width), 1.0) if width else 1.0
+
+
+def at_least(count: int, odds: Sequence[float]) -> float:
+    """Return the probability that at least `count` of independent events happen.
+
+    Examples
+    --------
+    >>> at_least(2, [0.5, 0.5, 0.5]), at_least(0, [0.1])
+    (0.5, 1.0)
+    """
+    happened = [1.0] + [0.0] * len(odds)  # by number of events
+    for place, p in enumerate(odds, 1):
+        for number in range(place, 0, -1):
+            happened[number] = happened[number] * (1.0 - p) + happened[number - 1] * p
+        happened[0] *= 1.0 - p
+    return min(math.fsum(happened[count:]), 1.0)
+
+
+def _repeated(chance: float, choices: int) -> float:
+    """Return the chance that one of several independent attempts succeeds."""
+    return -math.expm1(choices * math.log1p(-chance)) if chance < 1.0 else 1.0

@@ -1,0 +1,109 @@
+"""The strength of a match, against counting by brute force and on tables of random numbers."""
+
+from __future__ import annotations
+
+from itertools import product
+from math import prod
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from replicate.exhibits import AS_WRITTEN, Table
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.verdicts.matches import reading_matches
+from replicate.verdicts.strength import LEVEL, Strength, at_least, strengths
+
+ROWS, COLUMNS = tuple("ABCDEFGH"), ("x", "y", "z")
+
+
+@given(odds=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=8), count=st.integers(0, 8))
+def test_the_number_of_accidents_against_all_outcomes(odds: list[float], count: int) -> None:
+    expected = sum(
+        prod(p if happens else 1.0 - p for p, happens in zip(odds, outcome, strict=True))
+        for outcome in product((False, True), repeat=len(odds))
+        if sum(outcome) >= count
+    )
+    assert at_least(count, odds) == pytest.approx(expected, abs=1e-12)
+
+
+def judged(prints: np.ndarray, readings: list[np.ndarray], tried: int = 1) -> dict[str, Strength]:
+    table = Table("table-1", "table", "T", rows=ROWS, columns=COLUMNS)
+    printed = {}
+    for (i, row), (j, column) in product(enumerate(ROWS), enumerate(COLUMNS)):
+        printed[row, column] = PrintedValue(f"{prints[i, j]:.2f}", row, column)
+    computed = {}
+    for place, numbers in enumerate(readings):
+        id = AS_WRITTEN if place == 0 else f"reading-{place}"
+        table.reading(id, "R", tried={"formula": tried} if place else None)(lambda: None)
+        cells: dict[Key, float | str | None] = {
+            (row, column): float(numbers[i, j])
+            for (i, row), (j, column) in product(enumerate(ROWS), enumerate(COLUMNS))
+        }
+        computed[id] = reading_matches(table, id, printed, cells)
+    return strengths(table, computed)
+
+
+def random_table(rng: np.random.Generator) -> np.ndarray:
+    return rng.uniform(1.0, 9.0, (len(ROWS), len(COLUMNS)))
+
+
+@pytest.mark.parametrize("spread", [0.003, 0.03, 0.3])
+@pytest.mark.parametrize("count", [2, 6])
+def test_random_readings_are_chance(spread: float, count: int) -> None:
+    """Numbers scattered around the print meet some of it; only about one best reading in a hundred looks strong."""
+    rng = np.random.default_rng(17)
+    strong = 0
+    for _ in range(200):
+        prints = random_table(rng)
+        readings = [prints * (1.0 + spread * rng.uniform(-1.0, 1.0, prints.shape)) for _ in range(count + 1)]
+        found = judged(prints, readings)
+        strong += any(one.strong for id, one in found.items() if id != AS_WRITTEN)
+    assert strong <= 200 * LEVEL * 3  # three times what is promised, for two hundred tables
+
+
+def test_the_truth_is_strong_and_its_neighbours_are_not() -> None:
+    rng = np.random.default_rng(3)
+    truth = random_table(rng)
+    off = [truth * (1.0 + 0.02 * rng.uniform(-1.0, 1.0, truth.shape)) for _ in range(3)]
+    found = judged(truth, [off[0], truth, *off[1:]])
+    assert found["reading-1"].met == len(ROWS) * len(COLUMNS)
+    assert found["reading-1"].strong
+    assert not found["reading-2"].strong
+    assert found["reading-1"].digits > 10.0
+
+
+def test_alternatives_that_were_tried_weaken_a_match() -> None:
+    rng = np.random.default_rng(5)
+    truth = random_table(rng)
+    wrong = truth + 0.2
+    few = truth + 0.2
+    few[:2, 0] = truth[:2, 0]
+    once, often = (judged(truth, [wrong, few], tried)["reading-1"] for tried in (1, 1000))
+    assert once.chance < often.chance
+    assert often.choices == 1000
+    assert often.chance == pytest.approx(1.0 - (1.0 - once.chance) ** 1000, rel=1e-9)
+
+
+def test_a_quantity_whose_neighbours_fail_is_not_explained() -> None:
+    rng = np.random.default_rng(5)
+    truth = random_table(rng)
+    other = truth + 0.3
+    reading = truth.copy()
+    reading[1:, 1] += 0.3 + 1e-6  # of y it meets one value only
+    found = judged(truth, [other, reading])["reading-1"]
+    assert found.strong
+    assert found.holds_for("x")
+    assert not found.holds_for("y")
+
+
+def test_a_reading_is_judged_by_what_it_says_differently() -> None:
+    rng = np.random.default_rng(5)
+    truth = random_table(rng)
+    reading = truth.copy()
+    reading[0, 0] += 0.5
+    found = judged(truth, [truth, reading])
+    assert (found["reading-1"].compared, found["reading-1"].met) == (1, 0)
+    assert found["reading-1"].chance == 1.0
+    assert found[AS_WRITTEN].met == len(ROWS) * len(COLUMNS)
