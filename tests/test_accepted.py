@@ -132,7 +132,7 @@ def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -
         ({"as_written": synthetic.frame(ax=1.001)}, "toy/table-1: A x 1 -> 1.001 (+0.1 %); 7 values unchanged"),
         (
             {"as_written": synthetic.frame(ax=1.3)},
-            "toy/table-1: A x 1 -> 1.3 (+30 %); verdict reproduced -> reconstructed; 7 values unchanged",
+            "toy/table-1: A x 1 -> 1.3 (+30 %); verdict reproduced -> unexplained; 7 values unchanged",
         ),
         (
             {"findings": {"big": Finding("holds", 3.1, "e"), "smooth": Finding("holds-partly", 0.2, "e")}},

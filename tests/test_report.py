@@ -116,7 +116,7 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         (folder / "__init__.py").write_text("")
         (folder / "notes.md").write_text(notes, encoding="utf-8")
         (folder / "ledger.toml").write_text(ledger.replace("table-1", f"{prefix}table-1"), encoding="utf-8")
-        (folder / "printed" / f"{prefix}table-1.csv").write_text("row,k,Ti\nZN,0.9,3.41\nCC,0.95,7.0\n")
+        (folder / "printed" / f"{prefix}table-1.csv").write_text("row,k,Ti\nZN,0.9,3.41\nCC,0.9500,7.0\n")
         for name, text in files.items():
             (folder / f"{name.replace('_', '-')}.md").write_text(text, encoding="utf-8")
         monkeypatch.syspath_prepend(tmp_path)
@@ -191,8 +191,8 @@ def test_pages_stand_alone(make: Make) -> None:
 def test_every_printed_and_computed_value_stands_with_its_verdict(make: Make) -> None:
     text = make()["synthetic.html"]
     rows = dict(re.findall(r'<td id="table-1[\w.-]+" class="judged ([a-z-]+)">([\d.]+)', text))
-    # 0.9 as written; 0.95 under the other reading; 3.41 a misprint; 7.0 unexplained
-    assert rows == {"reproduced": "0.9", "reconstructed": "0.95", "misprint": "3.41", "unexplained": "7.0"}
+    # 0.9 as written; 0.9500 under the other reading; 3.41 a misprint; 7.0 unexplained
+    assert rows == {"reproduced": "0.9", "reconstructed": "0.9500", "misprint": "3.41", "unexplained": "7.0"}
     assert text.count('title="3.14"') == 1
     assert "<del>3.41</del> <ins>3.14</ins>" in text
     assert "Digits are <em>swapped</em>: 3.14." in text

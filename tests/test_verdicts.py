@@ -88,7 +88,7 @@ def test_everything_holds() -> None:
 
 
 def test_another_reading_reconstructs() -> None:
-    found = verdict(judged(run=results(as_written=frame(ax=1.7))))
+    found = verdict(judged(run=results(as_written=frame(ax=1.7)), ax="1.000"))
     assert (found.verdict, found.reading, found.computed) == ("reconstructed", "authors", "1")
     assert found.explanation == "As the authors computed"
 
@@ -173,7 +173,7 @@ def test_an_entry_that_no_longer_applies_is_a_problem(found: LedgerEntry, texts:
 
 
 def test_a_reconstructed_value_needs_no_entry() -> None:
-    judgement = judged(entry(), run=results(as_written=frame(ax=1.7)))
+    judgement = judged(entry(), run=results(as_written=frame(ax=1.7)), ax="1.000")
     assert verdict(judgement).verdict == "reconstructed"
     assert judgement.problems == ["toy/ledger.toml:7: table-1 row 'A', column 'x' no longer differs"]
 
@@ -280,7 +280,7 @@ def test_nothing_computed(nothing: object) -> None:
 def test_only_numbers_are_numbers(value: object, shown: str) -> None:
     made = frame().astype(object)
     made["x"] = pd.Series([value, *made["x"].tolist()[1:]], made.index, dtype=object)
-    judgement = judged(run=results(as_written=made))
+    judgement = judged(run=results(as_written=made), ax="1.000")
     assert judgement.problems == [
         f"toy table-1: reading 'as-written': row 'A', column 'x' holds {shown}; expected: a number"
     ]
