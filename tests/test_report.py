@@ -146,7 +146,7 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
         paper.claims().claim("margin", "The margin is above 2.5.", printed="2.5")(check_claim)
         paper.not_computable("fig-2", "Measured flow", "measured data")
         paper._loaded = True
-        other = pd.DataFrame({"k": [0.9, 0.95], "Ti": [3.3, 2.6]}, index=["ZN", "CC"])
+        other = pd.DataFrame({"k": [0.9, 0.95], "Ti": [3.14, 2.5]}, index=["ZN", "CC"])
         figure = paper.exhibits[f"{prefix}fig-1"]
         assert isinstance(figure, Figure)
         results: Results = {
