@@ -18,9 +18,9 @@ paper = Paper(
     "Control, Lund Institute of Technology, 2000 (ISRN LUTFD2/TFRT-1059--SE).",
     year=2000,
     summary="Six papers and a supplement on designing PI and PID controllers from a bound on the sensitivity, and on "
-    "using them. The design method holds: the PI gains come out to the last digit, and so do most of the PID gains of "
-    "the corrected table. What was measured on the finished loops follows other definitions than the text states, and "
-    "a few designs are not the optima they claim to be.",
+    "using them. The design method holds: the PI gains are reproduced to the last digit, and so are most of the PID "
+    "gains of the corrected table. What was measured on the finished loops follows definitions other than those in the "
+    "text, and a few designs are not the optima they claim to be.",
     modules=tuple(f"{part.__name__.rpartition('.')[2]}.{module}" for part in _PARTS for module in part.MODULES),
     numbered=tuple(exhibit for part in _PARTS for exhibit in part.NUMBERED),
 )

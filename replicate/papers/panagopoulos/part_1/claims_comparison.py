@@ -104,7 +104,7 @@ def zn_g3() -> Finding:
         peak,
         f"Gain and integral time are {number(zn.k / new.k, 3)} and {number(zn.integral_time / new.integral_time, 3)} "
         f"times those of the new design, the settling time {number(two_sided(load) / two_sided(other), 3)} times. But "
-        f"$M_s$ = {number(peak, 3)} is no large value: the loop is sluggish, not close to instability.",
+        f"$M_s$ = {number(peak, 3)} is not large: the loop is sluggish, not close to instability.",
     )
 
 

@@ -55,8 +55,7 @@ def curves_coincide() -> Finding:
     return Finding(
         "holds" if largest < 0.05 else "holds-partly",
         largest,
-        f"From $\\omega_0$ on they are at most {number(largest, 2)} apart, "
-        "which is hardly more than the width of a line.",
+        f"From $\\omega_0$ on they are at most {number(largest, 2)} apart, little more than the width of a line.",
     )
 
 

@@ -105,10 +105,10 @@ def settling_shorter() -> Finding:
         "holds" if shorter["five"] == len(SIX) else "holds-partly",
         ratios["five"][worst],
         f"The printed times are shorter by a fifth or more for {shorter['print']} of {len(SIX)} plants. Exact ones are "
-        f"for {shorter['one']} if only what is above $+5$ % of a unit load counts, which is what the print goes with; "
-        f"for {shorter['five']} with a band of $\\pm 5$ % (the ratios are {listed(ratios['five'], 3)}); for "
-        f"{shorter['two']} with $\\pm 2$ % ({listed(ratios['two'], 3)}). The faster loops swing below zero, and the "
-        "one-sided definition does not see it.",
+        f"for {shorter['one']} if only what is above $+5$ % of a unit load counts, which is the definition that fits "
+        f"the print; for {shorter['five']} with a band of $\\pm 5$ % (the ratios are {listed(ratios['five'], 3)}); for "
+        f"{shorter['two']} with $\\pm 2$ % ({listed(ratios['two'], 3)}). The faster loops undershoot zero, which the "
+        "one-sided definition ignores.",
     )
 
 

@@ -153,7 +153,7 @@ def mp_parameter() -> Finding:
         "holds-partly",
         gain_mp,
         f"For $G_1$ (the paper's plant is unnamed) $k_i$ grows by a factor of {number(gain_mp, 3)} from $M_p = "
-        f"1.2$ to 2, by {number(gain_ms, 3)} from $M_s = 1.2$ to 2: $M_p$ is much the weaker handle. But the "
+        f"1.2$ to 2, by {number(gain_ms, 3)} from $M_s = 1.2$ to 2: $M_p$ has much less influence. But the "
         f"overshoot with $b = 1$ still goes from {low:.0%} to {high:.0%}.",
     )
 

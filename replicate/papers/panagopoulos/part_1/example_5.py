@@ -46,7 +46,7 @@ example_5 = paper.table(
     caption="Three different limits for $a$. From $a_{corner}$ on the root of (18) is the optimum, below it "
     "the optimum is a corner; it depends on $M_s$. At $a_{slope}$ the largest slope of $|G|$ is 1, the limit "
     "of condition (20); this is the printed number, and the root of (18) for $M_s = 2$ violates the "
-    "constraint there. Down to $a_{curvature}$ the local condition (19) holds, so that it cannot tell either.",
+    "constraint there. Down to $a_{curvature}$ the local condition (19) holds, so it does not reveal this either.",
     labels={
         "zeta_G6": "$\\zeta$ of $G_6$",
         "a_corner": "$a_{corner}$, $M_s = 2$",

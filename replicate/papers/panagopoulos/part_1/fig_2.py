@@ -57,7 +57,7 @@ def largest_gain(plant: str, gains: np.ndarray) -> np.ndarray:
 @paper.figure(
     "I-fig-2",
     "The sensitivity constraint in the plane of the gains, $M_s = 2$",
-    caption="Each ellipse is what the constraint (9) forbids at one frequency; their envelope bounds what is "
+    caption="Each ellipse is what the constraint (9) excludes at one frequency; their envelope bounds what is "
     "allowed (from $k_i = 0$ up to the thick line), and the dot is the design, its highest point. (a) $G_6$, "
     "where the envelope has a smooth top; (b) $G_{12}$ with $a = 0.2$, where it has a corner. The paper does "
     "not name its plants.",

@@ -24,7 +24,7 @@ LOAD = {"G4": 0.2}
     caption="Output above control signal, for $M_s = 1.4$ (dashed) and 2 (full), $b$ as the paper's numbers "
     "have it; unit steps, the load at half time (0.2 for $G_4$).",
     alt="Six pairs of panels. For every plant the set-point response rises without or with little overshoot "
-    "and the load is rejected; the responses for maximum sensitivity 2 are faster and swing more than the "
+    "and the load is rejected; the responses for maximum sensitivity 2 are faster and oscillate more than the "
     "dashed ones for 1.4.",
     size=(7.4, 9.2),
 )

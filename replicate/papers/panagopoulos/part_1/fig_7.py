@@ -20,8 +20,8 @@ UNTIL, LOAD_AT = 120.0, 50.0
 @paper.figure(
     "I-fig-7",
     "The undamped plant, $a = 0$, $M_s = 1.4$",
-    caption="Output and control signal for a set-point step and a load step, $b = 0$. The set point hardly excites the "
-    "oscillatory mode, the load does, and PI control can damp it only slowly.",
+    caption="Output and control signal for a set-point step and a load step, $b = 0$. The set point barely excites the "
+    "oscillatory mode, but the load does, and PI control can damp it only slowly.",
     alt="The output rises smoothly to the set point with a faint ripple; after the load step it oscillates "
     "with a large, slowly decaying amplitude.",
     size=(6.6, 4.2),

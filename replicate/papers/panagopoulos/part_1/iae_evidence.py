@@ -25,7 +25,7 @@ evidence = paper.table(
     columns=("IAE", "printed", "horizon", "ts"),
     caption="The IAE of the Ziegler–Nichols loops, the print, the time at which the running integral has "
     "reached the print, and the printed settling time. All three prints are too small, and the one of $G_2$, "
-    "whose loop hardly decays, most.",
+    "whose loop is very lightly damped, the most.",
     labels={
         **{row: table_5.labels[row] for row in ROWS},
         "printed": "Printed",

@@ -31,7 +31,7 @@ table_1 = paper.table(
     caption="Largest $k_i$ for a given $M_s$: gain, integral time, set-point weight, integrated error of a "
     "unit load step and its ratio to the integrated absolute error, frequency at which the Nyquist curve "
     "touches the circle, settling time of the load response, and resonance peak. The paper's caption says "
-    "$G_1$ to $G_7$. The column of $M_p$ stands at the edge of the page: a question mark is a last digit that is lost "
+    "$G_1$ to $G_7$. The column of $M_p$ is at the edge of the page: a question mark is a last digit that is missing "
     "or damaged in the copy at hand. (Where Table 5 prints the same design, for $G_2$ and $M_s = 1.6$, the whole "
     "number can be read.)",
     shared_labels=COLUMNS,

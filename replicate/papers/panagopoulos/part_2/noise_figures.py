@@ -51,7 +51,7 @@ def filtered(column: str) -> PID:
     "second order, designed as the text says. Dashed: the load response of the design without filter. First-order "
     "filters let more of the noise through to the control signal than those of second order.",
     alt="Twelve panels, three filter constants in pairs of rows for y and u, two filter orders in columns. Load "
-    "responses hardly differ between columns; the noise in the control signal is much smaller in the right column and "
+    "responses differ little between columns; the noise in the control signal is much smaller in the right column and "
     "grows with N.",
     size=(7.4, 9.6),
 )

@@ -84,9 +84,9 @@ STYLES = (
     "II-recommended-responses",
     "The recommended controllers at work",
     caption="Responses to a unit load step: the best PID under the stated constraints, the best under $M_s$ "
-    "alone and the best PI. Under $M_s$ alone the deviation is smaller but swings back; the constraints on the shape "
-    "buy damping. For $G_1$ and $G_3$ the stated constraints cost most of what derivative action gains; the "
-    "controllers that the errata print stand between. The scales follow the PID controllers: a PI response may leave "
+    "alone and the best PI. Under $M_s$ alone the deviation is smaller but oscillates; the constraints on the shape "
+    "improve the damping. For $G_1$ and $G_3$ the stated constraints cost most of what derivative action gains; the "
+    "controllers that the errata print are in between. The scales follow the PID controllers: a PI response may leave "
     "the panel.",
     alt="Sixteen panels, eight processes in rows and the two values of Ms in columns, each with three load responses, "
     "those of the first and third process with a fourth. The PID responses have lower peaks than the PI response and "

@@ -88,7 +88,7 @@ tried = paper.table(
     printed=False,
     rows=KEYS,
     columns=(SUPERSEDED, REPLACEMENT),
-    caption="How many printed $t_s$ a definition meets within 2 %, for the best of the bands "
+    caption="How many printed $t_s$ a definition gives within 2 %, for the best of the bands "
     + ", ".join(f"{100 * band:g}" for band in BANDS)
     + " %, with the printed gains. Load: unit step at the process input; set point: with the weight and filter "
     "of the text.",

@@ -81,7 +81,7 @@ def _shade(axes: Axes, kd: float) -> None:
 @paper.figure(
     "IIs-fig-2",
     "How the region of feasible $(k, k_i)$ arises",
-    caption="$k_d = 1$. Left: the ellipses that the constraint forbids, one per frequency, with the loci of "
+    caption="$k_d = 1$. Left: the ellipses that the constraint excludes, one per frequency, with the loci of "
     "their left, right and bottom vertices. Right: what is left free (shaded) is bounded by the ellipses, not quite by "
     "the vertices.",
     alt="Left: a family of ellipses in the plane of k and ki that rises from left to right, with dashed curves through "

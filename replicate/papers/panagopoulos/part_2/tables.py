@@ -103,10 +103,10 @@ def _add_readings(table: Table) -> None:
     table.reading(
         "printed-gains",
         "The other columns from the printed gains",
-        "What follows from the printed $k$, $T_i$ and $T_d$ by the same formulas; says nothing about the gains "
-        "themselves."
+        "What follows from the printed $k$, $T_i$ and $T_d$ by the same formulas; this says nothing about the "
+        "gains themselves."
         + (
-            " The scan has lost $T_d$ of $G_3$, $M_s = 2.0$; it is taken from the printed $b = \\sqrt{T_d/T_i}$."
+            " $T_d$ of $G_3$, $M_s = 2.0$, is missing in the scan; it is taken from the printed $b = \\sqrt{T_d/T_i}$."
             if table.id == SUPERSEDED
             else ""
         ),
@@ -116,7 +116,7 @@ def _add_readings(table: Table) -> None:
     table.reading(
         "filter-corrected",
         "The printed gains, (16) over $\\omega_{mp}$",
-        "$T_{sp} = \\sqrt{k_i^2M_p^2/A-1}/\\omega_{mp}$, which does what the text wants; the print divides by "
+        "$T_{sp} = \\sqrt{k_i^2M_p^2/A-1}/\\omega_{mp}$, which does what the text intends; the print divides by "
         "$\\omega_{mp}^2$.",
         inputs=GAINS,
         inputs_of=lost,

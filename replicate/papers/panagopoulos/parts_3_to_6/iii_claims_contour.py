@@ -105,7 +105,7 @@ def combined() -> Finding:
         "holds-partly" if equal else "fails",
         rule / len(kept),
         f"For equal bounds always. For unequal ones only if $|M_s - M_p| \\le 1$: on a grid of {len(kept)} "
-        f"pairs up to {grid[-1]} this rule decides {rule} of them rightly.",
+        f"pairs up to {grid[-1]} this rule decides {rule} of them correctly.",
     )
 
 
@@ -249,7 +249,7 @@ def not_conservative() -> Finding:
     return Finding(
         "holds" if values[1] < values[0] and values[1] < 0.1 else "holds-partly",
         values[1],
-        "The share of the circle that lies outside the $\\gamma$ curve, and is forbidden needlessly, is "
+        "The share of the circle that lies outside the $\\gamma$ curve, and is excluded needlessly, is "
         f"{', '.join(f'{value:.1%} ({name})' for name, value in gaps.items())}.",
     )
 

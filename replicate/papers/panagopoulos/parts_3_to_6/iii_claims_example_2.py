@@ -36,7 +36,7 @@ def gap_below_margin() -> Finding:
         "holds-partly" if plain.gap < plain.b and weighted.gap >= weighted.b else "fails",
         weighted.b - weighted.gap,
         f"Without weight the test succeeds: {number(plain.gap)} < {number(plain.b)}. With the paper's weight in "
-        f"both numbers it does not decide: {number(weighted.gap)} > {number(weighted.b)}. The printed pair "
+        f"both numbers it is inconclusive: {number(weighted.gap)} > {number(weighted.b)}. The printed pair "
         "mixes the weighted margin with a gap that belongs to neither. Compared frequency by frequency the "
         f"weighted numbers do certify stability (smallest difference {number(weighted.smallest_difference)}).",
     )

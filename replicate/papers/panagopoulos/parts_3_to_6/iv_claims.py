@@ -83,7 +83,7 @@ def no_degradation() -> Finding:
         f"load from {pairs['step'][0]:g} to {pairs['step'][1]:g} s for the step and from {pairs['ramp'][0]:g} to "
         f"{pairs['ramp'][1]:g} s for the ramp, and with saturation it is {printed['settling_time', 'sat_up']:g} and "
         f"{printed['settling_time', 'sat_down']:g} s. (The caption says that the results with sensor fault belong to a "
-        "simpler model than the others, so that the table cannot tell what the fault alone does.)",
+        "simpler model than the others, so the table cannot show what the fault alone does.)",
     )
 
 

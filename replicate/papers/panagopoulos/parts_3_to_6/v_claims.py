@@ -168,10 +168,10 @@ def setpoint_filter() -> Finding:
     return Finding(
         "holds-partly" if fits else "fails",
         found.default_grid,
-        f"The formula as printed there gives {number(found.printed_formula)}. With its misprints mended it gives "
+        f"The formula as printed there gives {number(found.printed_formula)}. With its misprints corrected it gives "
         f"{number(found.corrected)} s, {abs(FILTER / found.corrected - 1.0):.1%} from the printed {FILTER:g} s; "
         f"and {number(found.default_grid)} s from the printed settings or {number(unrounded)} s from the unrounded "
-        "ones if the peak of $|T|$ is looked up on Matlab's default frequency grid. So the right formula was used, on "
+        "ones if the peak of $|T|$ is read off Matlab's default frequency grid. So the right formula was used, on "
         "a grid too coarse for it.",
     )
 

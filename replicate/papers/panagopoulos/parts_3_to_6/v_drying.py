@@ -110,7 +110,7 @@ def as_written() -> pd.DataFrame:
 
 @drying.reading(
     "filter-corrected",
-    "The filter formula with its misprints mended",
+    "The filter formula with its misprints corrected",
     note="$T_{sp} = \\sqrt{(k_i^2 + k^2\\omega_{mp}^2)M_p^2 - A}\\,/(\\omega_{mp}\\sqrt A)$ follows from the "
     "condition that the formula is to satisfy, $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.",
 )
@@ -140,7 +140,7 @@ filters = paper.table(
     labels={
         "printed_formula": "formula for $b = 1$, as printed",
         "corrected": "the same, mended",
-        "default_grid": "mended, peak from Matlab's default grid",
+        "default_grid": "corrected, peak from Matlab's default grid",
         "eq_16": "(16), for $b = 0$, as printed",
         "eq_16_mended": "(16) with $\\omega_{mp}$, not its square",
         "never_above_one": "$|G_{sp}| \\le 1$ at all frequencies",
@@ -188,7 +188,7 @@ near_peak = paper.table(
 )
 
 
-@near_peak.reading("as-written", "Mended formula at each frequency")
+@near_peak.reading("as-written", "Corrected formula at each frequency")
 def peak_frequency() -> pd.DataFrame:
     """Evaluate the mended formula at the true peak, at the grid's points, and solve it for the frequency."""
     found = default_grid_peak()

@@ -27,7 +27,7 @@ models = paper.table(
         "drying": "drying section",
     },
     caption="$1.34\\,e^{-12.9s}/(43.3s+1)^2$ and $0.008\\,(30s+1)/(s(5s+1))\\,e^{-2s}$. These numbers are taken as "
-    "they stand: they were fitted or measured at the mill, and the data are not in the paper.",
+    "printed: they were fitted or measured at the mill, and the data are not in the paper.",
 )
 
 

@@ -139,7 +139,7 @@ ridge = paper.table(
     columns=("K", "Ti", "Td", "ki", "Ms"),
     labels={"Ti": "$T_i$ (s)", "Td": "$T_d$ (s)", "ki": "$k_i$", "Ms": "$M_s$"},
     caption="For each $K$ the controller with $M_s = 1.6$ whose phase is just level somewhere. $T_i$ and "
-    "$T_d$ hardly change, and at the printed $K$ they round to the printed values; $k_i$ grows all the way to the "
+    "$T_d$ change little, and at the printed $K$ they round to the printed values; $k_i$ grows all the way to the "
     "optimum without curvature constraint.",
 )
 

@@ -49,7 +49,7 @@ def band_pass() -> Finding:
     return Finding(
         "holds" if abs(phase[1]) < 1e-9 else "fails",
         round(float(phase[1]), 9) + 0.0,
-        f"There it is exactly zero; 10 % beside it, it is {number(phase[0], 3)} and {number(phase[2], 3)} degrees.",
+        f"There it is exactly zero; 10 % away from it, it is {number(phase[0], 3)} and {number(phase[2], 3)} degrees.",
     )
 
 

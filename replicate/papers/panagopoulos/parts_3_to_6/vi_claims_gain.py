@@ -20,7 +20,7 @@ def k_b() -> Finding:
         "holds-partly" if abs(value - K_B) <= spread else "fails",
         value,
         f"It gives {number(value)}. The rounding of its coefficients leaves an uncertainty of "
-        f"{number(spread, 2)}, so that the print is possible with unrounded ones.",
+        f"{number(spread, 2)}, so the print is possible with unrounded ones.",
     )
 
 
