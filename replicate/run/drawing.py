@@ -9,6 +9,7 @@ from matplotlib.figure import Figure as Canvas
 from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
 from replicate.figures import capture as record_of
+from replicate.figures.limits import check_limits, rasterise_crowds
 from replicate.figures.off_screen import curves_frame, png_bytes, svg_text
 from replicate.figures.style import style
 
@@ -34,6 +35,8 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     with style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = Canvas(figsize=exhibit.size)
         exhibit.draw(canvas)
+        check_limits(canvas)
+        rasterise_crowds(canvas)
         record = record_of(canvas)
         return FigureResult(
             paper=paper,
