@@ -22,6 +22,7 @@ from frequency import feedthrough, quantities  # noqa: E402
 from poles import Pole, poles  # noqa: E402
 from responses import Output, metrics  # noqa: E402
 
+GOLDENS = ROOT / "replicate" / "loops" / "goldens.json"
 SIGNIFICANT = 16
 LISTED = 6
 LICENSE = "CC0-1.0: no rights reserved. Any library may use, change and ship these numbers."
@@ -70,21 +71,21 @@ def _listed(case: Case, complete: list[Pole]) -> list[Pole]:
 
 def _responses(case: Case, complete: list[Pole]) -> dict[str, Any]:
     found: dict[str, Any] = {"times": case.record["times"]}
-    for name, signal, kind in (("step", "y", "F"), ("load_step", "load_y", "G")):
+    for name, kind in (("step", "F"), ("load_step", "G")):
         output = Output(case, complete, kind)
         late = not case.dead_time or max(case.record["times"]) < 60 * case.dead_time
-        found[name] = [_number(case.reference(t, signal) if late else output(mp.mpf(t))) for t in case.record["times"]]
+        found[name] = [_number(output.early(mp.mpf(t)) if late else output(mp.mpf(t))) for t in case.record["times"]]
         if late and case.dead_time and complete[0].value.real < 0:
-            _agree(case, output, signal)
+            _agree(case, output)
     return found
 
 
-def _agree(case: Case, output: Output, signal: str) -> None:
+def _agree(case: Case, output: Output) -> None:
     """Raise unless the dead-time series and the sum of residues give the same value where both hold."""
     t = max(output.late, *case.record["times"])
     if t > 40 * case.dead_time or feedthrough(case):
         return
-    series, early = case.reference(t, signal), case.reference(case.record["times"][0], signal)
+    series, early = output.early(mp.mpf(t)), output.early(mp.mpf(case.record["times"][0]))
     # the poles are those of the closed form of a gain, the series has its double
     if abs(series - output(mp.mpf(t))) > mp.mpf(10) ** -16 * (abs(output.final) + abs(series) + abs(early)):
         msg = f"{case.id}: series and residues differ at t = {t}: {series} and {output(mp.mpf(t))}"
@@ -108,10 +109,14 @@ def main(ids: list[str]) -> None:
     if ids:
         sys.stdout.write(json.dumps(records, indent=1) + "\n")
         return
+    write(records)
+
+
+def write(records: list[dict[str, Any]]) -> None:
+    """Write the file, one line for each loop."""
     rows = ",\n".join(json.dumps(record) for record in records)
     head = json.dumps({"license": LICENSE, "about": "docs/goldens.md"})[:-1]
-    path = ROOT / "replicate" / "loops" / "goldens.json"
-    path.write_text(f'{head}, "loops": [\n{rows}\n]}}\n', encoding="utf-8")
+    GOLDENS.write_text(f'{head}, "loops": [\n{rows}\n]}}\n', encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -44,9 +44,35 @@ class Output:
                 for index in range(len(self.poles))
             )
             return value + (self.final if integrals == 0 else self.total if integrals == 1 else 0)
-        signal = "y" if self.kind == "F" else "load_y"
-        value = self.case.reference(t, signal, integrals=integrals)
+        value = self.early(mp.mpf(t), integrals)
         return value - self.final * t if integrals == 1 else value
+
+    def early(self, t: mp.mpf, integrals: int = 0) -> mp.mpf:
+        """Return the value by the dead-time series, of which only the terms that have started count.
+
+        Its terms are inverted all at once on a circle around the open-loop poles; where these are real and far apart, a
+        circle is too large, and each is inverted on Talbot's contour.
+        """
+        if not self.case.record.get("far_apart"):
+            signal = "y" if self.kind == "F" else "load_y"
+            return self.case.reference(t, signal, integrals=integrals)
+        poly, delay = self.case.polynomials, mp.mpf(self.case.dead_time)
+        total = mp.mpf(0)
+        for n in range(int(t / delay) if t > delay else 0):
+            left = t - (n + 1) * delay
+            if left > 0:
+                total += mp.invertlaplace(
+                    lambda s, n=n: (
+                        evaluate(poly[self.kind], s)
+                        / evaluate(poly["A"], s)
+                        * (-evaluate(poly["B"], s) / evaluate(poly["A"], s)) ** n
+                        / s ** (1 + integrals)
+                    ),
+                    left,
+                    method="talbot",
+                    degree=40,
+                )
+        return total
 
     @cached_property
     def total(self) -> mp.mpf:

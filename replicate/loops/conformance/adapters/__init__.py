@@ -1,0 +1,1 @@
+"""One adapter for each library; a module's ``library()`` makes it."""
