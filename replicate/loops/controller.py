@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
+from replicate.loops.controller_views import ControllerViews
 from replicate.loops.errors import LoopError
 
 ComplexArray = NDArray[np.complex128]
@@ -27,8 +28,8 @@ Array = NDArray[np.float64]
 Filter = float | tuple[tuple[float, ...], tuple[float, ...]]  # a time constant, or (num, den)
 
 
-@dataclass(frozen=True)
-class PID:
+@dataclass(frozen=True, repr=False)
+class PID(ControllerViews):
     """A PID controller in parallel form with two degrees of freedom.
 
     Parameters

@@ -14,6 +14,7 @@ from replicate.loops.control_signal import control_signal
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
 from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.loop_views import LoopViews
 from replicate.loops.margins import Margins
 from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
@@ -43,7 +44,7 @@ class Response:
     control: Signal
 
 
-class Loop:
+class Loop(LoopViews):
     """A plant under feedback by a PI or PID controller, dead time exact.
 
     Parameters

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
+from replicate.loops.plant_views import PlantViews
 
 if TYPE_CHECKING:
     import control
@@ -24,7 +25,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
-class Plant:
+class Plant(PlantViews):
     r"""A single-input, single-output plant :math:`G(s) = G_0(s) e^{-sL}`.
 
     Parameters

@@ -11,13 +11,14 @@ from numpy.typing import NDArray
 from replicate.loops import chebyshev, checks
 from replicate.loops.errors import LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.piecewise import MARGIN, SAMPLES, Piecewise
+from replicate.loops.signal_views import SignalViews
 
 Array = NDArray[np.float64]
 
 ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
 
 
-class Signal(Piecewise):
+class Signal(SignalViews, Piecewise):
     """A time response: the piecewise function, and what one asks of a response.
 
     Parameters

@@ -57,12 +57,7 @@ def test_a_text_means_what_it_says(text: str) -> None:
 def test_what_is_written_is_read_as_the_same_plant(text: str) -> None:
     plant = parse_plant(text)
     again = parse_plant(plant_notation(plant))
-    assert (plant.num.tolist(), plant.den.tolist(), plant.dead_time) == (
-        again.num.tolist(),
-        again.den.tolist(),
-        again.dead_time,
-    )
-    assert plant.function == again.function
+    assert again == plant
     assert plant_notation(again) == plant_notation(plant)
 
 

@@ -74,10 +74,20 @@ def _peak(function: Callable[[Any], Any], grid: np.ndarray, limit: Number) -> di
     ends = [(abs(function(mp.mpf(float(grid[0])) / 10**40)), mp.mpf(0))] + ([(limit, None)] if limit else [])
     candidates = list(ends)
     if best is not None and size[best] > (1 + 1e-12) * float(max(value for value, _ in ends)):  # not mere rounding
-        w = bracketed_root(lambda x: mp.diff(lambda v: mp.log(abs(function(v))), x), grid[best - 1], grid[best + 1])
+        w = _top(lambda x: mp.diff(lambda v: mp.log(abs(function(v))), x), grid, best)
         candidates.append((abs(function(w)), w))
     value, at = max(candidates, key=lambda pair: pair[0])
     return {"value": value, "frequency": at}
+
+
+def _top(slope: Callable[[mp.mpf], mp.mpf], grid: np.ndarray, best: int) -> mp.mpf:
+    """Return the zero of a slope near a grid point; a flat top, which doubles hardly see, may be some points away."""
+    for reach in (1, 4, 16, 64, 256, 1024, 4096, 16384):
+        low, high = grid[max(best - reach, 0)], grid[min(best + reach, grid.size - 1)]
+        if slope(mp.mpf(low)) > 0 > slope(mp.mpf(high)):
+            return bracketed_root(slope, low, high)
+    msg = f"no maximum near w = {grid[best]}"
+    raise ArithmeticError(msg)
 
 
 def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str, dict[str, Number]]:

@@ -38,7 +38,7 @@ def parse_controller(text: str) -> PI | PID:
     Examples
     --------
     >>> parse_controller("k=0.6, ki=0.5, b=1")
-    PI(k=0.6, ki=0.5, kd=0.0, b=1.0, c=0.0, derivative_filter=0.0, ...)
+    PI(k=0.6, ki=0.5)
     >>> parse_controller("k=2,ti=4,td=1").kd
     2.0
     """

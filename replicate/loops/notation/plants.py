@@ -9,7 +9,7 @@ import numpy as np
 from replicate.loops.errors import LoopError, NotationError
 from replicate.loops.notation.functions import TextFunction
 from replicate.loops.notation.grammar import Node, parse
-from replicate.loops.notation.rational import NotRationalError, Sum, Term, constant, delay, value
+from replicate.loops.notation.rational import NotRationalError, Term, constant, delay, value
 from replicate.loops.notation.tokens import refuse
 from replicate.loops.notation.writing import expression, transfer
 from replicate.loops.plant import Plant
@@ -50,7 +50,8 @@ def parse_plant(text: str) -> Plant:
         return _function_plant(tree, text)
     try:
         if len(terms) > 1:
-            return _sum_plant(tree, terms, text)
+            _dead_time(terms[0].dead_time, text)
+            return Plant.from_terms([(*_coefficients(term), float(term.dead_time)) for term in terms])
         return Plant(*_coefficients(terms[0]), _dead_time(terms[0].dead_time, text))
     except (LoopError, OverflowError) as error:
         if isinstance(error, NotationError):
@@ -66,11 +67,6 @@ def _dead_time(dead_time: Fraction, text: str) -> float:
     if dead_time < 0:
         refuse("plant", text, 1, f"e^{{{float(-dead_time):g}s}} predicts; the dead time must be >= 0")
     return float(dead_time)
-
-
-def _sum_plant(tree: Node, terms: Sum, text: str) -> Plant:
-    _dead_time(terms[0].dead_time, text)
-    return _function_plant(tree, text)
 
 
 def _function_plant(tree: Node, text: str) -> Plant:
@@ -125,8 +121,9 @@ def plant_notation(plant: Plant) -> str:
     >>> plant_notation(Plant([8.0], [1.0, 4.0, 0.0], dead_time=1.0))
     '8 e^{-s}/(s(s+4))'
     """
-    if plant.function is None:
-        return transfer(plant.num, plant.den, plant.dead_time)
+    if plant.parts:
+        texts = [transfer(part.num, part.den, part.dead_time) for part in plant.parts]
+        return "+".join(texts).replace("+-", "-")
     if not isinstance(plant.function, TextFunction):
         msg = "a plant given by a Python function has no notation; write it as a text, for example e^{-sqrt(s)}"
         raise LoopError(msg)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ def _questions(golden: Golden, order: int) -> Iterator[tuple[str, Callable[[], V
     poles = sorted((p for p in closed.poles() if p.imag >= -1e-9 * abs(p)), key=lambda p: (-p.real, p.imag))
     yield "stable", lambda: float(bool(np.all(closed.poles().real < 0.0)))
     for index in range(len(golden.record["poles"])):
-        yield f"pole {index + 1}", lambda index=index: complex(poles[index])
+        yield f"pole {index + 1}", partial(poles.__getitem__, index)
     if golden.stable:
         gain, phase, distance, _, crossover, _ = control.stability_margins(open_loop)
         yield "sensitivity_peak", lambda: 1.0 / distance
@@ -58,8 +59,8 @@ def _questions(golden: Golden, order: int) -> Iterator[tuple[str, Callable[[], V
         yield "phase_margin", lambda: phase
         yield "delay_margin", lambda: math.radians(phase) / crossover
     for t in golden.times:
-        yield f"step({t:g})", lambda t=t: _value(closed, t)
-        yield f"load_step({t:g})", lambda t=t: _value(load, t)
+        yield f"step({t:g})", partial(_value, closed, t)
+        yield f"load_step({t:g})", partial(_value, load, t)
     if "metrics" in golden.record:
         info = control.step_info(closed)
         yield "overshoot", lambda: info["Overshoot"] / 100.0

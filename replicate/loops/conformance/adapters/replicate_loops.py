@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import importlib.metadata
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 
-from replicate.loops import PID, Loop, LoopError, Plant
+from replicate.loops import PID, Loop, LoopError, Plant, Signal
 from replicate.loops.conformance.goldens import Golden
 from replicate.loops.conformance.library import Library
 
@@ -37,7 +37,7 @@ class _Ours:
 def _questions(loop: Loop, golden: Golden) -> Iterator[tuple[str, Callable[[], Value]]]:
     """Yield the name of each value and what computes it."""
     for index in range(len(golden.record["poles"])):
-        yield f"pole {index + 1}", lambda index=index: complex(loop.poles(index + 1)[index])
+        yield f"pole {index + 1}", partial(_pole, loop, index)
     if golden.stable:
         yield "sensitivity_peak", lambda: loop.sensitivity_peak().value
         yield "complementary_peak", lambda: loop.complementary_peak().value
@@ -48,10 +48,18 @@ def _questions(loop: Loop, golden: Golden) -> Iterator[tuple[str, Callable[[], V
     until = 1.01 * max(golden.times)
     y, d = cache(lambda: loop.step(until=until)), cache(lambda: loop.load_step(until=until))
     for t in golden.times:
-        yield f"step({t:g})", lambda t=t: float(y()(t))
-        yield f"load_step({t:g})", lambda t=t: float(d()(t))
+        yield f"step({t:g})", partial(_value, y, t)
+        yield f"load_step({t:g})", partial(_value, d, t)
     if "metrics" in golden.record:
         yield from _metrics(loop)
+
+
+def _pole(loop: Loop, index: int) -> complex:
+    return complex(loop.poles(index + 1)[index])
+
+
+def _value(response: Callable[[], Signal], t: float) -> float:
+    return float(response()(t))
 
 
 def _metrics(loop: Loop) -> Iterator[tuple[str, Callable[[], Value]]]:
