@@ -25,6 +25,7 @@ from replicate.commands.options import (
     recompute,
 )
 from replicate.run.limits import UNIT_TIMEOUT
+from replicate.terminal.streams import echo
 
 
 def diff(
@@ -57,7 +58,7 @@ def diff(
         comparison = compare(outcome, baseline, within.ids())
         print_comparison(comparison, console())  # before anything else can go wrong
         write_diff(comparison, outcome, fresh, jobs)
-    typer.echo(f"pictures: {folder / 'diff' / 'index.html'}")
+    echo(f"pictures: {folder / 'diff' / 'index.html'}")
     broken = comparison.broken or not comparison.compared
     exit_with(within, outcome, BROKEN if broken else DIFFERS if comparison.changes else 0, failures_shown=True)
 
@@ -90,5 +91,5 @@ def accept(
     comparison = accept_state(outcome, folder, reason, within.ids())
     print_changes(comparison, console())
     changes = len(comparison.changes)
-    typer.echo(f"changes accepted: {changes}; in {folder}" if changes else f"nothing differs from {folder}")
+    echo(f"changes accepted: {changes}; in {folder}" if changes else f"nothing differs from {folder}")
     exit_with(within, outcome)

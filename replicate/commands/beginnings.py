@@ -9,6 +9,7 @@ import typer
 
 from replicate.commands.options import library, shortest
 from replicate.errors import PaperDefinitionError
+from replicate.terminal.streams import echo
 
 
 def init(
@@ -19,7 +20,7 @@ def init(
     from replicate.new_project import new_project
 
     new_project(folder, title)
-    typer.echo(
+    echo(
         f"Created {folder}. Next steps:\n"
         f"  cd {folder}\n"
         "  replicate new PAPER     # begins a paper in papers/PAPER\n"
@@ -40,7 +41,7 @@ def new(
     homes = within.project.papers if within.project is not None else ()
     folder = new_paper(paper, homes[0] if homes else Path())
     option, state = ("", "") if homes else (" --papers .", " --accepted accepted")
-    typer.echo(
+    echo(
         f"Created {shortest(folder.resolve())}. Next steps:\n"
         f"  replicate report {paper}{option}\n"
         f"  replicate check {paper}{option}{state}     # lists what is still to do\n"

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from replicate.commands.options import Out, library, output_folder
+from replicate.terminal.streams import echo
 
 
 def cache(
@@ -20,8 +21,8 @@ def cache(
     folder = output_folder(library(), out) / "cache"
     if clear:
         count, size = Cache(folder).clear()
-        typer.echo(f"removed: {count} results, {size / 2**20:.1f} MB, from {folder}")
+        echo(f"removed: {count} results, {size / 2**20:.1f} MB, from {folder}")
         return
     entries = list(stored(folder))
     size = sum(entry.size for entry in entries)
-    typer.echo(f"{folder}: {len(entries)} results, {size / 2**20:.1f} MB of at most {MOST_KEPT / 2**20:g} MB")
+    echo(f"{folder}: {len(entries)} results, {size / 2**20:.1f} MB of at most {MOST_KEPT / 2**20:g} MB")

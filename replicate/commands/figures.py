@@ -11,6 +11,7 @@ import typer
 
 from replicate.commands.options import BROKEN, DIFFERS, Jobs
 from replicate.errors import ReplicateError
+from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
     from replicate.baselines.outcomes import Outcome
@@ -48,10 +49,8 @@ def diff(
     outcomes = compare_runs(_run(patterns, jobs, timeout), Store(accepted))
     for outcome in worst_first(outcomes):
         for text in outcome.changes:
-            typer.echo(
-                text if outcome.status == "failed" else f"{outcome.name}: {text}", err=outcome.status == "failed"
-            )
-    typer.echo(counted(outcomes))
+            echo(text if outcome.status == "failed" else f"{outcome.name}: {text}", err=outcome.status == "failed")
+    echo(counted(outcomes))
 
     def command(outcome: Outcome) -> str:
         only = f"{outcome.name}={outcome.digest}"
@@ -59,7 +58,7 @@ def diff(
         words += [] if accepted == _FOLDER else ["--accepted", accepted.as_posix()]
         return f"{shlex.join(words)} --reason 'why'"
 
-    typer.echo(f"pictures: {write_outputs(outcomes, out, command, comment)}")
+    echo(f"pictures: {write_outputs(outcomes, out, command, comment)}")
     if not outcomes or any(outcome.status == "failed" for outcome in outcomes):
         raise typer.Exit(BROKEN)
     raise typer.Exit(DIFFERS if any(outcome.differs for outcome in outcomes) else 0)
@@ -89,9 +88,9 @@ def accept(
     outcomes = accept_runs(_run(patterns, jobs, timeout), Store(accepted), reason, chosen)
     for outcome in worst_first(outcomes):
         for text in outcome.changes:
-            typer.echo(f"{outcome.name}: {text}")
+            echo(f"{outcome.name}: {text}")
     changed = sum(outcome.status == "accepted" for outcome in outcomes)
-    typer.echo(f"figures accepted: {changed}" if changed else "nothing differs from the accepted state")
+    echo(f"figures accepted: {changed}" if changed else "nothing differs from the accepted state")
 
 
 def _run(patterns: Sequence[str], jobs: int | None, timeout: float) -> list[ScriptRun]:

@@ -21,6 +21,7 @@ from replicate.commands.options import (
     recompute,
 )
 from replicate.run.limits import UNIT_TIMEOUT
+from replicate.terminal.streams import echo
 
 
 def handout(
@@ -53,5 +54,5 @@ def handout(
             outcome.papers, outcome.results, verdicts, fresh / "handouts", solutions=editions, file_format=file_format
         )
     for path in written:
-        typer.echo(f"handout: {place / 'handouts' / path.name}")
+        echo(f"handout: {place / 'handouts' / path.name}")
     exit_with(within, outcome)

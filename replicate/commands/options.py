@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from replicate.errors import AcceptedStateError, ProjectError
+from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
@@ -72,9 +73,9 @@ def recompute(
 def tell_failures(outcome: Outcome) -> None:
     """Report on standard error what raised; a fault in the core makes everything fail, and the first lines tell."""
     for failure in outcome.failures[:MOST_FAILURES]:
-        typer.echo(f"failed: {failure}", err=True)
+        echo(f"failed: {failure}", err=True)
     if len(outcome.failures) > MOST_FAILURES:
-        typer.echo(f"failed: {len(outcome.failures) - MOST_FAILURES} more", err=True)
+        echo(f"failed: {len(outcome.failures) - MOST_FAILURES} more", err=True)
 
 
 def library(folders: list[Path] | None = None, bundled: bool = False) -> Library:
@@ -137,7 +138,7 @@ def exit_with(
         broken += outcome.broken.values()
         failed = bool(outcome.failures)
     for line in broken:
-        typer.echo(f"broken: {line}", err=True)
+        echo(f"broken: {line}", err=True)
     raise typer.Exit(BROKEN if broken or failed else status)
 
 

@@ -23,6 +23,7 @@ from replicate.commands.options import (
 )
 from replicate.errors import ReplicateError, UnknownPaperError
 from replicate.run.limits import UNIT_TIMEOUT
+from replicate.terminal.streams import echo
 
 
 def list_(
@@ -117,4 +118,4 @@ def chart(
     else:
         place = out.resolve() if out.is_symlink() else out
         replace_files(place.parent, {place.name: content})
-    typer.echo(f"chart: {out}")
+    echo(f"chart: {out}")

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from replicate.commands.options import DIFFERS
+from replicate.terminal.streams import echo
 
 app = typer.Typer(help="Work on the files of printed numbers.", no_args_is_help=True)
 
@@ -21,8 +22,8 @@ def compare(one: File, other: File) -> None:
 
     lines, cells = differences(one, other)
     for line in lines:
-        typer.echo(line)
-    typer.echo(f"cells compared: {cells}; differences: {len(lines)}")
+        echo(line)
+    echo(f"cells compared: {cells}; differences: {len(lines)}")
     raise typer.Exit(DIFFERS if lines else 0)
 
 

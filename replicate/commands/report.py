@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import typer
-
 from replicate.commands.options import (
     BROKEN,
     DIFFERS,
@@ -23,6 +21,7 @@ from replicate.commands.options import (
     recompute,
 )
 from replicate.run.limits import UNIT_TIMEOUT
+from replicate.terminal.streams import echo
 
 
 def report(
@@ -53,7 +52,7 @@ def report(
         pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         index = folder / "report" / pages[0].name
     print_summary(outcome, console())
-    typer.echo(f"\nreport: {index}")
+    echo(f"\nreport: {index}")
     exit_with(within, outcome)
 
 
@@ -84,7 +83,7 @@ def check(
     comparison = compare(outcome, baseline, within.ids())
     problems = find_problems(outcome, comparison)
     for problem in problems:
-        typer.echo(problem)
+        echo(problem)
     comparisons = outcome.judgement.compared
-    typer.echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
+    echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
     exit_with(within, outcome, BROKEN if comparison.broken else DIFFERS if problems else 0)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
+from replicate.exhibits.plain_text import visible
 from replicate.exhibits.results import Results, errors_of
 from replicate.verdicts.rows import Judgement, VerdictRow
 
@@ -58,9 +59,9 @@ def xml_text(root: ET.Element) -> str:
 
 def add_case(suite: ET.Element, classname: str, name: str, outcome: str, message: str) -> None:
     """Add a test to a suite; `outcome` is the element that says how it ended, empty if it passed."""
-    case = ET.SubElement(suite, "testcase", classname=classname, name=name)
+    case = ET.SubElement(suite, "testcase", classname=classname, name=visible(name))
     if outcome:
-        ET.SubElement(case, outcome, message=message)
+        ET.SubElement(case, outcome, message=visible(message))
 
 
 def count_cases(suite: ET.Element) -> None:

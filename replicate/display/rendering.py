@@ -14,6 +14,7 @@ from replicate.display import environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.markdown import MarkdownBatch
 from replicate.display.safe_html import policy
+from replicate.exhibits.plain_text import visible
 from replicate.resources import templates_dir
 
 
@@ -61,7 +62,7 @@ def render(template: str, name: str, **context: Any) -> str:
         style=Markup(_STYLE),  # noqa: S704 -- two marks, replaced below
         policy=Markup(_POLICY),  # noqa: S704
     )
-    return with_policy(batch.substitute(text).replace(_STYLE, style_sheet(context.get("theme") or {})))
+    return visible(with_policy(batch.substitute(text).replace(_STYLE, style_sheet(context.get("theme") or {}))))
 
 
 _STYLE, _POLICY = "\ue006style\ue007", "\ue006policy\ue007"

@@ -64,7 +64,7 @@ def read_text(path: Path | Traversable, name: str, error: type[ReplicateError]) 
         text = content.decode("utf-8")
     except UnicodeDecodeError as why:
         line = content[: why.start].count(b"\n") + 1
-        msg = f"{name}:{line}: is not UTF-8: byte 0x{content[why.start]:02x}; save the file as UTF-8"
+        msg = f"{name}:{line}: is not UTF-8 text"
         raise error(msg) from why
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
     found = _STEERING.search(text)

@@ -23,6 +23,7 @@ from replicate.errors import PrintedFileError
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.notation import PLAIN, Notation, Statement
 from replicate.exhibits.numerals import LOST, last_place
+from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.statements import scaled
 
 if TYPE_CHECKING:
@@ -246,15 +247,7 @@ def _grid(
 
 def _records(path: Traversable | Path, name: str) -> list[tuple[int, list[str]]]:
     """Return the non-empty records with the line on which each ends."""
-    try:
-        content = path.read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        msg = f"{name}: cannot be read: {error.strerror or error}"
-        raise PrintedFileError(msg) from error
-    except UnicodeDecodeError as error:
-        line = error.object[: error.start].count(b"\n") + 1
-        msg = f"{name}:{line}: is not UTF-8 text"
-        raise PrintedFileError(msg) from error
+    content = read_text(path, name, PrintedFileError)
     reader = csv.reader(io.StringIO(content, newline=""), strict=True)
     records = []
     try:

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING
 from replicate.errors import PaperDefinitionError, PrintedFileError
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import parse_number
+from replicate.exhibits.plain_text import read_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -63,11 +64,7 @@ def read_points(path: Traversable | Path) -> list[Point]:
         If the file cannot be read, a column is missing, a cell is not a number, or a point appears twice.
     """
     name = display_name(path)
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        msg = f"{name}: cannot be read: {getattr(error, 'strerror', None) or 'is not UTF-8 text'}"
-        raise PrintedFileError(msg) from error
+    text = read_text(path, name, PrintedFileError)
     reader = csv.DictReader(io.StringIO(text, newline=""))
     columns = reader.fieldnames or ()
     if not set(_NEEDED) <= set(columns) <= {*_NEEDED, "panel"}:

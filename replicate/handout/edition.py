@@ -13,6 +13,7 @@ import pypandoc
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
+from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
 from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, line_of, located
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
@@ -85,7 +86,7 @@ def edition(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], *, s
         raise TemplateError(msg)
     placing = Placing(paper, results, verdicts)
     prose = Prose(paper, results, verdicts, placing.functions())
-    lines = prose.render_lines(file.read_text(encoding="utf-8"), source)
+    lines = prose.render_lines(read_text(file, source, TemplateError), source)
     blocks = _read(lines, source)
     if not solutions:
         blocks = transform(blocks, lambda element: [] if "solution" in classes(element) else None)

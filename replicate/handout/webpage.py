@@ -12,6 +12,7 @@ import replicate
 from replicate.display.inline_svg import inline_svg
 from replicate.display.rendering import html_environment
 from replicate.display.source_code import highlight
+from replicate.exhibits.plain_text import visible
 from replicate.handout.edition import Document
 from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, transform
 
@@ -30,7 +31,7 @@ def webpage(document: Document) -> str:
             extra_args=["--sandbox", "--wrap=none", "--fail-if-warnings", "--shift-heading-level-by=1"],
         )
     )
-    return (
+    return visible(
         html_environment()
         .get_template(TEMPLATE)
         .render(

@@ -16,6 +16,7 @@ from replicate.display.rendering import render
 from replicate.errors import OutputError, TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
+from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
 from replicate.report.errata import errata
 from replicate.report.notes import Piece, pieces, place
@@ -140,7 +141,11 @@ def paper_pages(paper: Paper, results: Results, judgement: Judgement) -> list[Pa
         placing = _Placing(page_name(paper.id, part), views)
         prose = Prose(paper, results, judgement.verdicts, {"exhibit": placing})
         notes = folder / file
-        text = prose.render(notes.read_text(encoding="utf-8"), display_name(notes)) if notes.is_file() else ""
+        text = (
+            prose.render(read_text(notes, display_name(notes), TemplateError), display_name(notes))
+            if notes.is_file()
+            else ""
+        )
         title = paper.title
         if part:
             title, text = _title(text, f"Part {part}")

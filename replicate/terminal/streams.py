@@ -10,6 +10,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, TextIO
 
+import typer
+
+from replicate.exhibits.plain_text import visible
+
 if TYPE_CHECKING:
     from typing_extensions import Buffer
 
@@ -77,7 +81,12 @@ def _remembering(stream: TextIO) -> TextIO:
 def say(line: str) -> None:
     """Print on standard error if that is possible."""
     with suppress(OSError):
-        print(line, file=sys.stderr, flush=True)  # noqa: T201  -- the error is the output
+        print(visible(line), file=sys.stderr, flush=True)  # noqa: T201  -- the error is the output
+
+
+def echo(text: str, *, err: bool = False) -> None:
+    """Print a text, with characters that would steer the terminal written out."""
+    typer.echo(visible(text), err=err)
 
 
 def _open_closed_streams() -> None:

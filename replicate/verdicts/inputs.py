@@ -9,8 +9,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
 
+from replicate.errors import TemplateError
 from replicate.exhibits import Paper, Table
 from replicate.exhibits.file_names import display_name
+from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.printed import Key, PrintedValue, read_printed
 from replicate.exhibits.read_off import COLUMN
 from replicate.verdicts.ledger import Ledger
@@ -64,5 +66,5 @@ def read_inputs(paper: Paper) -> Inputs:
             check_syntax(text, entry.file or ledger.name, entry.line)
     for file in sorted(folder.iterdir(), key=lambda file: file.name):
         if file.name.endswith(".md") and file.name.startswith(_TEXTS):
-            check_syntax(file.read_text(encoding="utf-8"), display_name(file))
+            check_syntax(read_text(file, display_name(file), TemplateError), display_name(file))
     return Inputs(printed, ledger)

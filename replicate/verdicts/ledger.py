@@ -35,6 +35,7 @@ from replicate.errors import LedgerError
 from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import ALLOWED, parse_number
+from replicate.exhibits.plain_text import read_text, steering
 
 Cause = Literal[
     "misprint",
@@ -131,9 +132,9 @@ class Ledger:
         if not path.is_file():
             return cls(name)
         try:
-            text = path.read_text(encoding="utf-8")
+            text = read_text(path, name, LedgerError)
             data = tomllib.loads(text)
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        except tomllib.TOMLDecodeError as error:
             msg = f"{name}: is not readable TOML: {error}"
             raise LedgerError(msg) from error
         raw = data.pop("entry", [])
@@ -250,6 +251,9 @@ def _text(place: str, raw: dict[str, object], field: str, default: str | None = 
     if not isinstance(value, str) or (default is None and not value.strip()):
         extent = "" if default is not None else " that is not empty"
         msg = f"{place}: {field} = {value!r}; expected: a quoted string{extent}"
+        raise LedgerError(msg)
+    if found := steering(value):
+        msg = f"{place}: {field} holds the character {found}, which pages and terminals must not get"
         raise LedgerError(msg)
     return " ".join(value.split())
 
