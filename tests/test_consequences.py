@@ -10,7 +10,8 @@ from synthetic import frame, printed, results
 
 from replicate.display.addresses import anchor, pages_of
 from replicate.display.consequences import consequential, errors
-from replicate.exhibits import Finding
+from replicate.errors import PaperDefinitionError
+from replicate.exhibits import Finding, Table, bound, rank
 from replicate.exhibits.printed import PrintedValue
 from replicate.run.library import Library
 from replicate.verdicts.corrections import Correction, correction
@@ -98,3 +99,40 @@ def test_every_cell_of_a_paper_has_an_address_of_its_own() -> None:
         ]
         assert cells
         assert len(cells) == len(set(cells))
+
+
+def ranked(ax: str, entry: LedgerEntry, *, computed: float) -> VerdictRow:
+    """Judge the tiny paper, which says that A has the smaller x, with one print that does not hold."""
+    paper = synthetic.paper()
+    table = paper.exhibits["table-1"]
+    assert isinstance(table, Table)
+    rank(table, "x", ("A", "B"), "A has the smaller x")
+    bound(table, "x", ("A",), "A is stable", below=3.5)
+    run = results(frame(ax=computed), frame(ax=computed))
+    return judge(paper, run, Inputs(printed(ax=ax), Ledger("l", (entry,)))).verdicts[0]
+
+
+@pytest.mark.parametrize(
+    ("right", "consequence"),
+    [(2.4, "none"), (3.3, "comparison"), (3.6, "safety")],  # B prints 3.0, the bound is 3.5
+)
+def test_what_an_error_upsets_is_computed(right: float, consequence: str) -> None:
+    found = ranked("1.0", LedgerEntry("table-1", ("A",), ("x",), "misprint", "Why."), computed=right)
+    assert (found.verdict, found.consequence) == ("misprint", consequence)
+    assert ("the table does not show this" in found.explanation) == (consequence != "none")
+
+
+def test_a_worse_consequence_that_is_declared_stays() -> None:
+    entry = LedgerEntry("table-1", ("A",), ("x",), "misprint", "Why.", evidence="E.", consequence="formula")
+    assert ranked("1.0", entry, computed=3.3).consequence == "formula"
+
+
+def test_a_comparison_of_what_is_not_there_is_refused() -> None:
+    table = synthetic.paper().exhibits["table-1"]
+    assert isinstance(table, Table)
+    with pytest.raises(PaperDefinitionError, match="table-1: there is no cell in row 'C', column 'x' to compare"):
+        rank(table, "x", ("A", "C"), "C is larger")
+    with pytest.raises(PaperDefinitionError, match="two or more"):
+        rank(table, "x", ("A",), "A is larger")
+    with pytest.raises(PaperDefinitionError, match="a bound has no end"):
+        bound(table, "x", ("A",), "A is bounded")

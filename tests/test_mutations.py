@@ -20,8 +20,8 @@ from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
 
 ROOT = Path(__file__).parent.parent
-HOLDS = {"reproduced", "reconstructed", "near"}
-EXPLAINED = {"misprint", "discrepant", "unexplained", "not-computable"}
+HOLDS = {"reproduced", "consistent", "reconstructed", "near"}
+EXPLAINED = {"misprint", "damaged", "discrepant", "unexplained", "not-computable"}
 
 PAPERS = {paper.id: paper for paper in Library(bundled=True).papers()}
 

@@ -193,7 +193,7 @@ def test_every_printed_and_computed_value_stands_with_its_verdict(make: Make) ->
     rows = dict(re.findall(r'<td id="table-1[\w.-]+" class="judged ([a-z-]+)">([\d.]+)', text))
     # 0.9 as written; 0.9500 under the other reading; 3.41 a misprint; 7.0 unexplained
     assert rows == {"reproduced": "0.9", "reconstructed": "0.9500", "misprint": "3.41", "unexplained": "7.0"}
-    assert text.count('title="3.14"') == 1
+    assert text.count('title="3.14"') == 2  # under both readings
     assert "<del>3.41</del> <ins>3.14</ins>" in text
     assert "Digits are <em>swapped</em>: 3.14." in text
     assert "Padé models of order 1 to 4 were tried." in text
@@ -346,3 +346,17 @@ def test_text_has_the_contrast_of_wcag_aa(theme: int) -> None:
     assert {pair: ratio for pair, ratio in poor.items() if ratio < 4.5} == {}
     for word in words:  # graphical objects need 3 : 1
         assert _contrast(colours[f"{word}-bar"], colours["raised"]) >= 3
+
+
+def test_the_errata_page_has_print_right_value_and_a_text_for_the_authors(make: Make) -> None:
+    page = Page(make()["errata.html"])
+    assert "printed 3.41, we find 3.14." in " ".join(page.text.split())
+    assert "Dear authors" in page.text
+    assert "The margin is above 2.5." in page.text
+    assert "synthetic.html#table-1.ZN.Ti" in page.values("href")
+
+
+def test_the_first_screen_counts_consequential_errors(make: Make) -> None:
+    found = re.search(r"<li><b>(\d+)</b><span><a href=\"errata.html\">consequential", make()["index.html"])
+    assert found is not None
+    assert found[1] == "0"

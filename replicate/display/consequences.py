@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 
 from replicate.display.words import CONSEQUENCES
@@ -20,3 +21,12 @@ def errors(verdicts: Iterable[VerdictRow]) -> list[VerdictRow]:
 def consequential(verdicts: Iterable[VerdictRow]) -> list[VerdictRow]:
     """Return the errors from which something follows for what the paper says, worst first."""
     return [verdict for verdict in errors(verdicts) if verdict.consequence not in {"", "none"}]
+
+
+def counted(verdicts: Iterable[VerdictRow]) -> str:
+    """Return how many consequential errors of each kind there are, in words; empty if there is none.
+
+    Trivial errors are not in it: they never share a number with consequential ones.
+    """
+    counter = Counter[str](verdict.consequence for verdict in consequential(verdicts))
+    return ", ".join(f"{counter[id]} {word.name}" for id, word in CONSEQUENCES.items() if counter[id])

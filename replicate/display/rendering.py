@@ -10,7 +10,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from replicate.display import environment, numbers, scores, words
+from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.markdown import MarkdownBatch
 from replicate.display.safe_html import policy
@@ -57,6 +57,7 @@ def render(template: str, name: str, **context: Any) -> str:
         words=words,
         anchor=anchor,
         scores=scores,
+        consequences=consequences,
         numbers=numbers,
         versions=environment.versions(),
         style=Markup(_STYLE),  # noqa: S704 -- two marks, replaced below

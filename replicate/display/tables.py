@@ -200,10 +200,12 @@ def _texts(cell: Cell) -> list[str]:
 
 def _notes(verdicts: Iterable[VerdictRow]) -> list[tuple[Note, list[Key]]]:
     """Return the explanations of cells that do not hold, each once, numbered in the order of the table."""
-    groups: dict[tuple[str, str, str], list[VerdictRow]] = {}
+    groups: dict[tuple[str, str, str, str], list[VerdictRow]] = {}
     for verdict in verdicts:
         if verdict.verdict not in HOLDING and (verdict.explanation or verdict.verdict != "near"):
-            groups.setdefault((verdict.verdict, verdict.cause, verdict.explanation), []).append(verdict)
+            groups.setdefault((verdict.verdict, verdict.cause, verdict.consequence, verdict.explanation), []).append(
+                verdict
+            )
     notes = []
     for number, group in enumerate(groups.values(), 1):
         keys = [(verdict.row, verdict.column) for verdict in group]

@@ -1,6 +1,7 @@
 """How a paper describes itself: the words for its exhibits, its printed values, and what computing them gives."""
 
 from replicate.exhibits.claims import Claim, Claims, ClaimVerdict, Consequence, Finding
+from replicate.exhibits.comparisons import bound, rank
 from replicate.exhibits.drawn import Chart, Figure, FigureKind
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.notation import Notation
@@ -28,4 +29,6 @@ __all__ = [
     "Reading",
     "Table",
     "TableKind",
+    "bound",
+    "rank",
 ]

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
+from replicate.exhibits.comparisons import Comparison
 from replicate.exhibits.definitions import check_id, check_lists, check_mappings, check_one_of, check_texts
 from replicate.exhibits.drawn import Figure, FigureKind
 from replicate.exhibits.notation import PLAIN, Notation
@@ -71,6 +72,8 @@ class Table:
     cases
         Whether the rows or the columns are the cases for which the other keys, the quantities, are printed. Not
         given: the rows, or the column if there is just one.
+    comparisons
+        Rankings and bounds that the paper reads off its numbers (`replicate.exhibits.comparisons`).
     module
         The module in which it is defined; set by itself.
     """
@@ -92,6 +95,7 @@ class Table:
     points: Sequence[Point] = ()
     depends: tuple[str, ...] = ()
     cases: Literal["rows", "columns", ""] = ""
+    comparisons: list[Comparison] = field(default_factory=list)
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def __post_init__(self) -> None:

@@ -19,6 +19,7 @@ from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
 from replicate.report.errata import errata
+from replicate.report.errata_sheet import sheets
 from replicate.report.notes import Piece, pieces, place
 from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
@@ -27,6 +28,7 @@ from replicate.verdicts.rows import Judgement, VerdictRow
 
 INDEX = "index.html"
 METHODS = "methods.html"
+ERRATA = "errata.html"
 
 
 @dataclass(frozen=True)
@@ -113,6 +115,7 @@ def build_report(
     texts = {INDEX: render("index.html", INDEX, site=site, papers=papers, **shared)}
     if about.methods:
         texts[METHODS] = render("methods.html", METHODS, **shared)
+    texts[ERRATA] = render("errata.html", ERRATA, sheets=sheets(papers, judgement), **shared)
     for pages in site.values():
         for page in pages:
             texts[page.file] = render(

@@ -9,7 +9,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from replicate.display.words import CLAIM_VERDICTS, VERDICTS, Word
+from replicate.display import consequences
+from replicate.display.words import CLAIM_VERDICTS, CONSEQUENCES, VERDICTS, Word
 from replicate.run.outcome import Outcome
 from replicate.terminal.colours import colour
 
@@ -23,6 +24,8 @@ def print_summary(outcome: Outcome, console: Console) -> None:
         table.add_column(heading, justify="right")
     verdicts = [(row.paper, row.verdict) for row in outcome.judgement.verdicts]
     statuses = [(row.paper, row.status) for row in outcome.judgement.exhibits]
+    errors = [(row.paper, row.consequence or "none") for row in consequences.errors(outcome.judgement.verdicts)]
+    _section(table, papers, "errors by consequence", CONSEQUENCES, Counter(errors), total=False)
     _section(table, papers, "printed values", VERDICTS, Counter(verdicts))
     _section(table, papers, "claims", CLAIM_VERDICTS, Counter(verdicts))
     _section(table, papers, "exhibits", _STATUSES, Counter(statuses))
@@ -40,13 +43,19 @@ _STATUSES = {
 
 
 def _section(
-    table: Table, papers: list[str], title: str, words: Mapping[str, Word], counts: Counter[tuple[str, str]]
+    table: Table,
+    papers: list[str],
+    title: str,
+    words: Mapping[str, Word],
+    counts: Counter[tuple[str, str]],
+    *,
+    total: bool = True,
 ) -> None:
-    """Add a line with the total and one line for each word that occurs."""
+    """Add a line with the title and, if asked, the total, and one line for each word that occurs."""
     if table.row_count:
         table.add_row()
     per_paper = [sum(counts[paper, id] for id in words) for paper in papers]
-    table.add_row(Text(title, style="bold"), *_numbers(per_paper, "bold"))
+    table.add_row(Text(title, style="bold"), *(_numbers(per_paper, "bold") if total else ()))
     for id, word in words.items():
         numbers = [counts[paper, id] for paper in papers]
         if any(numbers):

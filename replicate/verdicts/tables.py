@@ -10,6 +10,7 @@ from replicate.exhibits.conventions import tallies
 from replicate.exhibits.matching import computed_text
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
+from replicate.verdicts.consequences import with_consequences
 from replicate.verdicts.corrections import correction
 from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
 from replicate.verdicts.matches import other_convention, reading_matches, share_points
@@ -71,6 +72,7 @@ class TableJudge:
             if entry:
                 explained.append((len(self.judgement.verdicts), entry))
             self.judgement.verdicts.append(verdict)
+        self.judgement.verdicts[:] = with_consequences(self.table, self.judgement.verdicts)
         return explained
 
     def _read(self, reading: str) -> None:

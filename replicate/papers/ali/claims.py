@@ -41,6 +41,7 @@ def true_peak(table: str, x: Fraction) -> float:
     "minimum-distance",
     "The design keeps the minimum distance of the Nyquist curve from $-1$ at the specified value.",
     where="abstract, section 1, section 4",
+    consequence="safety",
 )
 def minimum_distance() -> Finding:
     design = {x: design_loop(x, "printed").sensitivity_peak() for x in TABLE_1}

@@ -30,9 +30,7 @@ def _peak(structure: str, settings: str) -> float:
 
 
 @claims.claim(
-    "ti-from-11",
-    "The design takes $T_i$ from (11).",
-    where="section 2, step 4; section 3",
+    "ti-from-11", "The design takes $T_i$ from (11).", where="section 2, step 4; section 3", consequence="formula"
 )
 def ti_from_11() -> Finding:
     found = {}
@@ -59,6 +57,7 @@ def ti_from_11() -> Finding:
     "larger-overshoot-setpoint",
     "Example 1: the overshoot of the proposed method is larger than Padma Sree's for the set point.",
     where="section 3, Example 1",
+    consequence="comparison",
 )
 def larger_overshoot_setpoint() -> Finding:
     proposed = {structure: _peak(structure, "proposed") for structure in STRUCTURES}

@@ -31,6 +31,7 @@ from replicate.papers.ali.tuning import (
     "true-ms",
     "The printed $M_s$ is the true maximum sensitivity of the controller (2) with the obtained settings.",
     where="section 2, Tables 1 and 2",
+    consequence="safety",
 )
 def true_ms() -> Finding:
     deviations, equal = [], 0

@@ -40,6 +40,7 @@ def no_overshoot() -> Finding:
     "others-overshoot",
     "In Example 4.1 all rules except PA and ZN overshoot considerably.",
     where="Example 4.1, text above Table 2",
+    consequence="comparison",
 )
 def others_overshoot() -> Finding:
     text, authors = (column(EXAMPLE_41, which, "overshoot") for which in ("text", "authors"))
@@ -59,6 +60,7 @@ def others_overshoot() -> Finding:
     "settles-third",
     "In Example 4.1 the pole assignment settles third, after IAE and ITAE.",
     where="Example 4.1, text above Table 2",
+    consequence="comparison",
 )
 def settles_third() -> Finding:
     text, authors = (ascending(column(EXAMPLE_41, which, "settling_time")) for which in ("text", "authors"))

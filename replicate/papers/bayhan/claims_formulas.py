@@ -60,7 +60,7 @@ def eq_21_23() -> Finding:
     )
 
 
-@claims.claim("eq-24", "$c_1$ of (24) solves (14) = (20).", where="section III, (24)")
+@claims.claim("eq-24", "$c_1$ of (24) solves (14) = (20).", where="section III, (24)", consequence="formula")
 def eq_24() -> Finding:
     as_printed = sum(c1_as_printed(L, tau, a) != match_coefficients(K, L, tau, a).c1 for K, L, tau, a in GRID)
     restored = sum(assign(*point).c1 != match_coefficients(*point).c1 for point in GRID)
@@ -73,7 +73,7 @@ def eq_24() -> Finding:
     )
 
 
-@claims.claim("eq-20", "(20) is the expanded product $P_d(s)P_e(s)$.", where="section III, (20)")
+@claims.claim("eq-20", "(20) is the expanded product $P_d(s)P_e(s)$.", where="section III, (20)", consequence="formula")
 def eq_20() -> Finding:
     tau, a, low, high = Fraction(2), Fraction(3, 4), Fraction(5), Fraction(7)
     s = Fraction(3)

@@ -45,6 +45,7 @@ def _load_cost(criterion: Literal["ise", "itse"], k: float, ti: float) -> float:
     "itse-exponent",
     "The exponent in $T_i$ of the rule “ITSE for load disturbance” is $-0.586$.",
     where="Table 1",
+    consequence="formula",
 )
 def itse_exponent() -> Finding:
     symbols = {"K": 1.0, "tau": 1.0, "L": 0.5}

@@ -1,5 +1,6 @@
 """Table 3: time-domain specifications for Example 4.2, the rules that the paper found stable."""
 
+from replicate.exhibits import rank
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.processes import EXAMPLE_42, SPECIFICATIONS
 from replicate.papers.bayhan.readings import LABELS, add_readings
@@ -17,3 +18,6 @@ table_3 = paper.table(
     significant_digits=6,
 )
 add_readings(table_3, EXAMPLE_42)
+
+for _column, _says in (("settling_time", "which rule settles first"), ("overshoot", "which rule overshoots least")):
+    rank(table_3, _column, table_3.rows, f"the ranking by {_column.replace('_', ' ')}: {_says}")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from replicate.exhibits import Table
+from replicate.exhibits import Table, rank
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, loop, specifications
 
@@ -47,6 +47,12 @@ table_2 = paper.table(
     },
     units={f"ph{ph}_{key}": unit for ph in ("1", "0.1") for key, unit in (("Mp", "%"), ("ts", "s"), ("td", "s"))},
 )
+
+# The paper compares the rules by these columns.
+for _table in (table_1, table_2):
+    for _column in _table.columns:
+        _symbol = _table.labels[_column]
+        rank(_table, _column, _table.rows, f"the ranking of the rules by {_symbol}")
 
 
 def as_written(rule: str, h: float) -> tuple[float, float, float, float]:

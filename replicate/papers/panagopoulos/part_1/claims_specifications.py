@@ -159,7 +159,10 @@ def mp_parameter() -> Finding:
 
 
 @claims.claim(
-    "eq-7", "The circle (7) contains the $M_s$ and the $M_p$ circle.", where="section 2.2, (7), and the errata"
+    "eq-7",
+    "The circle (7) contains the $M_s$ and the $M_p$ circle.",
+    where="section 2.2, (7), and the errata",
+    consequence="formula",
 )
 def eq_7() -> Finding:
     ms, mp = PAIRS["Ms=2.0 Mp=1.5"]

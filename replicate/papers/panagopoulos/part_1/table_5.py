@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING
 
+from replicate.exhibits import rank
 from replicate.loops import PI, Loop, Signal
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design, weight
@@ -35,6 +36,11 @@ table_5 = paper.table(
     labels={row: f"{label(plant)}, {METHOD_NAMES[method]}" for row, (plant, method) in ROWS.items()},
     units={"o": "%"},
 )
+
+for _plant in ("G1", "G2", "G3"):
+    for _column in ("Ms", "IAE", "o", "ts", "Mp"):
+        _methods = [f"{_plant} {_method}" for _method in METHOD_NAMES]
+        rank(table_5, _column, _methods, f"the ranking of the three methods by {COLUMNS[_column]} for {label(_plant)}")
 
 
 def text_controller(plant: str, method: str) -> PI:

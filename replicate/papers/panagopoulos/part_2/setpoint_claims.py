@@ -22,7 +22,9 @@ from replicate.papers.panagopoulos.part_2.setpoint import (
 from replicate.papers.panagopoulos.part_2.setpoint_formulas import weight_peak
 
 
-@claims.claim("eq-15-ensures-14", "(15) ensures (14) at all frequencies.", where="IIs, (14), (15)")
+@claims.claim(
+    "eq-15-ensures-14", "(15) ensures (14) at all frequencies.", where="IIs, (14), (15)", consequence="formula"
+)
 def eq_15() -> Finding:
     peaks = {row: weight_peak(optimal(row), weight_limit(optimal(row))) for row in ROWS}
     above = sum(value > 1.0 + 1e-9 for value in peaks.values())
@@ -35,7 +37,12 @@ def eq_15() -> Finding:
     )
 
 
-@claims.claim("eq-16-gives-one", "$T_{sp}$ of (16) gives $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.", where="IIs, (16)")
+@claims.claim(
+    "eq-16-gives-one",
+    "$T_{sp}$ of (16) gives $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.",
+    where="IIs, (16)",
+    consequence="formula",
+)
 def eq_16() -> Finding:
     gains, right = [], []
     for row in ROWS:

@@ -69,6 +69,7 @@ def envelope() -> Finding:
     "The two controllers of the example satisfy $M_s = 1.4$.",
     where="IIs, section 1",
     printed="1.4",
+    consequence="safety",
 )
 def example_ms() -> Finding:
     found = {key: float(Loop(G4, c).sensitivity_peak()) for key, c in CONTROLLERS.items()}

@@ -219,6 +219,7 @@ def sqrt_10() -> Finding:
     "guarantee-peaks",
     "A controller that satisfies $M_p < M_0$ and $M_s < M_0$ guarantees $\\gamma \\le \\gamma(M_0)$.",
     where="section 4, below the $\\nu$-gap",
+    consequence="safety",
 )
 def guarantee_peaks() -> Finding:
     # the point where both circles meet: |L| = 1 and |1 + L| = 1/M

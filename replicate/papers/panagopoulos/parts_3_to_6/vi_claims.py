@@ -128,7 +128,9 @@ def half() -> Finding:
     )
 
 
-@claims.claim("fb-at-resonance", "$|F_b(i\\omega_p)| = K_b/2\\zeta_b = 1/P_{max}$.", where="above (8)")
+@claims.claim(
+    "fb-at-resonance", "$|F_b(i\\omega_p)| = K_b/2\\zeta_b = 1/P_{max}$.", where="above (8)", consequence="formula"
+)
 def fb_at_resonance() -> Finding:
     gain = EXAMPLE.band_gain(1.0)
     value = gain / (2.0 * ZETA_B)

@@ -1,0 +1,99 @@
+"""The errata of every paper for one page: print, right value, evidence, consequence, and a text for the authors."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from replicate.display import numbers
+from replicate.display.addresses import address, pages_of
+from replicate.display.consequences import errors
+from replicate.display.labels import heading
+from replicate.exhibits import Claims, Paper
+from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
+
+_TOLD = frozenset({"misprint", "damaged", "fails"})  # to the authors, besides all that has a consequence
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """Errors of one exhibit with one explanation.
+
+    Attributes
+    ----------
+    rows
+        The verdicts; the first speaks for all in what they share.
+    exhibit
+        What the exhibit is called.
+    claim
+        The sentence of the paper, for a claim.
+    address
+        Where the first of them stands in the report.
+    labels
+        Display texts of row and column keys.
+    """
+
+    rows: list[VerdictRow]
+    exhibit: str
+    claim: str
+    address: str
+    labels: dict[str, str]
+
+    @property
+    def first(self) -> VerdictRow:
+        """The verdict that speaks for all."""
+        return self.rows[0]
+
+    @property
+    def told(self) -> bool:
+        """Whether the authors should hear of it."""
+        return self.first.verdict in _TOLD or self.first.consequence not in {"", "none"}
+
+    @staticmethod
+    def right(row: VerdictRow) -> str:
+        """Return the right value of a cell as text: the corrected one, or what the deciding reading gives."""
+        number = next((one.number for one in row.values if one.reading == row.reading), None)
+        return row.corrected or numbers.shown(number, row.value)
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The errata of one paper, worst first."""
+
+    paper: Paper
+    errata: list[Erratum]
+
+    @property
+    def told(self) -> list[Erratum]:
+        """What the text for the authors lists."""
+        return [erratum for erratum in self.errata if erratum.told]
+
+
+def sheets(papers: Sequence[Paper], judgement: Judgement) -> list[Sheet]:
+    """Return the errata of every paper.
+
+    Parameters
+    ----------
+    papers
+        Loaded papers, in the order of the report.
+    judgement
+        Of all of them together.
+    """
+    return [Sheet(paper, _errata(paper, judgement)) for paper in papers]
+
+
+def _errata(paper: Paper, judgement: Judgement) -> list[Erratum]:
+    pages = pages_of(paper)
+    groups: dict[tuple[str, ...], list[VerdictRow]] = {}
+    for row in errors(verdict for verdict in judgement.verdicts if verdict.paper == paper.id):
+        own = row.row if row.column == CLAIM_COLUMN else ""
+        groups.setdefault((row.exhibit, own, row.consequence, row.verdict, row.cause, row.explanation), []).append(row)
+    found = []
+    for rows in groups.values():
+        row = rows[0]
+        exhibit = paper.exhibits[row.exhibit]
+        claim = exhibit.claims[row.row].text if isinstance(exhibit, Claims) else ""
+        label, title = heading(row.exhibit, exhibit.title)
+        place = address(pages[row.exhibit], row.exhibit, row.row, row.column)
+        found.append(Erratum(rows, label or title, claim, place, getattr(exhibit, "labels", {})))
+    return found
