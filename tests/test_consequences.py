@@ -119,7 +119,7 @@ def ranked(ax: str, entry: LedgerEntry, *, computed: float) -> VerdictRow:
 def test_what_an_error_upsets_is_computed(right: float, consequence: str) -> None:
     found = ranked("1.0", LedgerEntry("table-1", ("A",), ("x",), "misprint", "Why."), computed=right)
     assert (found.verdict, found.consequence) == ("misprint", consequence)
-    assert ("the table does not show this" in found.explanation) == (consequence != "none")
+    assert ("this does not follow from the table" in found.explanation) == (consequence != "none")
 
 
 def test_a_worse_consequence_that_is_declared_stays() -> None:
