@@ -43,8 +43,10 @@ accept: $(VENV)/.ready ## make the present state the accepted one: make accept R
 	$(BIN)/replicate accept $(ONLY) --reason "$$REASON"
 
 .PHONY: drift
-drift: build/drift/.ready ## the same comparison under an older matplotlib and other BLAS kernels: no alarm
+drift: $(VENV)/.ready build/drift/.ready ## papers and gallery under an older matplotlib and other BLAS kernels: no alarm
 	@build/drift/bin/python -c 'import matplotlib; print("matplotlib", matplotlib.__version__, "and kernels for", "$(DRIFT_CORE)")'
+	$(BIN)/python tests/gallery_drift.py write build/drift/gallery
+	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/python tests/gallery_drift.py compare build/drift/gallery
 	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/replicate diff $(ONLY) --out build/drift/run
 
 .PHONY: torture

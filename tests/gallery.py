@@ -194,6 +194,7 @@ def events(axes: Any) -> None:
 
 @figure
 def event_collection(axes: Any) -> None:
+    axes.set(xlim=(0, 1), ylim=(0, 1))
     axes.add_collection(EventCollection([0.2, 0.5, 0.9], linelength=0.1))
 
 
@@ -204,11 +205,13 @@ def hexbin(axes: Any) -> None:
 
 @figure
 def circle_collection(axes: Any) -> None:
+    axes.set(xlim=(0, 1), ylim=(0, 1))
     axes.add_collection(CircleCollection([50, 100], offsets=[(0.2, 0.3), (0.6, 0.7)], offset_transform=axes.transData))
 
 
 @figure
 def ellipse_collection(axes: Any) -> None:
+    axes.set(xlim=(0, 1), ylim=(0, 1))
     places = [(0.2, 0.3), (0.6, 0.7)]
     axes.add_collection(
         EllipseCollection([0.1, 0.2], 0.1, [0, 45], units="x", offsets=places, offset_transform=axes.transData)
@@ -217,6 +220,7 @@ def ellipse_collection(axes: Any) -> None:
 
 @figure
 def polygon_collection(axes: Any) -> None:
+    axes.set(xlim=(0, 1), ylim=(0, 1))
     places = [(0.2, 0.3), (0.6, 0.7)]
     axes.add_collection(RegularPolyCollection(5, sizes=(80,), offsets=places, offset_transform=axes.transData))
 
@@ -448,6 +452,7 @@ def own_path(axes: Any) -> None:
 
 @figure
 def patch_collection(axes: Any) -> None:
+    axes.set(xlim=(0, 1), ylim=(0, 1))
     collection = PatchCollection([Circle((x, y), 0.05) for x, y in FEW[:2].T[:10]])
     collection.set_array(FEW[2, :10])
     axes.add_collection(collection)
@@ -641,7 +646,7 @@ def globe(fig: Figure) -> None:
 def solid_lines(fig: Figure) -> None:
     axes: Any = fig.add_subplot(projection="3d")
     axes.plot(np.cos(T), np.sin(T), T, label="helix")
-    axes.scatter([0, 1], [0, 1], [5, 8])
+    axes.scatter([0, 1], [0, 1], [5, 8], depthshade=False)
     axes.text(0, 0, 5, "here")
     axes.set(xlabel="x", zlabel="height")
 

@@ -114,13 +114,13 @@ def test_the_first_version_is_read() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "is no JSON"),
+        ("", "is not valid JSON"),
         ("{}", "is no record of a figure"),
         ('{"format": "figure record", "version": 3}', "was written by a newer version: its format is 3"),
-        ('{"format": "figure record", "version": 2, "figure": {}, "panels": {}}', "needed: a list of objects"),
+        ('{"format": "figure record", "version": 2, "figure": {}, "panels": {}}', "expected: a list of objects"),
         ('{"format": "figure record", "version": 2, "figure": [], "panels": []}', "'figure' must be an object"),
         ('{"format": "figure record", "version": 2, "figure": {"parts": [1]}, "panels": []}', "parts of the figure"),
-        ("[" * 100_000, "is no JSON"),
+        ("[" * 100_000, "is not valid JSON"),
     ],
 )
 def test_damage_is_said_in_one_line(text: str, said: str) -> None:

@@ -6,9 +6,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from replicate.errors import FigureError
-from replicate.figures.describe import said_titles
+from replicate.figures.describe import said_texts, said_titles
 from replicate.figures.drawing import recorded
 from replicate.figures.fields import read_field
 from replicate.figures.marks import Box, marks_of
@@ -20,7 +21,7 @@ from replicate.figures.recorder import Drawn
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
     from replicate.figures.polylines import Points
 
@@ -30,9 +31,9 @@ _TITLES = {"title": "title", "_left_title": "left title", "_right_title": "right
 
 def record_of(figure: Figure) -> Record:
     """Return the record of a figure; `replicate.figures.capture` says more."""
-    root = figure.get_figure(root=True) if hasattr(figure, "get_figure") else None
-    if root is not figure or not hasattr(figure, "savefig"):
-        msg = f"a matplotlib figure is needed, not {type(figure).__name__}"
+    given: object = figure
+    if not isinstance(given, Figure):
+        msg = f"a matplotlib figure is needed, not {type(given).__name__}"
         raise FigureError(msg)
     # After `tight_layout()` was called, places follow the sizes of texts.
     engine = type(figure.get_layout_engine()).__name__
@@ -105,8 +106,13 @@ def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer) -> None:
 
 
 def _described_texts(axes: Axes) -> dict[int, str]:
-    names = {id(text): f"text '{_one_line(text.get_text())}'" for text in axes.texts}
+    names = {id(text): f"text '{_one_line(text.get_text())}'" for text in (*said_texts(axes), *_empty_texts(axes))}
     return names | {id(getattr(axes, name)): words for name, words in _TITLES.items() if hasattr(axes, name)}
+
+
+def _empty_texts(axes: Axes) -> list[Text]:
+    """Return texts that say nothing; an arrow may belong to one."""
+    return [text for text in axes.texts if not text.get_text()]
 
 
 def _one_line(text: str) -> str:
@@ -122,26 +128,41 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
     properties = dict(part.properties) | _placed_by_hand(part)
     if properties:
         entry["properties"] = properties
-    field = read_field(part.owner)
+    field = read_field(part.owner) or next(
+        (read_field(call.artists[-1]) for call in part.drawn if call.kind == "image" and call.artists), {}
+    )
     if field:
         entry["field"] = field
-    marks = marks_of(part.drawn, box, where=part.placed or part.told)
-    for mark in marks if field else ():  # its colours follow from its values
-        for name in ("image", "face", *(("at",) if "extent" in field else ()), *_edges(mark)):
-            mark.pop(name, None)
-    if part.told:  # what it says, and where, is compared by name
-        lines = any(mark["draws"] == "path" for mark in marks)
+    entry["marks"] = marks = marks_of(part.drawn, box, where=part.placed or part.told)
+    if field:
+        _leave_colours_to(field, marks)
+    if part.told:
+        _leave_place_to_name(part, marks)
+    if not part.turned:
         for mark in marks:
-            mark.pop("texts", None)
-            mark.pop("outline", None)
-            if not (lines and mark["draws"] == "markers"):  # which points of a line are marked is not
-                mark.pop("places", None)
-            if not part.placed:
-                mark.pop("at", None)
+            mark.pop("angle", None)
     if part.name.startswith(("tick labels of the x", "tick labels of the y", "minor tick labels")):
         _along_the_axis(marks, part)
-    entry["marks"] = marks
     return entry
+
+
+def _leave_colours_to(field: dict[str, Any], marks: list[dict[str, Any]]) -> None:
+    """Leave out what follows from the values that are shown in colours."""
+    for mark in marks:
+        for name in ("image", "face", *(("at",) if "extent" in field else ()), *_edges(mark)):
+            mark.pop(name, None)
+
+
+def _leave_place_to_name(part: Part, marks: list[dict[str, Any]]) -> None:
+    """Leave out what a curve or a text says, and where, which is compared by its name."""
+    lines = any(mark["draws"] == "path" for mark in marks)
+    for mark in marks:
+        mark.pop("texts", None)
+        mark.pop("outline", None)
+        if not (lines and mark["draws"] == "markers"):  # which points of a line are marked is not
+            mark.pop("places", None)
+        if not part.placed:
+            mark.pop("at", None)
 
 
 def _along_the_axis(marks: list[dict[str, Any]], part: Part) -> None:

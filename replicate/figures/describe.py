@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from matplotlib.category import StrCategoryConverter
+from matplotlib.contour import ContourSet
 from matplotlib.dates import DateConverter, _SwitchableDateConverter
 from matplotlib.projections.polar import PolarAxes
 
@@ -44,7 +45,7 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         "xlim": [number(limit) for limit in axes.get_xlim()],
         "ylim": [number(limit) for limit in axes.get_ylim()],
         "legend": [text.get_text() for text in legend.get_texts()] if legend and legend.get_visible() else [],
-        "texts": [_text(text, axes) for text in axes.texts if text.get_text() and text.get_visible()],
+        "texts": [_text(text, axes) for text in said_texts(axes) if text.get_visible()],
     }
     if len(said) > 1:
         found["titles"] = [axes.get_title(loc=side) for side in _SIDES]
@@ -69,6 +70,13 @@ def said_titles(axes: Axes) -> list[str]:
     if not hasattr(axes, "get_title"):
         return []
     return [title for side in ("center", "left", "right") if (title := axes.get_title(loc=side))]
+
+
+def said_texts(axes: Axes) -> list[Any]:
+    """Return the texts of axes, without the labels of contours: where these are follows from their width."""
+    sets = (artist for artist in axes.collections if isinstance(artist, ContourSet))
+    labels = {id(text) for artist in sets for text in getattr(artist, "labelTexts", ())}
+    return [text for text in axes.texts if text.get_text() and id(text) not in labels]
 
 
 def number(value: Any) -> Any:

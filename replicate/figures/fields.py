@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import Collection, QuadMesh
 from matplotlib.contour import ContourSet
-from matplotlib.image import AxesImage
+from matplotlib.image import AxesImage, _ImageBase
 
 from replicate.figures.digests import Array, rounded, sign_sums
 
@@ -28,7 +28,7 @@ def read_field(artist: Any) -> dict[str, Any]:
         blocks with ``rows`` and ``columns`` of blocks, all as fractions of the range of the colours; ``signs``, the
         sums of all under fixed signs.
     """
-    if not isinstance(artist, AxesImage | Collection) or isinstance(artist, ContourSet):
+    if not isinstance(artist, _ImageBase | Collection) or isinstance(artist, ContourSet):
         return {}
     array = artist.get_array()
     if array is None:
@@ -39,6 +39,7 @@ def read_field(artist: Any) -> dict[str, Any]:
         found["alpha"] = float(f"{artist.get_alpha():.4g}")
     if isinstance(artist, AxesImage):
         found["extent"] = [float(f"{float(end):.9g}") for end in artist.get_extent()]
+    if isinstance(artist, _ImageBase):
         found["interpolation"] = str(artist.get_interpolation()).replace("antialiased", "auto")  # its name until 3.9
         found["origin"] = str(artist.origin)
     if values.ndim == 3 and not isinstance(artist, QuadMesh):  # colours, not values

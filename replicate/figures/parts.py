@@ -61,6 +61,8 @@ class Part:
         Whether where it is drawn is compared here, and not as data or by what it follows.
     loose
         Whether its place follows the size of texts.
+    turned
+        Whether its angle is compared.
     properties
         What else can be said of it.
     """
@@ -71,6 +73,7 @@ class Part:
     told: bool = False
     placed: bool = True
     loose: bool = False
+    turned: bool = True
     properties: dict[str, Any] = field(default_factory=dict)
     drawn: list[Drawn] = field(default_factory=list)
 
@@ -171,6 +174,8 @@ class Namer:
                 )
             style = {"style": type(box.get_boxstyle()).__name__}
             return Part(f"box of {name}", box, loose=True, properties=style)
+        if not told and text in getattr(self.owner, "texts", ()):  # of a contour: width and font decide where it is
+            return Part(f"label '{_shortened(text.get_text())}'", text, placed=False, turned=False)
         return Part(name, text, told=told, placed=not told or self.placed)
 
 

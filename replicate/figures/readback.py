@@ -43,6 +43,8 @@ CHORDS = 64
 
 _DIGITS = 9
 _FINE = 1e-8
+# A label of a contour is not wider than this.
+_LABEL = 0.2
 # A curve that is longer than this, in axes, cannot be drawn with so few points; one that is drawn this well can.
 _LONG, _COARSE = 60.0, 3e-4
 _ALONG = np.linspace(0.0, 1.0, CHORDS + 1)[1:]
@@ -199,6 +201,7 @@ def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Cur
         loose = {"loose": True} if getattr(collection, "labelTexts", ()) else {}
         for level, path in zip(collection.levels, collection.get_paths(), strict=False):
             points = _to_data(_of_path(path), collection.get_transform(), axes)
+            points = _bridged(points, axes) if loose else points
             curve = _thinned_curve(collection, f"{base} {level:.{_DIGITS}g}", kind, points, axes)
             yield replace(curve, special={**curve.special, **loose})
     elif isinstance(collection, PathCollection):  # a scatter plot: the offsets are the data
@@ -219,6 +222,27 @@ def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Cur
 # Filled areas; matplotlib derives arrows, barbs and much more from polygons, which are no areas.
 # `fill_between` has a class of its own since matplotlib 3.10.
 _OUTLINED = {"PolyCollection", "FillBetweenPolyCollection"}
+
+
+def _bridged(points: Points, axes: Axes) -> Points:
+    """Close the gaps that labels cut into contours: how wide they are, and where, the width of the labels decides."""
+    units = _in_axes_units(points, axes)
+    pieces: list[Points] = []
+    breaks = np.flatnonzero(~finite(units))
+    for run in np.split(np.arange(len(points)), breaks):
+        inside = run[finite(units[run])]
+        if not len(inside):
+            continue
+        piece = points[inside]
+        first, last = units[inside[0]], units[inside[-1]]
+        if len(inside) > 2 and np.hypot(*(last - first)) < _LABEL:
+            piece = np.vstack([piece, piece[:1]])
+        near = pieces and np.hypot(*(first - _in_axes_units(pieces[-1][-1:], axes)[0])) < _LABEL
+        if near:
+            pieces[-1] = np.vstack([pieces[-1], piece])
+        else:
+            pieces.append(piece)
+    return joined(pieces)
 
 
 def _shape(patch: Patch, axes: Axes) -> tuple[Points, float]:
