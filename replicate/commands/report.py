@@ -41,6 +41,8 @@ def report(
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
+    from replicate.whatif import NAME as WHATIF
+    from replicate.whatif import rows_of, whatif_page
 
     within = library(papers_dir, bundled)
     folder = output_folder(within, out)
@@ -51,6 +53,10 @@ def report(
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         index = folder / "report" / pages[0].name
+        rows = rows_of(outcome.papers)
+        if rows:
+            page = whatif_page(rows, back="index.html")
+            (fresh / "report" / WHATIF).write_bytes(page.encode())
     print_summary(outcome, console())
     echo(f"\nreport: {index}")
     exit_with(within, outcome)

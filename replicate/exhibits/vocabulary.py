@@ -76,6 +76,8 @@ class Table:
         Rankings and bounds that the paper reads off its numbers (`replicate.exhibits.comparisons`).
     module
         The module in which it is defined; set by itself.
+    trials
+        Returns what a reader may try out, by row: two texts, plant and controller.
     """
 
     id: str
@@ -96,6 +98,7 @@ class Table:
     depends: tuple[str, ...] = ()
     cases: Literal["rows", "columns", ""] = ""
     comparisons: list[Comparison] = field(default_factory=list)
+    trials: Callable[[], Mapping[str, tuple[str, str]]] | None = None
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def __post_init__(self) -> None:

@@ -1,0 +1,68 @@
+"""Put the page together: one file that opens from the file system and fetches nothing."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from markupsafe import Markup
+
+import replicate
+from replicate.display.rendering import html_environment
+from replicate.display.safe_html import policy
+from replicate.resources import templates_dir
+from replicate.whatif.reference import markers, reference
+from replicate.whatif.rows import Row
+from replicate.whatif.still import still
+
+NAME = "whatif.html"
+
+#: Constants of the browser's kernel: degree of a piece, pieces at most, and fastest pole times length of a piece.
+CONSTANTS = {"nodes": 24, "mostPieces": 40000, "decayPerPiece": 8}
+
+_SCRIPTS = ("kernel.js", "notation.js", "plane.js", "page.js")
+
+
+def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") -> str:
+    """Return the page.
+
+    Parameters
+    ----------
+    rows
+        Loops to choose from, at least one; the page opens with the first.
+    back
+        Address of the overview, if the page belongs to a report.
+
+    Raises
+    ------
+    LoopError
+        If a plant or controller is not understood; the message names the column.
+    """
+    folder = templates_dir() / "whatif"
+    style, *scripts = (folder.joinpath(name).read_text(encoding="utf-8") for name in ("whatif.css", *_SCRIPTS))
+    script = f"const CONSTANTS = {json.dumps(CONSTANTS)};\n" + "\n".join(scripts)
+    data = {"rows": [asdict(row) for row in rows], "markers": markers(rows), "reference": reference()}
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
+    drawing = still(rows[0])
+    styles = [style, *_style_elements(drawing)]
+    return (
+        html_environment()
+        .get_template(f"whatif/{NAME}")
+        .render(
+            title=title,
+            back=back,
+            rows=rows,
+            policy=policy(styles, [script]),
+            style=Markup(style),  # noqa: S704 -- the project's own
+            script=Markup(script),  # noqa: S704
+            data=Markup(text),  # noqa: S704 -- JSON without "<"
+            still=Markup(drawing),  # noqa: S704 -- drawn here; its texts are escaped
+            version=replicate.__version__,
+        )
+    )
+
+
+def _style_elements(svg: str) -> list[str]:
+    """Return the texts of the style elements inside a drawing."""
+    return [part.partition(">")[2].partition("</style>")[0] for part in svg.split("<style")[1:]]
