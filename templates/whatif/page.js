@@ -84,7 +84,7 @@
 
   // When a load has been worked off, but for a thirtieth of its largest effect.
   function quietAfter(response, final) {
-    const largest = Math.max(...response.output.map((y) => Math.abs(y - final))), step = Kernel.NODES + 1;
+    const largest = response.output.reduce((most, y) => Math.max(most, Math.abs(y - final)), 0), step = Kernel.NODES + 1;
     let piece = response.pieces - 1;
     while (piece > 0 && response.output.slice(piece * step, (piece + 1) * step).every((y) => Math.abs(y - final) < largest / 30)) piece--;
     return (piece + 1) * response.h;
@@ -147,13 +147,14 @@
     const map = Plane.map(plant, controller, plane, box);
     const view = diagram(svg, box, { width: 460, height: 380, x: "proportional gain k (curves: Ms)", y: plane === "ki" ? "integral gain ki" : "derivative gain kd" });
     element("path", { class: "stable", d: Plane.region(map, plant, controller, plane).map((polygon) => path(polygon, view) + "Z").join("") }, view.inside);
+    let named = -Infinity;
     for (const level of LEVELS) {
       const segments = Plane.contour(map, Math.log(level));
       if (!segments.length) continue;
       element("path", { class: "level", d: segments.map((segment) => path(segment, view)).join("") }, view.inside);
       const foot = segments.flat().filter(([, y]) => y < box.bottom + 0.04 * (box.top - box.bottom));
       const [x, y] = (foot.length ? foot : segments.flat()).reduce((best, point) => (point[0] > best[0] ? point : best));
-      element("text", { class: "level-name", x: view.px(x) + 3, y: view.py(y) - 3 }, view.inside, String(level));
+      if (view.px(x) > named + 22) { named = view.px(x); element("text", { class: "level-name", x: named + 3, y: view.py(y) - 3 }, view.inside, String(level)); }
     }
     const border = [], corners = [...plant.poles, ...plant.zeros].map(([re, im]) => Math.hypot(re, im)).filter((size) => size > 0).concat(plant.deadTime ? [1 / plant.deadTime] : []);
     for (let w = Math.min(...corners, 1) / 1e3; w < Math.max(...corners, 1) * 40; w *= 1.01) border.push(Kernel.boundary(plant, controller, plane, w));
@@ -261,7 +262,7 @@
   function drawTable() {
     const columns = [["now", state.controller, state.last], ...state.pins.map((pin, i) => [PINS[i], pin.controller, pin.measured])];
     const head = document.createElement("tr");
-    head.append(cell("th", "", { scope: "col" }));
+    head.append(cell("th", "metric", { scope: "col" }));
     for (const [name, controller] of columns) {
       const made = cell("th", "", { scope: "col", class: name });
       made.append(name === "now" ? "now" : `pinned ${name}`, document.createElement("br"));
