@@ -148,6 +148,22 @@ def test_a_file_that_is_gone_makes_results_stale(site: Path, tmp_path: Path) -> 
     assert why(tmp_path / "cache", TABLE_2) == {}, "the entry of the earlier state is still there"
 
 
+def test_a_result_of_a_file_that_is_edited_meanwhile_is_not_kept(site: Path, tmp_path: Path) -> None:
+    """What was loaded is the file as it was before; its digest would be that of the file as it is now."""
+    edit = f"open({str(site / 'lab_lazy.py')!r}, 'a').write('VALUE = 20\\n')"
+    with (site / "lab_paper" / "exhibits.py").open("a", encoding="utf-8") as file:
+        file.write(
+            "\n\n@more.reading('edits', 'Edits')\ndef _edits():\n    import time, lab_lazy\n"
+            f"    time.sleep(0.1)\n    {edit}\n    return pd.DataFrame({{'x': [lab_lazy.VALUE]}}, index=['a'])\n"
+        )
+    assert "lab/table-2 (edits)" in why(tmp_path / "cache", TABLE_2)
+    (site / "lab_lazy.py").write_text("VALUE = 20\n")
+    results = run([fresh()], TABLE_2, jobs=1, cache_dir=tmp_path / "cache")
+    table = results["lab", "table-2"]
+    assert isinstance(table, TableResult)
+    assert table.frames["edits"].iloc[0, 0] == 20
+
+
 def test_the_same_module_elsewhere_is_another_module(
     site: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

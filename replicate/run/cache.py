@@ -63,7 +63,7 @@ class Cache:
 
     def put(self, unit: Unit, result: Result, dependencies: Dependencies) -> None:
         """Keep a result. A full disk or a read-only folder costs the next run time, nothing else."""
-        if self.folder is None:
+        if self.folder is None or not dependencies:
             return
         rest = f"{json.dumps(dependencies)}\n{to_text(result)}\n".encode()
         digest = hashlib.sha256(rest).hexdigest()

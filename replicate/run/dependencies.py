@@ -35,12 +35,20 @@ _PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)|handout\.py")
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 _ROOT = __name__.split(".")[0]
 _GONE = "missing"
+_LENGTH = 24  # of a digest; 96 bits
 
 
 class Looked:
-    """Looks at what is there now, each thing once: results of one run share nearly everything."""
+    """Looks at what is there now, each thing once: results of one run share nearly everything.
+
+    Attributes
+    ----------
+    newest
+        When the newest of the files that were looked at was written, in seconds.
+    """
 
     def __init__(self) -> None:
+        self.newest = 0.0
         self._folders: dict[tuple[str, str], dict[str, str]] = {}
         self._modules: dict[str, str] = {}
         self._versions: dict[str, str] = {}
@@ -85,7 +93,7 @@ class Looked:
             "paper": self._folder("paper", paper.package, paper.folder()),
             "distribution": {name: self._version(name) for name in recorded["distribution"]},
             "module": {name: self._module(name) for name in recorded["module"]},
-            "data": {name: _digest_of_data(paper, name) for name in recorded["data"]},
+            "data": {name: self._data(paper, name) for name in recorded["data"]},
         }
 
     def difference(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> str:
@@ -106,7 +114,7 @@ class Looked:
     def _folder(self, kind: str, name: str, place: Traversable) -> dict[str, str]:
         key = (kind, name)
         if key not in self._folders:
-            self._folders[key] = dict(_contents(place, name if kind == "room" else ""))
+            self._folders[key] = dict(self._contents(place, name if kind == "room" else ""))
         return self._folders[key]
 
     def _version(self, distribution: str) -> str:
@@ -120,8 +128,32 @@ class Looked:
     def _module(self, name: str) -> str:
         if name not in self._modules:
             path = file_of(name)
-            self._modules[name] = _digest(path.read_bytes()) if path is not None and path.is_file() else _GONE
+            self._modules[name] = self._digest(path) if path is not None and path.is_file() else _GONE
         return self._modules[name]
+
+    def _data(self, paper: Paper, name: str) -> str:
+        """Return the digest of a data file, or of all files in a folder of data."""
+        place = Path(str(paper.folder())) / name
+        try:
+            if not place.exists():
+                return _GONE
+            return hashlib.sha256(repr(list(self._contents(place, place.name))).encode()).hexdigest()[:_LENGTH]
+        except OSError as error:
+            return f"cannot be read: {error.strerror}"
+
+    def _contents(self, place: Traversable, name: str) -> Iterator[tuple[str, str]]:
+        """Yield name and digest of a file, or of every file in a folder in alphabetical order."""
+        if place.is_dir():
+            for entry in sorted(place.iterdir(), key=lambda entry: entry.name):
+                if entry.name != "__pycache__" and not entry.name.startswith(".") and not _PROSE.fullmatch(entry.name):
+                    yield from self._contents(entry, f"{name}/{entry.name}".lstrip("/"))
+        elif place.is_file():
+            yield name, self._digest(place)
+
+    def _digest(self, file: Traversable) -> str:
+        if isinstance(file, Path):
+            self.newest = max(self.newest, file.stat().st_mtime)
+        return hashlib.sha256(file.read_bytes()).hexdigest()[:_LENGTH]
 
 
 def _is_own(paper: Paper, module: str) -> bool:
@@ -140,26 +172,3 @@ def _said(group: str, name: str, before: str | None, now: str | None, paper: Pap
     if before is None:
         return f"{where} is new"
     return f"{where} {'is gone' if now in {None, _GONE} else 'has changed'}"
-
-
-def _contents(place: Traversable, name: str) -> Iterator[tuple[str, str]]:
-    """Yield name and digest of a file, or of every file in a folder in alphabetical order."""
-    if place.is_dir():
-        for entry in sorted(place.iterdir(), key=lambda entry: entry.name):
-            if entry.name != "__pycache__" and not entry.name.startswith(".") and not _PROSE.fullmatch(entry.name):
-                yield from _contents(entry, f"{name}/{entry.name}".lstrip("/"))
-    elif place.is_file():
-        yield name, _digest(place.read_bytes())
-
-
-def _digest(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()[:24]
-
-
-def _digest_of_data(paper: Paper, name: str) -> str:
-    """Return the digest of a data file, or of all files in a folder of data."""
-    place = Path(str(paper.folder())) / name
-    try:
-        return _digest(repr(list(_contents(place, place.name))).encode()) if place.exists() else _GONE
-    except OSError as error:
-        return f"cannot be read: {error.strerror}"

@@ -25,6 +25,8 @@ class Performance:
     ----------
     seconds
         From the beginning of the unit to its end.
+    dependencies
+        What the result depends on; empty if nothing is known of it, so that the result cannot be kept.
     changed
         Names of what the unit left changed around it (random state, folder, settings); it has been set back.
     is_last
@@ -67,6 +69,7 @@ class Performer:
     ambience: Ambience = field(default_factory=Ambience)
     _loaded: dict[str, Paper] = field(default_factory=dict)
     _looked: Looked = field(default_factory=Looked)
+    _begun: float = field(default_factory=time.time)
 
     def perform(
         self, unit: Unit, without: Collection[str] = (), before: Callable[[str], object] = lambda _: None
@@ -92,6 +95,8 @@ class Performer:
         if threads:
             changed.append(f"a thread that still runs ({', '.join(threads)})")
         dependencies = self._looked.record(paper, paper.exhibits[unit.exhibit], modules_of(unit.package, self._loaded))
+        if self._looked.newest > self._begun:
+            dependencies = {}  # a file was written after this process began, which may have loaded it as it was before
         return Performance(result, dependencies, time.monotonic() - begun, tuple(changed), is_last=bool(threads))
 
 
