@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
 import math
@@ -25,6 +26,7 @@ from hypothesis import strategies as st
 import replicate as package
 from replicate.exhibits import Finding, Paper
 from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
+from replicate.run import storage
 from replicate.run.cache import Cache, stored
 from replicate.run.costs import Costs
 from replicate.run.dependencies import Looked
@@ -250,6 +252,12 @@ def test_a_figure_comes_back_as_it_was(points: list[tuple[str, float, float]], p
     assert isinstance(back, FigureResult)
     pd.testing.assert_frame_equal(back.curves, curves, check_exact=True)
     assert (back.svg, back.png, back.axes, back.figure) == (figure.svg, figure.png, figure.axes, figure.figure)
+
+
+@pytest.mark.parametrize("kind", [TableResult, FigureResult, ClaimsResult])
+def test_every_field_of_a_result_is_kept(kind: type) -> None:
+    fields, _ = storage._READERS[kind.__name__]
+    assert {"paper", "exhibit", *fields} == {field.name for field in dataclasses.fields(kind)}
 
 
 @pytest.mark.parametrize("value", [0.1, 5e-324, 1.7976931348623157e308, -0.0, math.inf, 3])
