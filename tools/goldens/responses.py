@@ -179,7 +179,14 @@ class Output:
         changes = [i for i in range(1, last) if error[i] * error[i + 1] < 0]
         if len(changes) > MOST_ZEROS:
             return None
-        zeros = [bracketed_root(lambda x: self(x) - self.final, t[i], t[i + 1]) for i in changes]
+
+        def deviation(x: mp.mpf) -> mp.mpf:
+            return self(mp.mpf(x)) - self.final
+
+        # what changes sign in doubles only is rounding
+        zeros = [
+            bracketed_root(deviation, t[i], t[i + 1]) for i in changes if deviation(t[i]) * deviation(t[i + 1]) < 0
+        ]
         levels = [mp.mpf(0), *(self(z, 1) for z in zeros), self.total]
         return mp.fsum(abs(b - a) for a, b in pairwise(levels))
 

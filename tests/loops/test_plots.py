@@ -1,0 +1,77 @@
+"""What the plots show, read back from the axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import matplotlib as mpl
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from replicate.loops import PI, Loop, Plant, plots
+
+LOOP = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.6, 0.5))
+
+
+@pytest.fixture
+def ax() -> Iterator[Axes]:
+    with mpl.rc_context({"backend": "agg"}):
+        yield Figure().add_subplot()
+
+
+def test_a_response_is_drawn_as_it_is(ax: Axes) -> None:
+    plots.plot_step(ax, LOOP, "PI", until=20.0)
+    t, y = ax.lines[1].get_data()
+    np.testing.assert_allclose(y, LOOP.step(until=20.0)(t), rtol=1e-13, atol=1e-15)
+    assert ax.lines[1].get_label() == "PI"
+
+
+def test_a_jump_is_drawn_upright(ax: Axes) -> None:
+    # e^{-s} under k = 1/2: y jumps to 1/2 at t = 1
+    signal = Loop(Plant([1.0], [1.0], 1.0), PI(0.5)).step(until=3.0)
+    plots.plot_signal(ax, signal)
+    t, y = (np.asarray(part, dtype=float) for part in ax.lines[0].get_data())
+    at = int(np.searchsorted(t, 1.0))
+    assert t[at] == 1.0
+    assert (y[at - 1], y[at]) == pytest.approx((0.0, 0.5), abs=1e-12)
+    assert t[at - 1] == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_load_response_ends_when_it_has_settled(ax: Axes) -> None:
+    plots.plot_load(ax, LOOP)
+    t, y = (np.asarray(part, dtype=float) for part in ax.lines[0].get_data())
+    assert abs(y[-1]) < 1e-3 * np.abs(y).max()
+    assert t[-1] < 0.6 * LOOP.load_step().horizon
+
+
+def test_the_circle_of_ms_touches_the_nyquist_curve(ax: Axes) -> None:
+    plots.plot_nyquist(ax, LOOP)
+    curve, circle = (np.array(line.get_data()) for line in ax.lines[:2])
+    distance = np.hypot(curve[0] + 1.0, curve[1])
+    assert distance.min() == pytest.approx(1 / LOOP.sensitivity_peak(), rel=1e-4)
+    np.testing.assert_allclose(np.hypot(circle[0] + 1.0, circle[1]), 1 / LOOP.sensitivity_peak(), rtol=1e-12)
+
+
+def test_the_margins_of_a_bode_plot_are_the_loops() -> None:
+    figure = Figure()
+    above, below = figure.subplots(2)
+    plots.plot_bode([above, below], LOOP)
+    margins = LOOP.margins()
+    gain = above.collections[0].get_paths()[0].vertices
+    assert np.ravel(gain) == pytest.approx(
+        [margins.phase_crossover, 1 / margins.gain, margins.phase_crossover, 1.0], rel=1e-12
+    )
+    phase = below.collections[0].get_paths()[0].vertices
+    assert np.ravel(phase) == pytest.approx(
+        [margins.gain_crossover, -180 + margins.phase, margins.gain_crossover, -180.0], rel=1e-10
+    )
+
+
+def test_the_gain_plane_is_stable_below_the_ultimate_gain(ax: Axes) -> None:
+    # e^{-s}/(s+1): with ki = 0 stable up to sqrt(1 + w^2), w = -tan w, 2.2618
+    plane = plots.plot_gain_plane(ax, Plant.foptd(1.0, 1.0, 1.0), [0.3, 1.0, 2.25, 2.27], [0.0, 0.4], levels=[1.4, 2.0])
+    assert np.isfinite(plane.ms[0]).tolist() == [True, True, True, False]
+    assert plane.ms[1, 0] == Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.3, 0.4)).sensitivity_peak()
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("k", "ki")
