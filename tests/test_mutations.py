@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,7 @@ from replicate.run.library import Library
 from replicate.run.outcome import Outcome, recompute
 from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
+from replicate.verdicts.rows import Computed
 
 ROOT = Path(__file__).parent.parent
 HOLDS = {"reproduced", "consistent", "reconstructed", "near"}
@@ -86,6 +88,43 @@ def test_an_altered_print_changes_its_verdict_and_fails_check(outcome: Outcome) 
     told = "\n".join(check(replace(outcome, judgements={paper.id: after}), ROOT / "figures"))
     silent = sorted(cell for cell in changed if cell[0] not in told or cell[1] not in told)
     assert not silent
+
+
+def _beyond(value: PrintedValue, computed: Computed, side: int) -> str:
+    """Return the print nearest to the range of a consistent value that no number of the range rounds to."""
+    assert computed.upper is not None
+    assert computed.lower is not None
+    end = Decimal(repr(computed.upper if side > 0 else computed.lower)) + side * value.unit
+    rounding = ROUND_CEILING if side > 0 else ROUND_FLOOR
+    return f"{end.quantize(value.unit, rounding=rounding):f}"
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_consistent_value_altered_beyond_its_interval_is_not_consistent(outcome: Outcome, side: int) -> None:
+    (paper,) = outcome.papers
+    inputs = read_inputs(paper)
+    verdicts = outcome.judgements[paper.id].verdicts
+    cells = {
+        (row.exhibit, row.row, row.column): next(one for one in row.values if one.reading == row.reading)
+        for row in verdicts
+        if row.verdict == "consistent"
+    }
+    printed = {
+        exhibit: {
+            key: replace(value, text=_beyond(value, cells[exhibit, *key], side)) if (exhibit, *key) in cells else value
+            for key, value in values.items()
+        }
+        for exhibit, values in inputs.printed.items()
+    }
+    after = judge(paper, outcome.results, Inputs(printed, inputs.ledger))
+    still = [
+        (row.exhibit, row.row, row.column)
+        for row in after.verdicts
+        if (row.exhibit, row.row, row.column) in cells and row.verdict == "consistent"
+    ]
+    assert not still
+    told = "\n".join(check(replace(outcome, judgements={paper.id: after}), ROOT / "figures"))
+    assert not [cell for cell in cells if f"{cell[1]} {cell[2]}" not in told]
 
 
 def test_a_verdict_without_its_ledger_entry_fails_check(outcome: Outcome) -> None:

@@ -164,7 +164,7 @@ def make(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Make:
 
 def test_pages_are_well_formed_and_every_reference_has_its_target(make: Make) -> None:
     pages = {name: Page(text) for name, text in make().items()}
-    assert set(pages) == {"index.html", "errata.html", "synthetic.html"}
+    assert set(pages) == {"index.html", "verdicts.html", "errata.html", "synthetic.html"}
     for name, page in pages.items():
         assert page.unbalanced == []
         ids = page.values("id")
@@ -251,7 +251,7 @@ def test_a_part_with_notes_of_its_own_has_a_page(make: Make) -> None:
         prefix="I-",
         notes_I="# First part\n\n{{ exhibit('I-table-1') }}",
     )
-    assert list(pages) == ["index.html", "errata.html", "synthetic.html", "synthetic-I.html"]
+    assert list(pages) == ["index.html", "verdicts.html", "errata.html", "synthetic.html", "synthetic-I.html"]
     assert '<a href="synthetic-I.html#I-table-1">Table 1</a>' in pages["synthetic.html"]
     assert '<section class="exhibit" id="I-table-1">' in pages["synthetic-I.html"]
     assert '<section class="exhibit" id="I-table-1">' not in pages["synthetic.html"]

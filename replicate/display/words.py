@@ -31,10 +31,14 @@ class Word:
 VERDICTS = {
     word.id: word
     for word in (
-        Word("reproduced", "✓", "as the paper says, the value rounds or truncates to the printed digits"),
+        Word(
+            "reproduced",
+            "✓",
+            "as the paper says, the value rounds (truncates, if its column does) to the printed digits",
+        ),
         Word("consistent", "∈", "inputs that round to the printed ones give a value that rounds to the printed digits"),
         Word("reconstructed", "↻", "equal under another, documented reading"),
-        Word("near", "≈", "within two units of the last printed digit, or within one per cent"),
+        Word("near", "≈", "within two units of the last digit or one per cent, or truncated where its column rounds"),
         Word("misprint", "✎", "the print is wrong in any copy; the evidence shows what it should be", "misprints"),
         Word("damaged", "⊘", "wrong in the print or in our copy of it; the evidence shows what it should be"),
         Word("discrepant", "≠", "differs for a known, documented cause; there is no single right value"),

@@ -23,11 +23,13 @@ from replicate.report.errata_sheet import sheets
 from replicate.report.notes import Piece, pieces, place
 from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
+from replicate.resources import templates_dir
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import Judgement, VerdictRow
 
 INDEX = "index.html"
 METHODS = "methods.html"
+VERDICTS = "verdicts.html"  # in its place, where the project has no page on methods
 ERRATA = "errata.html"
 
 
@@ -113,8 +115,9 @@ def build_report(
     about = about or Site()
     shared = {"about": about, "language": about.language, "theme": about.theme}
     texts = {INDEX: render("index.html", INDEX, site=site, papers=papers, **shared)}
-    if about.methods:
-        texts[METHODS] = render("methods.html", METHODS, **shared)
+    name = METHODS if about.methods else VERDICTS
+    verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")
+    texts[name] = render("methods.html", name, verdicts=verdicts, **shared)
     texts[ERRATA] = render("errata.html", ERRATA, sheets=sheets(papers, judgement), **shared)
     for pages in site.values():
         for page in pages:
