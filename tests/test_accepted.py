@@ -377,3 +377,23 @@ def test_the_order_of_panels_is_state(tmp_path: Path, data: Path) -> None:
     turned = replace(drawn, axes=two[::-1])
     (line,) = compare(outcome(data, turned), tmp_path / "accepted")
     assert "the panels now stand in the order 'right', 'left' (was 'left', 'right')" in line
+
+
+@pytest.mark.parametrize(
+    ("reason", "heading"),
+    [
+        ("less\n\n# offset", "## less # offset"),
+        ("# loud", "## \\# loud"),
+        ("a <b>tag</b> and [a link](x)", "## a \\<b>tag\\</b> and \\[a link](x)"),
+    ],
+)
+def test_a_reason_is_one_line_of_plain_text(accepted: Path, data: Path, reason: str, heading: str) -> None:
+    accept(outcome(data, as_written=synthetic.frame(ax=1.5)), accepted, reason)
+    headings = [line for line in (accepted / LOG).read_text().splitlines() if line.startswith("#")]
+    assert headings == ["# What was accepted, and why", "## first", heading]
+
+
+@pytest.mark.parametrize("reason", ["a\x1b[2J", "1\u202e2", "\x00"])
+def test_a_reason_cannot_steer_a_terminal(accepted: Path, data: Path, reason: str) -> None:
+    with pytest.raises(ReplicateError, match="--reason holds the character U"):
+        accept(outcome(data, as_written=synthetic.frame(ax=1.5)), accepted, reason)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -320,3 +321,32 @@ def test_accepting_in_a_folder_of_others_is_refused(replicate: Run) -> None:
     assert "CHANGES.md: is not a log of accepted changes" in err
     assert Path("CHANGES.md").read_text() == "# Changes\n"
     assert not list(Path("lab").iterdir())
+
+
+def test_a_report_on_one_paper_leaves_the_pages_of_the_others(replicate: Run, folder: Path) -> None:
+    """Two small papers in a folder; the second run is about one of them."""
+    for id in ("one", "two"):
+        shutil.copytree(folder, Path("papers") / id)
+        init = Path("papers") / id / "__init__.py"
+        init.write_text(init.read_text().replace('id="lab"', f'id="{id}"').replace("A laboratory", f"Laboratory {id}"))
+        exhibits = init.with_name("exhibits.py")
+        exhibits.write_text(exhibits.read_text().replace("from lab_paper import paper", f"from {id} import paper"))
+    assert replicate("report", "--papers", "papers", "-j1")[0] == 0
+    everything = seen_bytes(Path("build"))
+    notes = Path("papers/one/notes.md")
+    notes.write_text(notes.read_text() + "\nA new sentence.\n")
+    status, out, _ = replicate("report", "one", "--papers", "papers", "-j1")
+    assert status == 0
+    assert "two" not in out
+    after = seen_bytes(Path("build"))
+    assert after.keys() == everything.keys()
+    assert [name for name in after if after[name] != everything[name]] == ["report/one.html"]
+    index = Path("build/report/index.html").read_text(encoding="utf-8")
+    assert "Laboratory one" in index
+    assert "Laboratory two" in index
+
+
+def seen_bytes(folder: Path) -> dict[str, bytes]:
+    hidden = {"cache", ".replicate"}
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file() and not hidden & {*path.parts})
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}

@@ -34,11 +34,12 @@ def report(
     unit_timeout: UnitTimeout = UNIT_TIMEOUT,
     verbose: Verbose = False,
 ) -> None:
-    """Recompute every exhibit and write the report."""
+    """Recompute every exhibit and write the report; of papers that are named, their pages and what all share."""
     from replicate.report.data import expected_files, write_outputs
     from replicate.report.pages import build_report
+    from replicate.report.scope import Scope, owner_of
     from replicate.report.site import site_of
-    from replicate.staging import staged
+    from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
     from replicate.whatif import NAME as WHATIF
@@ -47,9 +48,16 @@ def report(
     within = library(papers_dir, bundled)
     folder = output_folder(within, out)
     chosen = within.papers(papers or ())
-    about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in chosen))
-    with staged(folder, "report", expects=expected_files(chosen)) as fresh:
-        outcome = recompute(chosen, None, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
+    named = {paper.id for paper in chosen}
+    pages_there = [name.removeprefix("report/") for name in files_of(folder, "report")] if papers else []
+    others = {owner_of(page, within.ids()) for page in pages_there} - named - {""}
+    in_order = [one.name for one in within.known if one.name in {*named, *others}]
+    everyone = within.papers(in_order) if others else chosen
+    about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in everyone))
+    scope = Scope(named, others)
+    with staged(folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
+        # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
+        outcome = recompute(everyone, None, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         index = folder / "report" / pages[0].name
@@ -57,6 +65,10 @@ def report(
         if rows:
             page = whatif_page(rows, back="index.html")
             (fresh / "report" / WHATIF).write_bytes(page.encode())
+        for path in [path for path in fresh.rglob("*") if path.is_file()]:
+            if not scope.renews(path.relative_to(fresh).as_posix()):
+                path.unlink()
+    outcome = outcome.of(named)
     print_summary(outcome, console())
     echo(f"\nreport: {index}")
     exit_with(within, outcome)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection
 from pathlib import Path
 
 from replicate.diff.accepted import files_of, state_files
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import OutputError, ReplicateError
+from replicate.exhibits.plain_text import steering
 from replicate.run.outcome import Outcome
 from replicate.staging import replace_files
 
@@ -78,6 +80,9 @@ def require_reason(reason: str) -> str:
     if not reason:
         msg = "accepting needs a reason: --reason 'why the present state is right'"
         raise ReplicateError(msg)
+    if found := steering(reason):
+        msg = f"--reason holds the character {found}; expected: one line of plain text"
+        raise ReplicateError(msg)
     return reason
 
 
@@ -120,7 +125,12 @@ def _entry(reason: str, comparison: Comparison) -> str:
     if len(lines) > _LINES:
         lines = [*lines[:_LINES], f"and {len(lines) - _LINES} more"]
     lines = [f"{paper}: first accepted: {', '.join(exhibits)}" for paper, exhibits in first.items()] + lines
-    return f"\n## {reason}\n\n" + "".join(f"- {line}\n" for line in lines)
+    return f"\n## {_plain(reason)}\n\n" + "".join(f"- {line}\n" for line in lines)
+
+
+def _plain(text: str) -> str:
+    """Return a text that Markdown shows as it is: no tags, no links, no further headings."""
+    return re.sub(r"([\\`\[<]|^#)", r"\\\1", text)
 
 
 def _is_first(diff: ExhibitDiff) -> bool:

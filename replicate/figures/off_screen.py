@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import html
 import io
 import re
 from typing import TYPE_CHECKING
@@ -14,6 +15,10 @@ from replicate.figures.record import Record
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
+
+
+_HREF = re.compile(r"""\s(?:xlink:)?href\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+_ADDRESS = re.compile(r"#|https?://|mailto:|data:image/(png|jpeg);base64,", re.IGNORECASE)
 
 
 def curves_frame(record: Record) -> pd.DataFrame:
@@ -28,9 +33,27 @@ def svg_text(canvas: Canvas, title: str) -> str:
     buffer = io.StringIO()
     unknown = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     canvas.savefig(buffer, format="svg", transparent=True, metadata={**unknown, "Title": title})
-    svg = _settled_ids(buffer.getvalue()).replace("#000000", style.INK)
+    svg = _safe(_settled_ids(buffer.getvalue())).replace("#000000", style.INK)
     # matplotlib writes no fill for black shapes and texts: let them inherit the ink colour.
     return svg.replace("<g ", f'<g fill="{style.INK}" ', 1)
+
+
+def _safe(svg: str) -> str:
+    """Drop links that a page must not carry; matplotlib writes whatever `Artist.set_url` was given.
+
+    What stays: places in the drawing itself, web pages and mail addresses, and the pixels of an image.
+
+    Examples
+    --------
+    >>> _safe('<a xlink:href="javascript:x()"><use xlink:href="#m1"/></a>')
+    '<a><use xlink:href="#m1"/></a>'
+    """
+
+    def kept(match: re.Match[str]) -> str:
+        address = html.unescape(match[1] if match[1] is not None else match[2]).strip()
+        return match[0] if _ADDRESS.match(address) else ""
+
+    return _HREF.sub(kept, svg)
 
 
 def _settled_ids(svg: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from replicate.errors import ReplicateError
@@ -46,6 +46,16 @@ class Outcome:
         for part in self.judgements.values():
             together.extend(part)
         return together
+
+    def of(self, papers: Collection[str]) -> Outcome:
+        """Return the part of it that is about some papers."""
+        return replace(
+            self,
+            papers=[paper for paper in self.papers if paper.id in papers],
+            results={key: result for key, result in self.results.items() if key[0] in papers},
+            judgements={id: part for id, part in self.judgements.items() if id in papers},
+            broken={id: why for id, why in self.broken.items() if id in papers},
+        )
 
     @property
     def failures(self) -> list[str]:

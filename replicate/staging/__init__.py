@@ -6,9 +6,10 @@ carried out, by this run or, if it is killed, by the next one.
 
 `staged`            a part of an output folder, whose manifest tells which files earlier runs wrote
 `replace_files`     named files in any folder, for the accepted state, a chart, a new paper
+`files_of`          what earlier runs wrote
 `finish_interrupted` before reading a folder that another run may have been killed in
 """
 
-from replicate.staging.stage import finish_interrupted, replace_files, staged
+from replicate.staging.stage import files_of, finish_interrupted, replace_files, staged
 
-__all__ = ["finish_interrupted", "replace_files", "staged"]
+__all__ = ["files_of", "finish_interrupted", "replace_files", "staged"]

@@ -58,6 +58,17 @@ def staged(
         swap(target, (*written, MANIFEST), gone)
 
 
+def files_of(target: Path, part: str) -> list[str]:
+    """Return the files that earlier runs wrote for a part of a folder.
+
+    Raises
+    ------
+    OutputError
+        If the manifest is damaged.
+    """
+    return Manifest.read(target).of(part, _everything)
+
+
 def replace_files(target: Path, files: Mapping[str, bytes], remove: Iterable[str] = ()) -> None:
     """Replace or make files, and remove others, all or nothing; the caller knows that they are ours.
 

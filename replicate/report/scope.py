@@ -1,0 +1,44 @@
+"""Which files of a report belong to which paper: a report on some papers leaves the pages of the others as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The papers that a run is about, and the others that the report has already.
+
+    Attributes
+    ----------
+    chosen, others
+        Ids.
+    """
+
+    chosen: Collection[str]
+    others: Collection[str] = ()
+
+    def renews(self, name: str) -> bool:
+        """Whether the run writes a file of the report anew, by its name inside the output folder.
+
+        Examples
+        --------
+        >>> scope = Scope({"khan"}, {"ali"})
+        >>> [scope.renews(name) for name in ("results.csv", "report/index.html", "report/khan.html", "report/ali.html")]
+        [True, True, True, False]
+        >>> scope.renews("figures/ali/fig-1.svg"), scope.renews("report/ali-part-2.html")
+        (False, False)
+        """
+        room, _, rest = name.partition("/")
+        if room in ("tables", "figures"):
+            return rest.partition("/")[0] not in self.others
+        if room == "report":
+            return owner_of(rest, (*self.chosen, *self.others)) not in self.others
+        return True
+
+
+def owner_of(page: str, papers: Iterable[str]) -> str:
+    """Return the paper whose page it is, empty if it is of the whole report; of two that fit, the longer id."""
+    fits = [id for id in papers if page == f"{id}.html" or page.startswith(f"{id}-")]
+    return max(fits, key=len, default="")
