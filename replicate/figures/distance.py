@@ -11,19 +11,28 @@ Everything is in fractions of the axes; only what is in view is measured, with e
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from replicate.figures.polylines import Points, distance_to_segments
 from replicate.figures.scaling import finite
+
+if TYPE_CHECKING:
+    from scipy.spatial import KDTree
 
 Array = NDArray[np.float64]
 
 # Points on long segments that are measured as well; what happens between two of them is smaller than this.
 _STEP = 2e-3
 _CHUNK = 64
+
+
+def _tree(points: Points) -> KDTree:
+    from scipy.spatial import KDTree  # as slow to import as everything else together, and most figures do not differ
+
+    return KDTree(points)
 
 
 @dataclass(frozen=True)
@@ -73,7 +82,7 @@ def distances(one: Points, other: Points, exact_above: float, view: Array | None
         return Distances(points, np.full(len(points), np.inf))
     # The nearest of the points along the other curve names a segment, and its distance bounds the true one.
     along, segment = _dense(other)
-    near = segment[KDTree(along).query(points)[1]]
+    near = segment[_tree(along).query(points)[1]]
     distance = _to_own_segment(points, starts[near], ends[near])
     # Of those that matter the furthest first, until no bound is left that exceeds the largest true distance.
     order = np.argsort(-distance, kind="stable")
@@ -101,7 +110,7 @@ def point_distances(one: Points, other: Points, view: Array | None = None) -> Di
     points, targets = _in_view(one[finite(one)], view), other[finite(other)]
     if not len(points) or not len(targets):
         return Distances(points, np.full(len(points), np.inf))
-    return Distances(points, np.asarray(KDTree(targets).query(points)[0], dtype=float))
+    return Distances(points, np.asarray(_tree(targets).query(points)[0], dtype=float))
 
 
 def _in_view(points: Points, view: Array | None) -> Points:

@@ -1,0 +1,84 @@
+"""What the command line says about computing: why, what was written, what is kept, how long a unit may take."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+def add(folder: Path, text: str) -> None:
+    with (folder / "exhibits.py").open("a", encoding="utf-8") as file:
+        file.write(text)
+
+
+def test_verbose_says_why_a_result_is_computed_and_what_its_code_writes(folder: Path, replicate: Run) -> None:
+    add(
+        folder,
+        "\n@claims.claim('noisy', 'It is quiet.')\ndef _noisy():\n    print('hello\\x1b[2J')\n"
+        "    np.random.seed(3)\n    return Finding('fails', 1.0, 'It is not.')\n",
+    )
+    (folder.parent / "lab_sibling.py").write_text("VALUE = 1\n")
+    add(folder, "\nimport lab_sibling\n")
+    status, _, errors = replicate("report", "lab", "-v")
+    assert status == 0
+    assert "because it has not been computed before" in errors
+    assert "    | hello [2J\n" in errors
+    assert "    left changed: numpy's random state\n" in errors
+    status, _, errors = replicate("report", "lab", "-v")
+    assert "because" not in errors
+    (folder.parent / "lab_sibling.py").write_text("VALUE = 2\n")
+    status, _, errors = replicate("report", "lab", "-v")
+    assert errors.count("because module lab_sibling has changed\n") == 4
+    add(folder, "\n")
+    status, _, errors = replicate("report", "lab")
+    assert status == 0
+    assert "because" not in errors
+    assert "hello" not in errors
+
+
+def test_a_unit_that_takes_too_long_breaks_the_run_by_name(folder: Path, replicate: Run) -> None:
+    add(folder, "\n@table.reading('slow', 'Slow')\ndef _slow():\n    import time\n    time.sleep(60)\n")
+    status, _, errors = replicate("report", "lab", "--unit-timeout", "3")
+    assert status == 2
+    assert "lab/table-1 (slow): stopped after 3 s (--unit-timeout allows more) (lab_paper/exhibits.py, line " in errors
+
+
+def test_a_time_limit_is_more_than_nothing(replicate: Run) -> None:
+    for given in ("0", "-1", "nan"):
+        status, _, errors = replicate("report", "lab", "--unit-timeout", given)
+        assert status == 2
+        assert errors.splitlines()[-1].startswith("replicate: the time limit of a unit must be more than 0 s, not ")
+
+
+def test_what_is_kept_is_counted_and_removed(folder: Path, replicate: Run) -> None:
+    assert folder.is_dir()
+    assert replicate("cache")[:2] == (0, "build/cache: 0 results, 0.0 MB of at most 1024 MB\n")
+    replicate("report", "lab")
+    assert replicate("cache")[1].startswith("build/cache: 4 results, ")
+    assert replicate("cache", "--clear")[1].startswith("removed: 4 results, ")
+    assert replicate("cache")[1].startswith("build/cache: 0 results, ")
+    assert Path("build/report/index.html").is_file()
+
+
+def test_nothing_heavy_is_imported_for_what_is_kept(folder: Path, replicate: Run) -> None:
+    replicate("report", "lab")
+    code = (
+        "import sys; from replicate.cli import main; sys.argv = ['replicate', 'check', 'lab', '--accepted', '.']\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "heavy = ('matplotlib', 'multiprocessing.forkserver', 'joblib', 'scipy')\n"
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": str(folder.parent)},
+    )
+    assert "4 of 4 results" in run.stderr
+    assert run.stdout.splitlines()[-1] == "[]"
