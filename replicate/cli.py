@@ -67,7 +67,7 @@ def _run() -> NoReturn:
 
 
 def _prepare() -> None:
-    """Let a terminal without Unicode show what it can, and a run that is told to end tidy up first."""
+    """Let a terminal without Unicode show what it can, and a terminated run tidy up first."""
     isolate_matplotlib()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):

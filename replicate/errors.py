@@ -7,7 +7,7 @@ ReplicateError                 shown to the user as one line, exit status 2
 ├── PrintedFileError           a printed CSV is malformed (file, line, cell)
 ├── LedgerError                a ledger entry names nothing, or no longer applies
 ├── AcceptedStateError         a file of the accepted state is damaged (file, line)
-├── FigureError                what should be compared is no figure, or has no name that can be a file's
+├── FigureError                what should be compared is not a figure, or has no name that can be a file's
 ├── FigureRecordError          a record of a figure is damaged, or newer than this version
 ├── TemplateError              prose asks for a result that does not exist
 └── OutputError                a result cannot be written
@@ -50,7 +50,7 @@ class AcceptedStateError(ReplicateError):
 
 
 class FigureError(ReplicateError):
-    """What should be compared is no figure, or cannot be named."""
+    """What should be compared is not a figure, or cannot be named."""
 
 
 class FigureRecordError(ReplicateError):

@@ -178,4 +178,4 @@ class Store:
         except OSError as error:
             raise FigureRecordError(f"{path}: cannot be read: {error.strerror or error}") from None  # noqa: EM102
         except UnicodeDecodeError:
-            raise FigureRecordError(f"{path}: is no text in UTF-8") from None  # noqa: EM102
+            raise FigureRecordError(f"{path}: is not UTF-8 text") from None  # noqa: EM102

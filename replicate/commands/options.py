@@ -29,7 +29,7 @@ UnitTimeout = Annotated[
 ]
 Verbose = Annotated[
     bool,
-    typer.Option("--verbose", "-v", help="Show why each result is computed anew, and what its code writes."),
+    typer.Option("--verbose", "-v", help="Show why each result is recomputed, and what its code writes."),
 ]
 NoCache = Annotated[bool, typer.Option("--no-cache", help="Recompute everything and keep nothing.")]
 Accepted = Annotated[

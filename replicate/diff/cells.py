@@ -1,7 +1,7 @@
 """Compare the cells of a table, or the claims of a paper, with the accepted ones.
 
 The columns of the accepted CSV are compared by what they hold: ``computed`` as numbers, ``printed`` and
-``verdict`` exactly. Printed value and verdict belong to the cell and are told once, not for every reading.
+``verdict`` exactly. Printed value and verdict belong to the cell and are reported once, not for every reading.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class CellChange:
     before, after
         The columns of the accepted CSV; ``None`` on the side where there is no such cell.
     columns
-        Those that differ and are told here.
+        Those that differ and are reported here.
     """
 
     key: tuple[str, ...]

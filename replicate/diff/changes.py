@@ -76,7 +76,7 @@ def moved(before: str, after: str) -> str:
 
 
 def relative(before: str, after: str) -> float | None:
-    """Return by which fraction of itself a number changed; ``None`` if one of the texts is no number."""
+    """Return by which fraction of itself a number changed; ``None`` if one of the texts is not a number."""
     try:
         one, other = float(before), float(after)
     except ValueError:

@@ -74,7 +74,7 @@ def match(
     significant_digits
         If given: the paper prints so many significant digits and strips trailing zeros.
     word
-        What is computed where it is no number: a word, a date, or the two numbers of a pair.
+        What is computed if it is not a number: a word, a date, or the two numbers of a pair.
 
     Returns
     -------

@@ -188,7 +188,7 @@ class Paper:
 
         Parameters
         ----------
-        id, title, rows, columns, kind, caption, units, significant_digits, printed, notation, near, spans, depends
+        id, title, rows, columns, kind, caption, units, significant_digits, printed, notation, near, spans, depends, cases
             As for `Table`.
         labels
             Display text of row and column keys of this table.

@@ -68,7 +68,7 @@ class Table:
         Of the table that belongs to a figure: what was read off the original.
     depends
         Files and folders outside the paper's folder, relative to it, that the readings use without `Paper.data`: when
-        one of them changes, the exhibit is computed anew.
+        one of them changes, the exhibit is recomputed.
     cases
         Whether the rows or the columns are the cases for which the other keys, the quantities, are printed. Not
         given: the rows, or the column if there is just one.
@@ -185,15 +185,15 @@ class Table:
         return self.cases == "columns" or (not self.cases and len(self.columns) == 1)
 
     def case(self, row: str, column: str) -> str:
-        """Return the case to which a cell belongs."""
+        """Return the case to which the cell at ``row`` and ``column`` belongs."""
         return column if self.cases_are_columns else row
 
     def quantity(self, row: str, column: str) -> str:
-        """Return the quantity that a cell holds."""
+        """Return the quantity that the cell at ``row`` and ``column`` holds."""
         return row if self.cases_are_columns else column
 
     def key(self, case: str, quantity: str) -> tuple[str, str]:
-        """Return row and column of a quantity of a case."""
+        """Return row and column of the ``quantity`` of a ``case``."""
         return (quantity, case) if self.cases_are_columns else (case, quantity)
 
     def reading(

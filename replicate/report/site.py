@@ -12,7 +12,7 @@ from replicate.run.project import Project
 
 _TITLE = "Papers, replicated"
 _INTRO = (
-    "A paper prints numbers. Here each of them is computed anew and compared at the precision at which it was "
+    "A paper prints numbers. Here each of them is recomputed and compared at the precision at which it was "
     "printed. Where a number does not hold, the report says why."
 )
 

@@ -67,7 +67,7 @@ def _raw(stream: TextIO) -> object:
 
 
 def _remembering(stream: TextIO) -> TextIO:
-    """Return a stream that writes to the same file and remembers; one that is no file stays as it is."""
+    """Return a stream that writes to the same file and remembers; one that is not a file stays as it is."""
     if not isinstance(stream, io.TextIOWrapper) or not isinstance(_raw(stream), io.FileIO):
         return stream
     stream.flush()

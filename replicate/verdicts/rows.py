@@ -59,7 +59,7 @@ class Computed:
     number
         ``None`` if there is none.
     word
-        What is given where it is no number: a word, a date, a pair of numbers.
+        What is given if it is not a number: a word, a date, a pair of numbers.
     lower, upper
         Its range over the printed inputs of the reading; ``None`` if it takes none from the print.
     convention

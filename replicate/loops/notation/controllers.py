@@ -33,7 +33,7 @@ def parse_controller(text: str) -> PI | PID:
     Raises
     ------
     NotationError
-        If a name is unknown or given twice, a value is no number, or the controller refuses it.
+        If a name is unknown or given twice, a value is not a number, or the controller refuses it.
 
     Examples
     --------
