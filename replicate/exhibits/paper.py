@@ -188,7 +188,9 @@ class Paper:
 
         Parameters
         ----------
-        id, title, rows, columns, kind, caption, units, significant_digits, printed, notation, near, spans, depends, cases
+        id, title, rows, columns, kind, caption, units, significant_digits, printed, notation, near, spans
+            As for `Table`.
+        depends, cases
             As for `Table`.
         labels
             Display text of row and column keys of this table.
