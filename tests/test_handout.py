@@ -380,3 +380,21 @@ def test_the_command_line_refuses_an_unknown_format(replicate: Callable[..., tup
     status, _, err = replicate("handout", "bayhan", "--format", "docx")
     assert status == 2
     assert err.strip().splitlines()[-1] == "replicate: the format is 'docx', allowed: pdf, html"
+
+
+@pytest.mark.parametrize("words", ["Нелинейные системы", "Nguyễn Văn Hiệu", "Παπαδόπουλος", "Łukasiewicz"])
+def test_letters_of_other_scripts_are_set(make: Make, words: str) -> None:
+    assert pdf(make(TEXT.replace("Why?", f"Why, {words}?"))).startswith(b"%PDF")
+
+
+def test_a_letter_that_no_font_has_is_named_with_its_line(make: Make) -> None:
+    document = make(TEXT.replace("Why?", "Why, 中?"))
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:4: no font at hand has the letter '中' \(U\+4E2D"):
+        pdf(document)
+
+
+def test_a_program_that_loops_is_stopped_and_named_by_its_line(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("replicate.handout.programs.LONGEST_RUN", 0.3)
+    loop = "while True:\n    try:\n        number = 6\n    except Exception:\n        pass"
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:\d+: the program did not end within 0\.3 s"):
+        make(f"{HEAD}```{{.python .run}}\n{loop}\n```\n")

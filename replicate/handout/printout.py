@@ -19,6 +19,7 @@ import typst
 import replicate
 from replicate.errors import TemplateError
 from replicate.handout.edition import FILE, Document
+from replicate.handout.letters import check_letters, fonts_dir
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import (
     Blocks,
@@ -58,10 +59,16 @@ def pdf(document: Document) -> bytes:
             (root / f"{drawing.name}.svg").write_text(drawing.svg, encoding="utf-8")
         main = root / "main.typ"
         text = markup(document)
+        check_letters(text, document, name)
         main.write_text(text, encoding="utf-8")
         try:
             made, warnings = typst.compile_with_warnings(
-                str(main), root=str(root), ignore_system_fonts=True, format="pdf", pdf_standards=["ua-1"]
+                str(main),
+                root=str(root),
+                ignore_system_fonts=True,
+                font_paths=[str(fonts_dir())],
+                format="pdf",
+                pdf_standards=["ua-1"],
             )
         except typst.TypstError as error:
             raise _failed(name, error, text) from error

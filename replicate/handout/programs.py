@@ -13,10 +13,12 @@ from contextlib import redirect_stdout
 from typing import Any
 
 from replicate.errors import TemplateError
+from replicate.handout.endless import TimeIsUp, time_limit
 from replicate.handout.formulas import line_of
 from replicate.handout.tree import Blocks, Element, classes, transform
 
 LONGEST_LINE = 88  # characters; what fits between the margins
+LONGEST_RUN = 60.0  # seconds
 
 
 def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str) -> Blocks:
@@ -59,12 +61,15 @@ def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str
 def _run(code: str, names: dict[str, Any], source: str, first: int) -> str:
     written = io.StringIO()
     try:
-        with redirect_stdout(written):
+        with redirect_stdout(written), time_limit(LONGEST_RUN):
             exec(compile(code, "<program>", "exec"), names)  # noqa: S102  -- the paper's own text
-    except (Exception, SystemExit) as error:
+    except (Exception, SystemExit, TimeIsUp) as error:
         failed = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<program>"]
         line = (failed[-1].lineno if failed else getattr(error, "lineno", 1)) or 1
-        msg = f"{source}:{first + line - 1}: the program fails: {type(error).__name__}: {error}"
+        why = f"the program fails: {type(error).__name__}: {error}"
+        if isinstance(error, TimeIsUp):
+            why = f"the program did not end within {LONGEST_RUN:g} s; it was stopped in this line"
+        msg = f"{source}:{first + line - 1}: {why}"
         raise TemplateError(msg) from error
     return written.getvalue()
 

@@ -1,0 +1,63 @@
+"""The letters that a printed handout can show: Libertinus, and behind it DejaVu Sans, which matplotlib carries.
+
+Typst sets an empty box for a letter that no font has, and says nothing. Here it is named with its line.
+"""
+
+from __future__ import annotations
+
+import unicodedata
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from replicate.errors import TemplateError
+from replicate.exhibits.plain_text import read_text
+
+if TYPE_CHECKING:
+    from replicate.handout.edition import Document
+
+_FALLBACK = "DejaVuSans.ttf"
+
+
+def fonts_dir() -> Path:
+    """Return the folder of the fonts that matplotlib carries."""
+    import matplotlib as mpl
+
+    return Path(mpl.get_data_path()) / "fonts" / "ttf"
+
+
+@cache
+def _letters() -> frozenset[int]:
+    from fontTools.ttLib import TTFont
+
+    with TTFont(fonts_dir() / _FALLBACK) as font:
+        return frozenset(font.getBestCmap())
+
+
+def check_letters(text: str, document: Document, name: str) -> None:
+    """Refuse a handout with a letter that no font at hand has.
+
+    Parameters
+    ----------
+    text
+        All that is typeset.
+    name
+        What messages call the handout's file.
+
+    Raises
+    ------
+    TemplateError
+        With the line of the file in which the first such letter stands, if it is from there.
+    """
+    missing = next((letter for letter in text if _is_shown(letter) and ord(letter) not in _letters()), None)
+    if missing is None:
+        return
+    source = read_text(document.paper.folder() / "handout.md", name, TemplateError)
+    place = f"{name}:{source.count(chr(10), 0, source.index(missing)) + 1}" if missing in source else name
+    words = f"U+{ord(missing):04X} {unicodedata.name(missing, '')}".strip()
+    msg = f"{place}: no font at hand has the letter '{missing}' ({words}); a web page (--format html) can show it"
+    raise TemplateError(msg)
+
+
+def _is_shown(letter: str) -> bool:
+    return unicodedata.category(letter)[0] not in "CZM"
