@@ -31,6 +31,10 @@ REFUSED = {
     "joined": ("{{ range(10**4) | join('y' * 10**5) }}", "too large"),
     "digits": ("{{ 1.5 | digits(10**9) }}", "number of digits"),
     "doubled": ("{% set a = 'x' * 10**5 %}" + "{% set a = a ~ a %}" * 40 + "{{ a }}", "too large"),
+    "doubled in a loop": (
+        "{% set n = namespace(a='x' * 10**5) %}{% for i in range(99) %}{% set n.a = n.a ~ n.a %}{% endfor %}",
+        "too large",
+    ),
     "include": ("{% include '/etc/passwd' %}", "'include' is not available"),
     "import": ("{% import '/etc/passwd' as p %}", "'import' is not available"),
     "from import": ("{% from '/etc/passwd' import p %}", "'import' is not available"),
@@ -69,6 +73,7 @@ def test_a_text_that_reaches_too_far_is_refused_by_file_and_line_and_at_once(tmp
         ("{{ (2**0.5) | abs | digits(4) }}", "1.414"),
         ("{{ claim('big').evidence }}", "The smallest is 3.1."),
         ("{{ 7 % 4 }}", "3"),
+        ("{% set n = namespace(a=0) %}{% for i in [1, 2] %}{% set n.a = n.a + i %}{% endfor %}{{ n.a }}", "3"),
     ],
 )
 def test_what_texts_need_works(tmp_path: Path, text: str, filled: str) -> None:

@@ -16,6 +16,7 @@ import jinja2
 from jinja2 import nodes
 from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
+from jinja2.utils import Namespace
 
 from replicate.errors import ReplicateError
 
@@ -27,7 +28,7 @@ _FILTERS = (
     "abs attr capitalize count d default dictsort e escape first float int items join last length list lower map max "
     "min reject rejectattr replace reverse round select selectattr sort string sum title trim unique upper wordcount"
 )
-_GLOBALS = ("range", "dict")
+_GLOBALS = ("range", "dict", "namespace")
 _TEXT_METHODS = {"capitalize", "count", "endswith", "find", "isalpha", "isdigit", "lower", "lstrip", "removeprefix"} | {
     "removesuffix", "rstrip", "split", "splitlines", "startswith", "strip", "title", "upper",
 }  # fmt: skip
@@ -164,4 +165,8 @@ class _Watched:
 
 
 def _texts(frame: FrameType) -> Iterator[str]:
-    return (value for name, value in frame.f_locals.items() if name.startswith("l_") and isinstance(value, str))
+    """Yield every text that a template holds in a variable of its own."""
+    held = [value for name, value in frame.f_locals.items() if name.startswith("l_")]
+    for namespace in [value for value in held if isinstance(value, Namespace)]:
+        held += object.__getattribute__(namespace, "__dict__")["_Namespace__attrs"].values()
+    return (value for value in held if isinstance(value, str))
