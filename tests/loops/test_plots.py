@@ -23,7 +23,7 @@ def ax() -> Iterator[Axes]:
 
 def test_a_response_is_drawn_as_it_is(ax: Axes) -> None:
     plots.plot_step(ax, LOOP, "PI", until=20.0)
-    t, y = ax.lines[1].get_data()
+    t, y = (np.asarray(part) for part in ax.lines[1].get_data())
     np.testing.assert_allclose(y, LOOP.step(until=20.0)(t), rtol=1e-13, atol=1e-15)
     assert ax.lines[1].get_label() == "PI"
 
