@@ -60,4 +60,6 @@ def check_letters(text: str, document: Document, name: str) -> None:
 
 
 def _is_shown(letter: str) -> bool:
-    return unicodedata.category(letter)[0] not in "CZM"
+    """Whether it is a letter or a pictograph of a text; signs of formulas come from a font of their own."""
+    code = ord(letter)
+    return (unicodedata.category(letter)[0] == "L" and not 0x1D400 <= code <= 0x1D7FF) or code >= 0x1F000
