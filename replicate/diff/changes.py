@@ -45,7 +45,8 @@ class Change:
     @classmethod
     def of_figure(cls, paper: str, exhibit: str, found: Difference) -> Change:
         """Return what differs in a figure as a change of the exhibit."""
-        text, where, size = found.text, found.where, found.size
+        where, size = found.where, found.size
+        text = found.text + (" (noticed by the safety net)" if found.layer == "net" else "")
         return cls(paper, exhibit, found.kind, text, where, found.before, found.after, size, found.layer)
 
     def __str__(self) -> str:
