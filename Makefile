@@ -57,6 +57,10 @@ torture: $(VENV)/.ready ## attack every promise and count what held: killed, int
 bench: $(VENV)/.ready ## measure speed and accuracy against python-control
 	set -e; for script in benchmarks/*.py; do $(BIN)/python "$$script"; done
 
+.PHONY: units
+units: $(VENV)/.ready ## try 1,000 random loops in other units of time and gain (about 20 minutes)
+	$(BIN)/python tests/loops/equivariance.py 1000
+
 ##@ Working on it
 
 .PHONY: lint

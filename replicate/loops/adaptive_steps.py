@@ -82,7 +82,7 @@ class _March:
     output: list[Array] = field(default_factory=list)  # node values of y
     control: list[Array] = field(default_factory=list)  # coefficients of u
     impulses: list[tuple[float, int, float]] = field(default_factory=list)  # (arrival, dead time, weight)
-    maps: dict[str, Array] = field(default_factory=dict)
+    maps: dict[float, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.ux, self.uv, self.ur = self.g @ self.chain.wx, self.g @ self.chain.wv, float(self.g @ self.chain.wr)
@@ -200,7 +200,7 @@ class _March:
         nodes = start + 0.5 * h * (chebyshev.nodes(DEGREE) + 1.0)
         loaded = self.load if start >= delay * (1.0 - SAME) else 0.0
         values = np.full(nodes.size, loaded)
-        earlier = 0.5 * h * (chebyshev.nodes(DEGREE) + 1.0) < delay
+        earlier = ~_later(_nominal(h), delay)
         times = nodes[earlier] - delay
         if times.size == 0 or not self.control:
             return values
@@ -224,9 +224,9 @@ class _March:
 
     def _map(self, h: float) -> Array:
         """Return the map of a piece from (known inputs, start state, set-point) to (u, y, inputs, end state)."""
-        key = f"{h:.13e}"  # lengths that differ by rounding share a map
-        if key in self.maps:
-            return self.maps[key]
+        h = _nominal(h)
+        if h in self.maps:
+            return self.maps[h]
         points, n, m = DEGREE + 1, self.x.size, self.delays.size
         half_s = 0.5 * h * chebyshev.integration(DEGREE)
         own = [_own_part(h, float(delay)) for delay in self.delays]
@@ -254,7 +254,7 @@ class _March:
             v.append(part)
         y = np.einsum("i,pic->pc", self.chain.c, x) + sum(d * part for d, part in zip(self.chain.d, v, strict=True))
         flow = np.concatenate([u, y, *v, x[-1]])
-        self.maps[key] = flow
+        self.maps[h] = flow
         return flow
 
     def _check(self, h: float, y: Array, u: Array, v: Array) -> tuple[float, bool]:
@@ -282,10 +282,16 @@ class _March:
 
 def _own_part(h: float, delay: float) -> Array:
     """Return the matrix that reads a piece's own polynomial one dead time ago, zero where that is before the piece."""
-    points = DEGREE + 1
-    if delay >= h:
-        return np.zeros((points, points))
     x = chebyshev.nodes(DEGREE) - 2.0 * delay / h
     matrix = chebyshev.basis(np.maximum(x, -1.0), DEGREE).T @ chebyshev.values_to_coefficients(DEGREE)
-    later = 0.5 * h * (chebyshev.nodes(DEGREE) + 1.0) >= delay
-    return np.where(later[:, None], matrix, 0.0)
+    return np.where(_later(h, delay)[:, None], matrix, 0.0)
+
+
+def _later(h: float, delay: float) -> NDArray[np.bool_]:
+    """Return which nodes of a piece come more than a dead time after its start."""
+    return np.asarray(0.5 * h * (chebyshev.nodes(DEGREE) + 1.0) > delay * (1.0 + SAME))
+
+
+def _nominal(h: float) -> float:
+    """Return a length without its rounding error: lengths that differ by no more share a map."""
+    return float(f"{h:.13e}")

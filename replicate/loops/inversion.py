@@ -35,7 +35,10 @@ TOLERANCE = 1e-13
 RESOLVED = 5e-13
 FIRST = 1e-3  # length of the first piece, in time scales
 GROWTH = 1.35
+SHORTEST = 1e-14  # length of a piece, in time scales, that is not halved: a power of t starts without a scale
+SPAN = 0.02  # smallest ratio of two times for which one contour serves
 KINKS = 12
+MOST_EXPANDED = 25  # dead times up to which it is, if the closed loop cannot be inverted there
 EXPANDED = 5  # dead times during which the response is summed up delay by delay
 
 
@@ -61,8 +64,13 @@ class ClosedLoop:
 
     def path(self, trips: int) -> Callable[[Any], ComplexArray]:
         """Return the transform, without dead time, of the part that has been around the loop ``trips`` times."""
-        delay = self.transfer.dead_time
-        return lambda s: np.asarray(self.forward(s) * (-self.transfer(s) * np.exp(s * delay)) ** trips)
+        controller = self.transfer.num, self.transfer.den
+
+        def around(s: ComplexArray) -> ComplexArray:
+            gain = np.polyval(controller[0], s) / np.polyval(controller[1], s)
+            return np.asarray(self.forward(s) * (-gain * self.transfer.plant.delay_free(s)) ** trips)
+
+        return around
 
     def residue(self, pole: complex) -> complex:
         """Return the residue of the closed transform at a pole, by Cauchy's integral."""
@@ -107,7 +115,7 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
         t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)
         series = to_coefficients @ _values(loop, t)
         largest = max(largest, float(np.max(np.abs(series))))
-        if np.max(np.abs(series[-2:])) > RESOLVED * largest and right - left > 1e-6 * time_scale:
+        if np.max(np.abs(series[-2:])) > RESOLVED * largest and right - left > SHORTEST * time_scale:
             middle = 0.5 * (left + right)
             pending += [(middle, right), (left, middle)]
             continue
@@ -125,35 +133,44 @@ def _values(loop: ClosedLoop, t: Array) -> Array:
     """Return the response at times within one piece, counted from the end of the first dead time."""
     delay = loop.transfer.dead_time
     middle = float(t[t.size // 2])
-    if delay and middle < EXPANDED * delay:
-        # after n dead times the loop has been gone around n times at most: a finite sum without closed-loop poles
-        parts = [_invert(loop.path(n), t - n * delay, None) for n in range(int(middle / delay) + 1)]
-        return np.asarray(np.sum(parts, axis=0))
-    return _invert(loop.closed, t, loop)
+    if not delay or middle > EXPANDED * delay:
+        try:
+            return _invert(loop.closed, t, loop)
+        except LoopError:
+            if not delay or middle > MOST_EXPANDED * delay:
+                raise
+    # after n dead times the loop has been gone around n times at most: a finite sum without closed-loop poles
+    parts = [_invert(loop.path(n), t - n * delay, None) for n in range(int(middle / delay) + 1)]
+    return np.asarray(np.sum(parts, axis=0))
 
 
 def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array:
     """Invert a transform at times t; with a loop, its poles to the right of the contour are added as residues."""
     result = np.zeros_like(t)
-    later = t > 1e-14 * max(float(t.max()), 0.0)
-    if not later.any():
-        return result
-    longest = float(t.max())
-    shortest = max(float(t[later].min()), 0.02 * longest)
+    left = t > 1e-14 * max(float(t.max()), 0.0)
+    while left.any():  # one contour serves times that differ by no more than a factor
+        longest = float(t[left].max())
+        group = left & (t >= SPAN * longest)
+        result[group] = _invert_group(transform, t[group], loop)
+        left &= ~group
+    return result
+
+
+def _invert_group(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array:
+    longest, shortest = float(t.max()), float(t.min())
     for opening in OPENINGS:
         for scale in (3.0 / longest, 9.0 / longest):
             contour = _Contour(scale, opening)
             outside = contour.poles_to_the_right(loop, shortest) if loop else np.empty(0, dtype=complex)
             if outside is None:
                 continue
-            values = _refined(contour, transform, t[later], shortest)
+            values = _refined(contour, transform, t, shortest)
             if values is None:
                 continue
             if loop:
                 for pole in outside:
-                    values = values + 2.0 * (loop.residue(complex(pole)) * np.exp(pole * t[later])).real
-            result[later] = values
-            return result
+                    values = values + 2.0 * (loop.residue(complex(pole)) * np.exp(pole * t)).real
+            return values
     raise LoopError(_why_not(transform, shortest))
 
 
