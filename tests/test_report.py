@@ -173,7 +173,7 @@ def test_pages_are_well_formed_and_every_reference_has_its_target(make: Make) ->
             assert target in ids
         for address in page.values("href") + page.values("xlink:href"):
             file, _, fragment = address.partition("#")
-            if not file.startswith("../"):
+            if not file.startswith("data/"):
                 assert fragment in [*pages[file or name].values("id"), ""], address
 
 
@@ -312,7 +312,7 @@ def test_columns_are_aligned_at_the_decimal_point() -> None:
     ("number", "printed", "text"),
     [
         (123.456, "100", "123.46"), (0.0, "0.00", "0"), (float("nan"), "1", ""), (2.0, "2.00000", "2.000000"),
-        (1234567.0, None, "1234567"), (-float("inf"), None, "−∞"), (5e-7, "0", "5.00000e−7"), (None, "1", ""),
+        (1234567.0, None, "1234567"), (-float("inf"), None, "−∞"), (5e-7, "0", "5e−7"), (None, "1", ""),
     ],
 )  # fmt: skip
 def test_numbers_show_a_little_more_than_the_print(number: float | None, printed: str | None, text: str) -> None:

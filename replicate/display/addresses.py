@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from urllib.parse import quote
 
 from replicate.display.labels import part_of
 from replicate.exhibits import Paper
@@ -53,3 +54,14 @@ def address(page: str, exhibit: str, row: str, column: str) -> str:
     'bayhan.html#table-2.PA.Mp'
     """
     return f"{page}#{anchor(exhibit, row, column)}"
+
+
+def trial_address(plant: str, controller: str) -> str:
+    """Return where a loop can be tried out, relative to the report's folder.
+
+    Examples
+    --------
+    >>> trial_address("e^{-s}/(s+1)", "k=0.6,ki=0.5")
+    'whatif.html#plant=e%5E%7B-s%7D%2F%28s%2B1%29&controller=k%3D0.6%2Cki%3D0.5'
+    """
+    return f"whatif.html#plant={quote(plant, safe='')}&controller={quote(controller, safe='')}"

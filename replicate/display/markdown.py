@@ -33,6 +33,17 @@ _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 
 
+_DISPLAY = re.compile(r'<math display="block">.*?</math>', re.DOTALL)
+_LONG_FORMULA = 45  # characters of TeX; a longer one may have to scroll on a phone
+
+
+def _reachable(match: re.Match[str]) -> str:
+    """Let the keyboard reach a formula that may be too wide for a small screen."""
+    tex = re.search(r"<annotation[^>]*>(.*?)</annotation>", match[0], re.DOTALL)
+    long = tex is not None and len(html.unescape(tex[1])) > _LONG_FORMULA
+    return match[0].replace("<math ", '<math tabindex="0" ', 1) if long else match[0]
+
+
 class MarkdownBatch:
     """Texts of one page that wait to be converted together.
 
@@ -101,6 +112,7 @@ class MarkdownBatch:
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
         document = sanitised(document.replace("\r\n", "\n")).replace(' id="footnotes"', "")
+        document = _DISPLAY.sub(_reachable, document)
         parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():

@@ -36,7 +36,7 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     >>> shown(6.96812345, PrintedValue("6.968", significant_digits=6))
     '6.968123'
     >>> shown(-0.5, None), shown(1e-9, PrintedValue("0.1")), shown(float("inf"), None)
-    ('−0.5', '1.00000e−9', '∞')
+    ('−0.5', '1e−9', '∞')
     """
     text = computed_text(computed)
     if computed is None or not text:
@@ -59,14 +59,19 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     if not (1 <= significant <= 12 and -5 <= number.adjusted() < 9):
         return _scientific(number)
     if printed is None:
-        return _minus(f"{number:.{_PLAIN_DIGITS}g}" if place < 0 else f"{number:.0f}")
+        return _minus(_stripped(f"{number:.{_PLAIN_DIGITS}g}") if place < 0 else f"{number:.0f}")
     rounded = number.quantize(Decimal(1).scaleb(min(place, 0)), rounding=ROUND_HALF_EVEN)
     return _minus(f"{rounded:f}")
 
 
 def _scientific(number: Decimal) -> str:
     mantissa, exponent = f"{number:.{_PLAIN_DIGITS - 1}e}".split("e")
-    return _minus(f"{mantissa}e{int(exponent)}")
+    return _minus(f"{_stripped(mantissa)}e{int(exponent)}")
+
+
+def _stripped(text: str) -> str:
+    """Return a number without the zeros that say nothing: those at the end of a computed one."""
+    return text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text
 
 
 def _minus(text: str) -> str:

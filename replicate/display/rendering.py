@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
+from replicate.display.distance import off
 from replicate.display.markdown import MarkdownBatch
 from replicate.display.safe_html import policy
 from replicate.exhibits.plain_text import visible
@@ -59,6 +60,7 @@ def render(template: str, name: str, **context: Any) -> str:
         scores=scores,
         consequences=consequences,
         numbers=numbers,
+        off=off,
         versions=environment.versions(),
         style=Markup(_STYLE),  # noqa: S704 -- two marks, replaced below
         policy=Markup(_POLICY),  # noqa: S704

@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from replicate.display import numbers
+from replicate.display.addresses import trial_address
+from replicate.display.distance import off
 from replicate.exhibits import Reading, Table
 from replicate.exhibits.conventions import tallies
 from replicate.exhibits.frames import FrameCells
@@ -32,6 +34,8 @@ class Value:
         Its range over the printed inputs of the reading, as text; empty if there is none.
     point
         The inputs at which most of the case's cells hold together, as text; empty if there is no range.
+    off
+        How far the print is off, seen from this value; empty if it is equal or nothing is printed.
     """
 
     reading: Reading
@@ -40,6 +44,7 @@ class Value:
     match: Match
     range: str = ""
     point: str = ""
+    off: str = ""
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,12 @@ class TableView:
     verdicts: list[VerdictRow]
     shortened: list[tuple[str, str]] = field(default_factory=list)  # quantities with truncated cells, and the count
     strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
+    trials: dict[str, str] = field(default_factory=dict)  # by row: where its loop can be tried out
+
+    @property
+    def differing(self) -> set[str]:
+        """The rows in which some printed value does not hold."""
+        return {verdict.row for verdict in self.verdicts if verdict.verdict not in HOLDING}
 
     @staticmethod
     def lines(row: list[Cell]) -> list[tuple[list[str], list[Value]]]:
@@ -140,6 +151,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         list(by_cell.values()),
         _shortened(table, by_cell.values()),
         _strengths(table, frames, by_cell),
+        {row: trial_address(*loop) for row, loop in table.trials().items()} if table.trials else {},
     )
 
 
@@ -158,7 +170,8 @@ def _cell(
             continue
         number = cells.numbers.get(key)
         texts = _range(table, result.ranges.get(id), key, printed)
-        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found, *texts))
+        apart = off(printed, number) if found.kind in {"near", "differs"} else ""
+        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found, *texts, apart))
     return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
 
 

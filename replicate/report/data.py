@@ -53,6 +53,9 @@ ERRATA_COLUMNS = (
 EXHIBIT_COLUMNS = ("paper", "exhibit", "kind", "title", "status", "reason")
 
 
+DATA = "data"
+
+
 def expected_files(papers: Iterable[Paper]) -> list[str]:
     """Return files that a run will write, as far as they are known before, by name inside the output folder."""
     figures = (
@@ -81,12 +84,18 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
     OSError
         If a file cannot be written.
     """
+    _write_data(papers, results, judgement, folder)
+    # A second copy inside the report, so that the report can be mailed whole.
+    _write_data(papers, results, judgement, folder / "report" / DATA)
+    _write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement))
+
+
+def _write_data(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> None:
     _write(folder / "results.csv", _records(judgement.results, RESULT_COLUMNS))
     pages = {paper.id: pages_of(paper) for paper in papers}
     _write(folder / "verdicts.csv", _addressed(judgement.verdicts, VERDICT_COLUMNS, pages))
     _write(folder / "errata.csv", _addressed(errors(judgement.verdicts), ERRATA_COLUMNS, pages))
     _write(folder / "exhibits.csv", _records(judgement.exhibits, EXHIBIT_COLUMNS))
-    _write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement))
     (folder / "tables").mkdir()
     (folder / "figures").mkdir()
     for (paper, exhibit), result in results.items():

@@ -6,18 +6,20 @@ Every page stands alone: its style is inside it, nothing is fetched, no script i
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import dropwhile, takewhile
 from pathlib import Path
 
-from replicate.display.addresses import page_name, pages_of, parts
+from replicate.display.addresses import address, page_name, pages_of, parts
+from replicate.display.consequences import consequential, errors
 from replicate.display.rendering import render
 from replicate.errors import OutputError, TemplateError
-from replicate.exhibits import Paper
+from replicate.exhibits import Claims, Exhibit, Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
+from replicate.report.advice import advice, wrong_cells
 from replicate.report.errata import errata
 from replicate.report.errata_sheet import sheets
 from replicate.report.notes import Piece, pieces, place
@@ -25,12 +27,14 @@ from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
 from replicate.verdicts.prose import Prose
-from replicate.verdicts.rows import Judgement, VerdictRow
+from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
 
 INDEX = "index.html"
 METHODS = "methods.html"
 VERDICTS = "verdicts.html"  # in its place, where the project has no page on methods
 ERRATA = "errata.html"
+
+_MOST_GRAVE = 8
 
 
 @dataclass(frozen=True)
@@ -114,7 +118,13 @@ def build_report(
     site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
     about = about or Site()
     shared = {"about": about, "language": about.language, "theme": about.theme}
-    texts = {INDEX: render("index.html", INDEX, site=site, papers=papers, **shared)}
+    advised = {id: advice(exhibit for page in pages for exhibit in page.exhibits) for id, pages in site.items()}
+    claims = {(paper.id, id): exhibit for paper in papers for id, exhibit in paper.exhibits.items()}
+    grave = [
+        (row, _address(site, row), _sentence(claims[row.paper, row.exhibit], row))
+        for row in consequential(judgement.verdicts)[:_MOST_GRAVE]
+    ]
+    texts = {INDEX: render("index.html", INDEX, site=site, papers=papers, advised=advised, grave=grave, **shared)}
     name = METHODS if about.methods else VERDICTS
     verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")
     texts[name] = render("methods.html", name, verdicts=verdicts, **shared)
@@ -122,7 +132,13 @@ def build_report(
     for pages in site.values():
         for page in pages:
             texts[page.file] = render(
-                "paper.html", page.file, page=page, pages=pages, mistakes=errata(page.exhibits), **shared
+                "paper.html",
+                page.file,
+                page=page,
+                pages=pages,
+                mistakes=errata(page.exhibits),
+                wrong=wrong_cells(errors(page.verdicts)),
+                **shared,
             )
     written = []
     for name, text in texts.items():
@@ -135,6 +151,16 @@ def build_report(
             raise OutputError(msg) from error
         written.append(path)
     return written
+
+
+def _sentence(exhibit: Exhibit, row: VerdictRow) -> str:
+    """Return the claim that a verdict is about; empty for a printed number."""
+    return exhibit.claims[row.row].text if isinstance(exhibit, Claims) and row.column == CLAIM_COLUMN else ""
+
+
+def _address(site: Mapping[str, Sequence[Page]], row: VerdictRow) -> str:
+    page = next(page for page in site[row.paper] if row.exhibit in page.by_id)
+    return address(page.file, row.exhibit, row.row, row.column)
 
 
 def paper_pages(paper: Paper, results: Results, judgement: Judgement) -> list[Page]:

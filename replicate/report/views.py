@@ -107,7 +107,7 @@ def _common(exhibit: Exhibit, row: ExhibitRow, verdicts: list[VerdictRow], page:
 def _view(exhibit: Exhibit, result: Result | None, common: dict[str, Any]) -> ExhibitView:
     match exhibit, result:
         case Table(), TableResult():
-            base = f"../tables/{result.paper}/{exhibit.id}"
+            base = f"data/tables/{result.paper}/{exhibit.id}"
             return ExhibitView(
                 **common,
                 table=table_view(exhibit, result, common["verdicts"]),
@@ -132,7 +132,7 @@ def _view(exhibit: Exhibit, result: Result | None, common: dict[str, Any]) -> Ex
 def _figure(figure: Figure, result: FigureResult) -> FigureView:
     if result.error:
         return FigureView(figure, Markup(""), result.error, [])
-    base = f"../figures/{result.paper}/{figure.id}"
+    base = f"data/figures/{result.paper}/{figure.id}"
     svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, description(figure.alt, result.axes))
     files = [(suffix.upper(), f"{base}.{suffix}") for suffix in ("svg", "png", "csv")]
     return FigureView(figure, Markup(svg), "", files)  # noqa: S704 -- drawn here; its texts are escaped
