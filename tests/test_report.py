@@ -210,7 +210,7 @@ def test_figures_have_a_text_alternative_a_label_and_downloads(make: Make) -> No
     assert re.search(r'<desc id="svg-fig-1-desc">output from .* over time \$t\$ from .*PA &amp; ZN', text)
     assert "standing in for a measurement" in text
     for suffix in ("svg", "png", "csv"):
-        assert f'href="../figures/synthetic/fig-1.{suffix}"' in text
+        assert f'href="data/figures/synthetic/fig-1.{suffix}"' in text
     assert "#1b1f24" not in text.partition("<svg")[2].partition("</svg>")[0]
 
 
