@@ -27,7 +27,7 @@ def quantities(case: Case) -> dict[str, dict[str, Number]]:
     grid = _grid(case)
     return {
         "sensitivity_peak": _peak(lambda w: 1 / (1 + L(w)), grid, _limit(case)),
-        "complementary_peak": _peak(lambda w: L(w) / (1 + L(w)), grid, None),
+        "complementary_peak": _peak(lambda w: L(w) / (1 + L(w)), grid, feedthrough(case) * _limit(case)),
         **_margins(case, L, grid),
     }
 
@@ -42,7 +42,7 @@ def feedthrough(case: Case) -> mp.mpf:
     return abs(B[0] / A[0]) if len(A) == len(B) else mp.mpf(0)
 
 
-def _limit(case: Case) -> Number:
+def _limit(case: Case) -> mp.mpf:
     """Return sup |S| for w to infinity: the phase of a dead time takes all values."""
     direct = feedthrough(case)
     if not case.dead_time:
@@ -93,13 +93,12 @@ def _top(slope: Callable[[mp.mpf], mp.mpf], grid: np.ndarray, best: int) -> mp.m
 def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str, dict[str, Number]]:
     value = L(grid)
     real_negative = [
-        bracketed_root(lambda w: mp.im(L(w)), grid[i], grid[i + 1])
-        for i in np.nonzero((value.imag[:-1] * value.imag[1:] < 0) & (value.real[:-1] + value.real[1:] < 0))[0]
-        if abs(value[i]) > 0.02
+        bracketed_root(lambda w: mp.im(L(w)), low, high)
+        for low, high in _brackets(value.imag, grid)
+        if L(mp.mpf(low)).real < 0 and abs(L(mp.mpf(low))) > 0.02
     ]
     unit = [
-        bracketed_root(lambda w: mp.log(abs(L(w))), grid[i], grid[i + 1])
-        for i in np.nonzero((np.abs(value[:-1]) - 1) * (np.abs(value[1:]) - 1) < 0)[0]
+        bracketed_root(lambda w: mp.log(abs(L(w))), low, high) for low, high in _brackets(np.abs(value) - 1.0, grid)
     ]
     factors = [(1 / abs(L(w)), w) for w in real_negative]
     A, B = case.polynomials["A"], case.polynomials["B"]
@@ -119,6 +118,14 @@ def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str,
         "phase_margin": _named(min(((mp.degrees(lag), w) for lag, w in lags), default=none, key=_first)),
         "delay_margin": _named(min(((lag / w, w) for lag, w in lags), default=none, key=_first)),
     }
+
+
+def _brackets(values: np.ndarray, grid: np.ndarray) -> list[tuple[float, float]]:
+    """Return intervals with a change of sign; a zero on the grid itself lies inside one."""
+    signs = np.sign(values)
+    found = [(grid[i], grid[i + 1]) for i in np.nonzero(signs[:-1] * signs[1:] < 0)[0]]
+    zeros = np.nonzero(signs[1:-1] == 0)[0] + 1
+    return found + [(grid[j - 1], grid[j + 1]) for j in zeros if signs[j - 1] * signs[j + 1] < 0]
 
 
 def _first(pair: tuple[mp.mpf, Number]) -> mp.mpf:

@@ -149,8 +149,12 @@ class Output:
             kink = n * mp.mpf(self.case.dead_time)
             if 0 < kink < t[-1] and sign * (self(kink) - self.final) >= sign * y[i] and self._is_kink(kink):
                 return self(kink), kink
-        at = bracketed_root(lambda x: self(x, -1), t[i - 1], t[i + 1])
-        return self(at), at
+        for j in sorted(inner, key=lambda j: -sign * y[j])[:8]:
+            slopes = [self(mp.mpf(x), -1) for x in (t[j - 1], t[j + 1])]
+            if slopes[0] * slopes[1] < 0:  # else the samples turn by rounding only
+                at = bracketed_root(lambda x: self(x, -1), t[j - 1], t[j + 1])
+                return self(at), at
+        return None
 
     def _is_kink(self, at: mp.mpf) -> bool:
         before, after = (self(at * (1 + e * mp.mpf(10) ** -9), -1) for e in (-1, 1))

@@ -1,7 +1,7 @@
 """Measure a library against the exact values and print how many digits are right.
 
-python -m replicate.loops.conformance --library python-control
-python -m replicate.loops.conformance --library replicate --loops --require 9
+``python -m replicate.loops.conformance --library python-control`` shows an overview, ``--loops`` one line for each loop
+as well, and ``--library replicate --require 9`` fails if a value of this library has fewer than nine right digits.
 """
 
 from __future__ import annotations
@@ -32,15 +32,17 @@ def main(arguments: list[str] | None = None) -> int:
     if not loops:
         sys.stderr.write(f"no loop has '{chosen.only}' in its name or kind\n")
         return 2
-    lines = list(overview(library, loops))
+    results = {
+        (setting, golden.id): measure(library, golden, setting) for setting in library.settings for golden in loops
+    }
+    lines = list(overview(library, loops, results))
     if chosen.loops:
         for setting in library.settings:
-            lines += ["", *each_loop(library, loops, setting)]
+            lines += ["", *each_loop(loops, setting, results)]
     failures = [
-        f"{golden.id}: {quantity.name} has {right:.1f} right digits in {setting}, fewer than {chosen.require:g}"
-        for setting in (library.settings if chosen.require else ())
-        for golden in loops
-        for quantity, right in measure(library, golden, setting).items()
+        f"{name}: {quantity.name} has {right:.1f} right digits in {setting}, fewer than {chosen.require:g}"
+        for (setting, name), found in results.items()
+        for quantity, right in found.items()
         if right is not None and right < chosen.require
     ]
     sys.stdout.write("\n".join([*lines, *failures]) + "\n")
