@@ -37,10 +37,14 @@ class Units:
 
     def plant(self, plant: Plant) -> Plant:
         """Return the plant in these units."""
+        if self.time == self.gain == 1.0:
+            return plant
         return plant.rescaled(self.time, self.gain)
 
     def controller(self, controller: PID) -> PID:
         """Return the controller in these units."""
+        if self.time == self.gain == 1.0:
+            return controller
         return PID(
             controller.k * self.gain,
             controller.ki * self.gain * self.time,
