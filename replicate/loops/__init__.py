@@ -20,6 +20,7 @@ from replicate.loops.pid_result import PIDDesign
 from replicate.loops.plant import Plant
 from replicate.loops.setpoint_weights import pid_setpoint_weight, setpoint_weight
 from replicate.loops.signal import Signal
+from replicate.loops.sweep import SweepResult, sweep
 
 __all__ = [
     "PI",
@@ -38,6 +39,7 @@ __all__ = [
     "Plant",
     "Response",
     "Signal",
+    "SweepResult",
     "UnstableLoopError",
     "Weight",
     "WindingCount",
@@ -51,5 +53,6 @@ __all__ = [
     "setpoint_weight",
     "stability_margin",
     "step_responses",
+    "sweep",
     "winding_count",
 ]

@@ -1,0 +1,159 @@
+"""The plants and the controllers of a sweep, from whatever they come in: objects, texts, rows of numbers, data frames.
+
+An axis of numbers keeps them as one array and makes an object only when its turn comes, so that a million controllers
+take the memory of a million rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any, Generic, TypeVar
+
+import numpy as np
+
+from replicate.loops import checks
+from replicate.loops.controller import PID
+from replicate.loops.errors import LoopError
+from replicate.loops.notation import parse_controller, parse_plant
+from replicate.loops.plant import Plant
+
+T = TypeVar("T", Plant, PID)
+
+PLANT_COLUMNS = (("gain", "time_constant", "dead_time"), ("num", "den", "dead_time"), ("plant",))
+CONTROLLER_COLUMNS = tuple(field.name for field in fields(PID))
+PLANT_ROWS = "a Plant, a text, a row (gain, time constant, dead time), or a list, an array or a data frame of these"
+CONTROLLER_ROWS = (
+    "a PI or PID, a text, a row (k, ki), (k, ki, kd) or (k, ki, kd, b), or a list, an array or a data frame of these"
+)
+
+
+@dataclass(frozen=True)
+class Axis(Generic[T]):
+    """One side of a sweep: its members, made when asked for, and their labels.
+
+    Attributes
+    ----------
+    name
+        ``plant`` or ``controller``.
+    labels
+        One of each member: the index of a data frame, else 0, 1, ...
+    make
+        Makes a member from its place.
+    single
+        Whether one object was given, not a list of one.
+    """
+
+    name: str
+    labels: Sequence[Any]
+    make: Callable[[int], T]
+    single: bool = False
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+    def __getitem__(self, place: int) -> T:
+        try:
+            return self.make(place)
+        except LoopError as error:
+            where = "" if self.single else f"{self.name}s[{self.labels[place]!r}]: "
+            msg = f"{where}{error}"
+            raise LoopError(msg) from None
+
+    def checked(self) -> Axis[T]:
+        """Return the axis after all its members could be made; LoopError names the first that could not."""
+        if not len(self):
+            msg = f"the sweep has no {self.name}s: give at least one"
+            raise LoopError(msg)
+        for place in range(len(self)):
+            self[place]
+        return self
+
+
+def plant_axis(given: Any) -> Axis[Plant]:
+    """Return the plants of a sweep.
+
+    Raises
+    ------
+    LoopError
+        If there are none, or one is no plant.
+    """
+    return _axis("plant", given, Plant, _plant, _plant_of_row, PLANT_ROWS).checked()
+
+
+def controller_axis(given: Any) -> Axis[PID]:
+    """Return the controllers of a sweep; LoopError if there are none, or one is no controller."""
+    return _axis("controller", given, PID, _controller, _controller_of_row, CONTROLLER_ROWS).checked()
+
+
+def _axis(
+    name: str, given: Any, kind: type[T], member: Callable[[Any], T], of_row: Callable[[dict[str, Any]], T], rows: str
+) -> Axis[T]:
+    if isinstance(given, kind | str):
+        return Axis(name, (0,), lambda _: member(given), single=True)
+    if hasattr(given, "columns") and hasattr(given, "itertuples"):
+        columns, values = [str(c) for c in given.columns], [given[c].to_numpy() for c in given.columns]
+        return Axis(
+            name, list(given.index), lambda i: of_row(dict(zip(columns, (v[i] for v in values), strict=True)))
+        )  # fmt: skip
+    if isinstance(given, Mapping):
+        msg = f"the {name}s of a sweep must be {rows}, not a {type(given).__name__}"
+        raise LoopError(msg)
+    if isinstance(given, np.ndarray):
+        if given.dtype != object and given.ndim != 2:
+            msg = f"an array of {name}s must have one row for each, shape (n, numbers), not {given.shape}"
+            raise LoopError(msg)
+        members: Any = given if given.ndim == 2 else given.ravel()
+    else:
+        try:
+            members = list(given)
+        except TypeError:
+            msg = f"the {name}s of a sweep must be {rows}, not {checks.shown(given)}"
+            raise LoopError(msg) from None
+    return Axis(name, range(len(members)), lambda i: member(members[i]))
+
+
+def _plant(given: Any) -> Plant:
+    if isinstance(given, Plant):
+        return given
+    if isinstance(given, str):
+        return parse_plant(given)
+    if np.ndim(given) == 1 and len(given) == 3:
+        return Plant.foptd(*given)
+    msg = f"a plant must be a Plant, a text, or a row (gain, time constant, dead time), not {checks.shown(given)}"
+    raise LoopError(msg)
+
+
+def _plant_of_row(row: dict[str, Any]) -> Plant:
+    names = set(row)
+    if "plant" in names:
+        return _plant(row["plant"])
+    if {"gain", "time_constant"} <= names:
+        return Plant.foptd(row["gain"], row["time_constant"], row.get("dead_time", 0.0))
+    if {"num", "den"} <= names:
+        return Plant(row["num"], row["den"], row.get("dead_time", 0.0))
+    allowed = " or ".join(", ".join(columns) for columns in PLANT_COLUMNS)
+    msg = f"a data frame of plants has the columns {allowed}, not {', '.join(row)}"
+    raise LoopError(msg)
+
+
+def _controller(given: Any) -> PID:
+    if isinstance(given, PID):
+        return given
+    if isinstance(given, str):
+        return parse_controller(given)
+    if np.ndim(given) == 1 and 2 <= len(given) <= 4:
+        return PID(*given)
+    msg = f"a controller must be a PI or PID, a text, or a row (k, ki[, kd[, b]]), not {checks.shown(given)}"
+    raise LoopError(msg)
+
+
+def _controller_of_row(row: dict[str, Any]) -> PID:
+    if "controller" in row:
+        return _controller(row["controller"])
+    unknown = [name for name in row if name not in CONTROLLER_COLUMNS]
+    if unknown or "k" not in row:
+        wrong = f"no column {', '.join(unknown)}" if unknown else "a column k"
+        msg = f"a data frame of controllers has {wrong}: allowed are {', '.join(CONTROLLER_COLUMNS)}, or controller"
+        raise LoopError(msg)
+    return PID(**row)

@@ -1,0 +1,138 @@
+"""Compute the metrics of many loops, block by block."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops import checks
+from replicate.loops.controller import PID
+from replicate.loops.errors import LoopError
+from replicate.loops.plant import Plant
+from replicate.loops.sweep.axes import Axis, controller_axis, plant_axis
+from replicate.loops.sweep.metric_names import POLE, STABLE, checked_metrics
+from replicate.loops.sweep.one_loop import LoopMetrics, loop_metrics
+from replicate.loops.sweep.sweep_result import GRID, PAIRWISE, SweepResult
+
+
+def sweep(
+    plants: Any,
+    controllers: Any,
+    metrics: str | Iterable[str] = ("overshoot", "settling_time", "iae", "ms"),
+    until: float | None = None,
+    pairing: str = GRID,
+    band: float = 0.02,
+) -> SweepResult:
+    """Return exact metrics of many loops: every controller on every plant, or pair by pair.
+
+    Only what is asked for is computed, and no response outlives its loop. Each value is the one that `Loop` gives.
+    A loop that has no such value (unstable, not settled within ``until``, no final value) has ``nan``, with the reason.
+
+    Parameters
+    ----------
+    plants : Plant, str, list, array of shape (n, 3), or DataFrame
+        Plants of any kind: objects, texts, rows (gain, time constant, dead time); or a data frame with the columns
+        ``gain, time_constant, dead_time``, or ``num, den, dead_time``, or ``plant``.
+    controllers : PI, PID, str, list, array of shape (n, 2 to 4), or DataFrame
+        Objects, texts, rows (k, ki), (k, ki, kd) or (k, ki, kd, b); or a data frame whose columns are parameters of
+        `PID`.
+    metrics
+        Of the set-point step ``overshoot, peak, peak_time, settling_time, rise_time, delay_time, iae, ise, ie, itae,
+        itse, total_variation`` (of the control signal), with ``load_`` before the name those of the unit load step, and
+        of the loop ``ms, mp, gain_margin, phase_margin, delay_margin, rightmost_pole, stable``. Fractions, degrees and
+        the plant's unit of time, as the methods of `Loop` and `Signal`.
+    until
+        Horizon of the responses; by default each has its own, when every mode has decayed to rounding.
+    pairing
+        ``grid``: every controller on every plant; ``pairwise``: the first with the first and so on, where a single
+        object goes with all.
+    band
+        Half-width of the settling band, a fraction of the final value.
+
+    Returns
+    -------
+    SweepResult
+        ``result["overshoot"]`` has shape (plants, controllers) of a grid, (pairs,) of pairs; ``result["stable"]`` is
+        always there, ``result.reason`` says why values are missing.
+
+    Raises
+    ------
+    LoopError
+        If there are no plants or no controllers, one of them is not valid (the message says which), a metric is
+        unknown, or pairs do not match.
+
+    Examples
+    --------
+    >>> from replicate.loops import Plant
+    >>> plants = [Plant([1.0], [1.0, 1.0], dead_time=1.0), Plant([1.0], [1.0, 2.0, 1.0], dead_time=0.5)]
+    >>> result = sweep(plants, [(0.5, 0.4), (0.5, 0.0), (9.0, 9.0)], metrics=["overshoot", "gain_margin"])
+    >>> result["overshoot"].shape
+    (2, 3)
+    >>> result["stable"]
+    array([[ True,  True, False],
+           [ True,  True, False]])
+    >>> result.reason[0, 2]
+    'the loop is unstable'
+    """
+    names = checked_metrics(metrics)
+    band = checks.positive("the settling band", band, allowed="a positive fraction")
+    if until is not None:
+        until = checks.positive("the horizon until", until, allowed="a finite time > 0")
+    if pairing not in {GRID, PAIRWISE}:
+        msg = f"pairing must be '{GRID}' or '{PAIRWISE}', not {checks.shown(pairing)}"
+        raise LoopError(msg)
+    plant_side, controller_side = plant_axis(plants), controller_axis(controllers)
+    shape = _shape(plant_side, controller_side, pairing)
+    columns = tuple(dict.fromkeys([*names, STABLE]))
+    values = {name: _empty(name, shape) for name in columns}
+    reason = np.full(shape, "", dtype=object)
+    for place, (plant, controller) in _loops(plant_side, controller_side, pairing, shape):
+        _keep(loop_metrics(plant, controller, names, until, band), place, values, reason)
+    return SweepResult(
+        pairing, _labels(plant_side, pairing, shape), _labels(controller_side, pairing, shape), names, values, reason
+    )
+
+
+def _shape(plants: Axis[Plant], controllers: Axis[PID], pairing: str) -> tuple[int, ...]:
+    if pairing == GRID:
+        return len(plants), len(controllers)
+    if len(plants) == len(controllers) or plants.single or controllers.single:
+        return (max(len(plants), len(controllers)),)
+    msg = f"pairs need as many plants as controllers, not {len(plants)} plants and {len(controllers)} controllers"
+    raise LoopError(msg)
+
+
+def _labels(axis: Axis[Any], pairing: str, shape: tuple[int, ...]) -> list[Any]:
+    return list(axis.labels) * (shape[0] if pairing == PAIRWISE and axis.single else 1)
+
+
+def _empty(name: str, shape: tuple[int, ...]) -> NDArray[Any]:
+    if name == STABLE:
+        return np.zeros(shape, dtype=bool)
+    return np.full(shape, complex("nan+nanj") if name == POLE else float("nan"))
+
+
+def _loops(
+    plants: Axis[Plant], controllers: Axis[PID], pairing: str, shape: tuple[int, ...]
+) -> Iterator[tuple[tuple[int, ...], tuple[Plant, PID]]]:
+    """Yield the place of each loop in the result, and its plant and controller."""
+    if pairing == PAIRWISE:
+        for i in range(shape[0]):
+            yield (i,), (plants[0 if plants.single else i], controllers[0 if controllers.single else i])
+        return
+    for i in range(len(plants)):
+        plant = plants[i]
+        for j in range(len(controllers)):
+            yield (i, j), (plant, controllers[j])
+
+
+def _keep(
+    found: LoopMetrics, place: tuple[int, ...], values: dict[str, NDArray[Any]], reason: NDArray[np.object_]
+) -> None:
+    values[STABLE][place] = found.stable
+    for name, value in found.values.items():
+        values[name][place] = value
+    reason[place] = found.reason

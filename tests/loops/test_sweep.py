@@ -1,0 +1,207 @@
+"""Sweeps: every value is the one of the single loop, and what does not exist is nan with a reason."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from functools import partial
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from replicate.loops import PI, PID, Loop, LoopError, Plant, Signal, SweepResult, sweep
+from replicate.loops.sweep.metric_names import ALLOWED
+from replicate.loops.total_variation import total_variation
+
+FOPTD = Plant.foptd(gain=1.0, time_constant=1.0, dead_time=1.0)
+
+#: The single-loop path, spelled out by hand: metrics of a signal, of the loop.
+OF_A_SIGNAL: dict[str, Callable[[Signal], Any]] = {
+    "overshoot": lambda y: y.overshoot(),
+    "peak": lambda y: y.peak().value,
+    "peak_time": lambda y: y.peak().time,
+    "settling_time": lambda y: y.settling_time(0.02),
+    "rise_time": lambda y: y.rise_time(),
+    "delay_time": lambda y: y.delay_time(),
+    "iae": lambda y: y.iae(),
+    "ise": lambda y: y.ise(),
+    "ie": lambda y: y.ie(),
+}
+OF_A_LOOP: dict[str, Callable[[Loop], Any]] = {
+    "rightmost_pole": lambda loop: loop.rightmost_pole(),
+    "ms": lambda loop: loop.sensitivity_peak().value,
+    "mp": lambda loop: loop.complementary_peak().value,
+    "gain_margin": lambda loop: loop.margins().gain,
+    "phase_margin": lambda loop: loop.margins().phase,
+    "delay_margin": lambda loop: loop.margins().delay,
+}
+NAMES = [*OF_A_SIGNAL, *(f"load_{name}" for name in OF_A_SIGNAL), "total_variation", *OF_A_LOOP]
+
+
+def single(loop: Loop, until: float | None) -> dict[str, Any]:
+    """Return what the objects say about one loop, nan where they say nothing."""
+    questions: dict[str, Callable[[], Any]] = {name: partial(ask, loop) for name, ask in OF_A_LOOP.items()}
+    if loop.is_stable():
+        step, load = loop.respond(until=until), loop.load_step(until)
+        questions |= {name: partial(ask, step.output) for name, ask in OF_A_SIGNAL.items()}
+        questions |= {f"load_{name}": partial(ask, load) for name, ask in OF_A_SIGNAL.items()}
+        questions["total_variation"] = lambda: total_variation(step.control)
+    answers = dict.fromkeys(NAMES, np.nan)
+    for name, question in questions.items():
+        with suppress(LoopError):
+            answers[name] = question()
+    return answers
+
+
+def of_every_kind(seed: int, count: int) -> tuple[list[Plant], list[PID]]:
+    """Return random pairs: FOPTD, higher order, integrating, unstable, with and without dead time, slow, undamped."""
+    random = np.random.default_rng(seed)
+    plants: list[Plant] = []
+    controllers: list[PID] = []
+    for i in range(count):
+        lag, delay, gain = random.uniform(0.3, 3.0), random.uniform(0.3, 2.0), random.uniform(0.2, 3.0)
+        poles = random.uniform(0.5, 4.0, 3)
+        made = [
+            Plant.foptd(1.0, lag, delay),
+            Plant([2.0 * np.prod(poles)], np.poly(-poles), delay),
+            Plant([1.0], [1.0, 0.0], delay),
+            Plant([1.0], [lag, 1.0, 0.0]),
+            Plant([2.0], [lag, -1.0], 0.2 * lag * random.uniform(0.0, 1.0)),
+            Plant([1.0], [1.0, 0.1, 1.0], delay),
+            Plant(np.array([-1.0, 2.0]) * np.prod(poles[:2]), np.poly(-poles[:2])),
+            Plant([-1.5], [lag, 1.0], delay),
+        ][i % 8]
+        ki = random.choice([0.0, 0.3, 1.0]) * gain
+        if i % 3 == 2:
+            controllers.append(PID(gain, ki, 0.2 * gain, derivative_filter=0.1, b=random.choice([0.0, 1.0])))
+        else:
+            controllers.append(PI(gain if i % 8 != 7 else -gain, ki if i % 8 != 7 else -ki))
+        plants.append(made)
+    # undamped: an integrator under integral action alone, and P control of an integrator at the limit w L = pi/2
+    plants += [Plant([1.0], [1.0, 0.0]), Plant([1.0], [1.0, 0.0], 1.0)]
+    controllers += [PI(0.0, 1.0), PI(0.5 * np.pi)]
+    return plants, controllers
+
+
+@pytest.mark.parametrize("until", [None, 3.0])
+def test_every_value_is_that_of_the_single_loop(until: float | None) -> None:
+    plants, controllers = of_every_kind(seed=18, count=16)
+    result = sweep(plants, controllers, metrics=NAMES, until=until, pairing="pairwise")
+    for i, (plant, controller) in enumerate(zip(plants, controllers, strict=True)):
+        loop = Loop(plant, controller)
+        assert result["stable"][i] == loop.is_stable()
+        for name, expected in single(loop, until).items():
+            value = result[name][i]
+            np.testing.assert_allclose(value, expected, rtol=1e-9, atol=1e-12, err_msg=f"{name} of {loop}")
+            assert not np.isnan(value) or result.reason[i]
+    assert 4 < np.sum(result["stable"]) < len(plants)  # the sample holds both kinds
+    assert not result["stable"][-2:].any()
+
+
+def test_a_first_order_loop_has_the_values_of_its_closed_form() -> None:
+    # 1/s under k: y = 1 - exp(-kt)
+    k = np.array([0.5, 2.0])
+    result = sweep(
+        Plant([1.0], [1.0, 0.0]), np.column_stack([k, 0.0 * k]), pairing="pairwise",
+        metrics=["overshoot", "settling_time", "rise_time", "iae", "ise", "rightmost_pole", "ms", "gain_margin"],
+    )  # fmt: skip
+    np.testing.assert_allclose(result["settling_time"], np.log(50.0) / k, rtol=1e-10)
+    np.testing.assert_allclose(result["rise_time"], np.log(9.0) / k, rtol=1e-10)
+    np.testing.assert_allclose(result["iae"], 1.0 / k, rtol=1e-10)
+    np.testing.assert_allclose(result["ise"], 0.5 / k, rtol=1e-10)
+    np.testing.assert_allclose(result["rightmost_pole"], -k, rtol=1e-12)
+    np.testing.assert_array_equal(result["overshoot"], 0.0)
+    np.testing.assert_allclose(result["ms"], 1.0)
+    assert np.isinf(result["gain_margin"]).all()
+    assert (result.reason == "").all()
+
+
+def test_the_grid_holds_every_controller_on_every_plant() -> None:
+    plants = [FOPTD, Plant([1.0], [1.0, 2.0, 1.0])]
+    gains = np.array([[0.3, 0.2], [0.6, 0.4], [0.9, 0.6]])
+    grid = sweep(plants, gains, metrics="load_ie")
+    assert grid["load_ie"].shape == grid.reason.shape == grid.shape == (2, 3)
+    np.testing.assert_allclose(grid["load_ie"], np.broadcast_to(1.0 / gains[:, 1], (2, 3)), rtol=1e-9)
+    assert sweep(FOPTD, PI(0.3, 0.2), metrics="ms")["ms"].shape == (1, 1)
+
+
+def test_all_ways_to_give_plants_and_controllers_agree() -> None:
+    plants = pd.DataFrame({"gain": [1.0, 2.0], "time_constant": [1.0, 3.0], "dead_time": [1.0, 0.5]}, index=["a", "b"])
+    gains = pd.DataFrame({"k": [0.3, 0.5], "ki": [0.2, 0.1]})
+    expected = sweep([Plant.foptd(*row) for row in plants.to_numpy()], [PI(0.3, 0.2), PI(0.5, 0.1)], metrics="ms")["ms"]
+    for given in (
+        plants,
+        plants.to_numpy(),
+        plants.to_numpy().tolist(),
+        np.array([Plant.foptd(*r) for r in plants.to_numpy()]),
+    ):
+        for tuned in (gains, gains.to_numpy(), [(0.3, 0.2), (0.5, 0.1)], np.array([PI(0.3, 0.2), PI(0.5, 0.1)])):
+            np.testing.assert_array_equal(sweep(given, tuned, metrics="ms")["ms"], expected)
+
+
+def test_a_frame_has_a_row_for_each_loop_with_the_labels_given() -> None:
+    plants = pd.DataFrame({"gain": [1.0, 1.0], "time_constant": [1.0, -1.0], "dead_time": [1.0, 5.0]}, index=["a", "b"])
+    frame = sweep(plants, [PI(0.3, 0.2)], metrics=["ms", "rightmost_pole"]).to_frame()
+    assert list(frame.columns) == ["ms", "rightmost_pole", "stable", "reason"]
+    assert frame.index.tolist() == [("a", 0), ("b", 0)]
+    assert frame["reason"].tolist() == ["", "the loop is unstable"]
+    assert np.isnan(frame["ms"].to_numpy()[1])
+    assert frame["rightmost_pole"].to_numpy()[1].real > 0.0
+    pairs = sweep(plants, PI(0.3, 0.2), metrics="ms", pairing="pairwise").to_frame()
+    assert pairs.index.tolist() == [("a", 0), ("b", 0)]
+
+
+def test_xarray_where_it_is_installed() -> None:
+    result = sweep(FOPTD, [PI(0.3, 0.2)], metrics="ms")
+    if find_spec("xarray") is None:
+        with pytest.raises(LoopError, match="to_xarray needs xarray"):
+            result.to_xarray()
+        return
+    assert result.to_xarray()["ms"].dims == ("plant", "controller")
+
+
+def test_what_does_not_exist_has_a_reason() -> None:
+    result = sweep(FOPTD, [PI(0.5, 0.4), PI(0.5, 1e-3), PI(9.0, 1.0)], metrics=["settling_time", "iae"], until=6.0)
+    assert np.isnan(result["settling_time"][0, 1:]).all()
+    assert "settling_time: the response has not settled within 0.02" in result.reason[0, 1]
+    assert np.isnan(result["iae"][0, 2])
+    assert result.reason[0, 2] == "the loop is unstable"
+    improper = sweep(Plant([1.0], [1.0], 1.0), PID(0.5, 0.1, kd=1.0), metrics="ms")
+    assert not improper["stable"].any()
+    assert np.isnan(improper["ms"]).all()
+    assert improper.reason[0, 0]
+
+
+NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
+    "no plants": (lambda: sweep([], [PI(1.0)]), "the sweep has no plants"),
+    "no controllers": (lambda: sweep(FOPTD, np.empty((0, 2))), "the sweep has no controllers"),
+    "nan gain": (lambda: sweep(FOPTD, [(1.0, 0.1), (np.nan, 0.1)]), r"controllers\[1\]: the controller's k must be"),
+    "negative dead time": (lambda: sweep([(1.0, 1.0, -1.0)], PI(1.0)), r"plants\[0\]: the dead time must be"),
+    "unknown metric": (lambda: sweep(FOPTD, PI(1.0), metrics=["overshot"]), "unknown metric 'overshot': allowed"),
+    "no metric": (lambda: sweep(FOPTD, PI(1.0), metrics=[]), "metrics must name at least one"),
+    "pairs": (lambda: sweep([FOPTD] * 2, [PI(1.0)] * 3, pairing="pairwise"), "not 2 plants and 3 controllers"),
+    "pairing": (lambda: sweep(FOPTD, PI(1.0), pairing="all"), "pairing must be 'grid' or 'pairwise'"),
+    "band": (lambda: sweep(FOPTD, PI(1.0), band=0.0), "the settling band must be"),
+    "until": (lambda: sweep(FOPTD, PI(1.0), until=np.nan), "the horizon until must be"),
+    "flat array": (lambda: sweep(FOPTD, np.array([1.0, 2.0])), r"one row for each, shape \(n, numbers\), not \(2,\)"),
+    "number": (lambda: sweep(FOPTD, 1.0), "the controllers of a sweep must be"),
+    "column": (lambda: sweep(FOPTD, pd.DataFrame({"k": [1.0], "Ti": [2.0]})), "no column Ti: allowed are k, ki"),
+    "a mapping": (lambda: sweep({"gain": 1.0}, PI(1.0)), "the plants of a sweep must be"),
+    "not asked for": (lambda: sweep(FOPTD, PI(0.5), metrics="ms")["mp"], "the sweep has no metric 'mp'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", NOT_A_SWEEP)
+def test_what_is_not_a_sweep_says_so_in_one_line(wrong: str) -> None:
+    call, message = NOT_A_SWEEP[wrong]
+    with pytest.raises(LoopError, match=message) as caught:
+        call()
+    assert "\n" not in str(caught.value)
+
+
+def test_the_names_promised_are_allowed() -> None:
+    assert {*NAMES, "stable"} <= set(ALLOWED)
+    assert isinstance(sweep(FOPTD, PI(0.5), metrics="stable"), SweepResult)
