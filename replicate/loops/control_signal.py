@@ -17,7 +17,6 @@ from replicate.loops.plant import Plant
 Array = NDArray[np.float64]
 
 RESOLVED = 1e-13  # size of the last coefficients, relative to the largest of the signal, of a piece that is resolved
-SHORTEST = 1e-12  # of the horizon: pieces are not halved further
 
 
 def control_signal(controller: PID, breaks: Array, output: Array, setpoint: float) -> tuple[Array, Array]:
@@ -42,20 +41,23 @@ def control_signal(controller: PID, breaks: Array, output: Array, setpoint: floa
     g = gains(driven)
     points = DEGREE + 1
     to_coefficients = chebyshev.values_to_coefficients(DEGREE)
-    pending = [(left, right, series) for left, right, series in zip(breaks[:-1], breaks[1:], output, strict=True)][::-1]
+    pieces = zip(breaks[:-1], breaks[1:], output, strict=True)
+    pending = [(left, right, series, np.inf) for left, right, series in pieces][::-1]
     x = chain.start * setpoint
     ends, control, largest = [0.0], [], abs(setpoint * float(np.max(np.abs(g[:2]))))
     while pending:
-        left, right, series = pending.pop()
+        left, right, series, before = pending.pop()
         fixed = piece_map(chain, float(right - left))
         inputs = np.concatenate([cheb.chebval(chebyshev.nodes(DEGREE), series), x, [setpoint]])
         u = to_coefficients @ (np.tensordot(g, fixed.basis, 1) @ inputs)
         largest = max(largest, float(np.max(np.abs(u))))
-        if np.max(np.abs(u[-2:])) > RESOLVED * largest and right - left > SHORTEST * breaks[-1]:
+        remaining = float(np.max(np.abs(u[-2:]))) / largest if largest else 0.0
+        # halving no longer helps once the tail is the rounding error of the output
+        if remaining > RESOLVED and remaining < 0.25 * before:
             middle = 0.5 * (left + right)
             pending += [
-                (middle, right, chebyshev.restricted(series, 0.0, 1.0)),
-                (left, middle, chebyshev.restricted(series, -1.0, 0.0)),
+                (middle, right, chebyshev.restricted(series, 0.0, 1.0), remaining),
+                (left, middle, chebyshev.restricted(series, -1.0, 0.0), remaining),
             ]
             continue
         if bare:

@@ -35,7 +35,8 @@ TOLERANCE = 1e-13
 RESOLVED = 5e-13
 FIRST = 1e-3  # length of the first piece, in time scales
 GROWTH = 1.35
-SHORTEST = 1e-14  # length of a piece, in time scales, that is not halved: a power of t starts without a scale
+SHORT = 1e-6  # length of a piece, in time scales, that is not halved
+SHORTEST = 1e-14  # length of a piece, in time scales, that is not halved at a kink: a power of t starts without a scale
 SPAN = 0.02  # smallest ratio of two times for which one contour serves
 KINKS = 12
 MOST_EXPANDED = 25  # dead times up to which it is, if the closed loop cannot be inverted there
@@ -104,6 +105,7 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
     if start:  # the response is smooth only between multiples of the dead time, ever smoother later
         kinks = start * np.arange(1, KINKS)
         edges = sorted({*edges, *kinks[kinks < end].tolist()})
+    starts = {0.0, *(start * np.arange(KINKS)).tolist()}  # where the response may start like a broken power of time
     pending = list(pairwise(edges))[::-1]
     to_coefficients = chebyshev.values_to_coefficients(DEGREE)
     lefts: list[float] = []
@@ -115,7 +117,10 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
         t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)
         series = to_coefficients @ _values(loop, t)
         largest = max(largest, float(np.max(np.abs(series))))
-        if np.max(np.abs(series[-2:])) > RESOLVED * largest and right - left > SHORTEST * time_scale:
+        if (
+            np.max(np.abs(series[-2:])) > RESOLVED * largest
+            and right - left > (SHORTEST if left in starts else SHORT) * time_scale
+        ):
             middle = 0.5 * (left + right)
             pending += [(middle, right), (left, middle)]
             continue
