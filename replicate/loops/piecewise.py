@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 # signal's range.
 SAMPLES = 40
 MARGIN = 0.02
+FLAT = 1e-14  # of the largest value: a piece that moves less is constant to rounding
 NOISE = 1e-13  # of the largest value: a move or a jump that is rounding
 SAME = 1e-12  # relative distance of two times that are one
 
@@ -200,7 +201,14 @@ class Piecewise:
         spread = np.minimum(np.max(np.abs(np.diff(samples, axis=1)), axis=1), margin)
         candidates = np.nonzero(highest + spread >= highest.max())[0]
         best = Peak(-np.inf, float("nan"))
-        for piece in candidates:
+        # the settled tail of a slow loop is thousands of pieces that are constant to rounding: their samples say it all
+        flat = np.ptp(self._samples[candidates], axis=1) <= FLAT * float(np.max(np.abs(self._samples)))
+        if flat.any():
+            tail = candidates[flat]
+            place = int(np.argmax(highest[tail]))
+            at = int(np.argmax(samples[tail[place]]))
+            best = Peak(float(highest[tail[place]]), self._time(int(tail[place]), chebyshev.nodes(SAMPLES - 1)[at]))
+        for piece in candidates[~flat]:
             for value, time in self._piece_extrema(int(piece)):
                 if sign * value > best:
                     best = Peak(sign * value, time)

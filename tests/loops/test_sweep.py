@@ -80,6 +80,9 @@ def of_every_kind(seed: int, count: int) -> tuple[list[Plant], list[PID]]:
         else:
             controllers.append(PI(gain if i % 8 != 7 else -gain, ki if i % 8 != 7 else -ki))
         plants.append(made)
+    # slow: a rightmost pole near -0.005, thousands of dead times until it has decayed
+    plants.append(Plant.foptd(1.0, 1.0, 0.25))
+    controllers.append(PI(1.0, 0.01))
     # undamped: an integrator under integral action alone, and P control of an integrator at the limit w L = pi/2
     plants += [Plant([1.0], [1.0, 0.0]), Plant([1.0], [1.0, 0.0], 1.0)]
     controllers += [PI(0.0, 1.0), PI(0.5 * np.pi)]
