@@ -12,7 +12,7 @@ from replicate.papers.bayhan.pole_assignment import (
     Assignment,
     assign,
     assigned,
-    c1_as_printed,
+    c1_in_copy,
     characteristic,
     dominance_of,
     match_coefficients,
@@ -90,12 +90,14 @@ def _cubic(tau: Fraction, a: Fraction, found: Assignment) -> Number:
     return assigned(tau, a, (found.c0, found.c1))[3]
 
 
-@equations.reading("as-written", "As printed", note="Equation (24) without its lost last line; (20) with $2a/\\tau^2$.")
+@equations.reading(
+    "as-written", "As in the copy at hand", note="Equation (24) without its last numerator; (20) with $2a/\\tau^2$."
+)
 def as_written() -> pd.DataFrame:
     """Evaluate the formulas as they stand on the page."""
 
     def solve(K: Fraction, L: Fraction, tau: Fraction, a: Fraction) -> Assignment:
-        return assign(K, L, tau, a)._replace(c1=c1_as_printed(L, tau, a))
+        return assign(K, L, tau, a)._replace(c1=c1_in_copy(L, tau, a))
 
     return _evaluate(solve, _cubic_as_printed)
 

@@ -51,8 +51,8 @@ def c0(L: Number, tau: Number, a: Number) -> Number:
     ) / (L**2 * delta(L, tau, a))  # fmt: skip
 
 
-def c1_as_printed(L: Number, tau: Number, a: Number) -> Number:
-    """Return what is left of (24) in print: a sum that ends with a "+" and an empty numerator."""
+def c1_in_copy(L: Number, tau: Number, a: Number) -> Number:
+    """Return what the copy at hand has of (24): a sum that ends with a "+" and an empty numerator."""
     return (  # (24)
         -6 * a**4 * L**4 - 72 * (a - 1) * a**2 * tau * L**3 - 72 * (a - 4) * a * tau**2 * L**2
     ) / (L * delta(L, tau, a))  # fmt: skip
@@ -60,7 +60,7 @@ def c1_as_printed(L: Number, tau: Number, a: Number) -> Number:
 
 def c1(L: Number, tau: Number, a: Number) -> Number:
     """Return (24) with its lost last line restored."""
-    return c1_as_printed(L, tau, a) + 864 * tau**3 * (a * L + tau) / (L * delta(L, tau, a))
+    return c1_in_copy(L, tau, a) + 864 * tau**3 * (a * L + tau) / (L * delta(L, tau, a))
 
 
 def assign(K: Number, L: Number, tau: Number, a: Number) -> Assignment:
