@@ -7,8 +7,9 @@ from functools import partial
 import pandas as pd
 
 from replicate.papers.ali import paper
-from replicate.papers.ali.examples import LABELS
+from replicate.papers.ali.examples import EXAMPLE_1, EXAMPLE_2, LABELS
 from replicate.papers.ali.iste import Kind, best
+from replicate.papers.ali.structures import ideal_on_output, printed_settings, trial
 
 KINDS: dict[str, Kind] = {"visioli-setpoint": "setpoint", "visioli-load": "load"}
 
@@ -48,3 +49,15 @@ for _form, _title in (
         "The setting with the smallest $\\int t^2 e^2\\,dt$ for the plant of Example 2, after a unit step of the set "
         "point or of the load, to three digits.",
     )(partial(_optimal, _form))
+
+
+def _trials() -> dict[str, tuple[str, str]]:
+    """Return each setting with the plant of its example, in the form that it was most probably made for."""
+    thetas = {row: EXAMPLE_2 if row in KINDS else EXAMPLE_1 for row in quoted_settings.rows}
+    return {
+        row: trial(float(theta), ideal_on_output(printed_settings(quoted_settings.id, row)))
+        for row, theta in thetas.items()
+    }
+
+
+quoted_settings.trials = _trials

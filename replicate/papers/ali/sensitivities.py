@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import PID, Loop
 from replicate.papers.ali import paper
-from replicate.papers.ali.structures import Settings, Structure, d_filter, plant, series
+from replicate.papers.ali.structures import Settings, Structure, d_filter, plant, series, trial
 from replicate.papers.ali.toolchain import pade_sensitivity_norm, pade_sensitivity_peak
 from replicate.papers.ali.tuning import gain_product, integral_time, specified_sensitivity
 
@@ -142,6 +142,7 @@ def add_readings(table: Table) -> None:
 
         tried = {} if id == AS_WRITTEN else {"structure, dead time and way to find the peak": TRIED}
         table.reading(id, title, note, tried=tried)(computed)
+    table.trials = lambda: {row: trial(float(Fraction(row)), series(tabulated(table.id, row))) for row in table.rows}
 
 
 LABELS = {"KKp": "$KK_p$", "Ti": "$T_i/T$", "Ms": "$M_s$", "Ms_star": "$M_s^*$"}

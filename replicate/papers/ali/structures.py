@@ -13,7 +13,7 @@ ideal    :math:`K_p (1 + 1/sT_i + sT_d/(1 + s\alpha T_d))`                 paral
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from replicate.loops import PID, Plant
 from replicate.papers.ali import paper
@@ -78,6 +78,11 @@ NAMES = {
     "ideal": "parallel form",
     "ideal-on-output": "parallel form, D on the output",
 }
+
+
+def trial(theta: float, controller: PID) -> tuple[str, str]:
+    """Return the plant and a controller for readers to try out, its derivative acting on the output: the same loop."""
+    return plant(theta).notation(), replace(controller, c=0.0).notation()
 
 
 def plant(theta: float) -> Plant:

@@ -7,7 +7,7 @@ The paper's symbols: ``K``, ``tau``, ``L`` are gain, time constant and dead time
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal
@@ -83,6 +83,12 @@ def controllers(process: Process, convention: Convention = "Kp/Ti", variant: str
         ki = gains.ki if convention == "Kp/Ti" else 1.0 / gains.ti  # (3)
         found[id] = PI(k=float(gains.kp), ki=float(ki))
     return found
+
+
+def trials(process: Process, rules: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Return plant and controller of each rule as printed, for readers to try out."""
+    found = controllers(process)
+    return {rule: (process.plant.notation(), found[rule].notation()) for rule in rules}
 
 
 @cache

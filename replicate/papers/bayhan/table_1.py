@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from replicate.papers.bayhan import paper
-from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, RULES, competing_rules, controllers
+from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, RULES, competing_rules, controllers, trials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -42,6 +43,7 @@ table_1 = paper.table(
     "that of Example 4.1 is used.",
     labels=_labels(),
 )
+table_1.trials = partial(trials, EXAMPLE_41, RULES)  # a row has both examples
 
 
 def _evaluate(variant: str) -> pd.DataFrame:

@@ -1,8 +1,10 @@
 """Table 2: time-domain specifications of the eleven rules for Example 4.1."""
 
+from functools import partial
+
 from replicate.exhibits import rank
 from replicate.papers.bayhan import paper
-from replicate.papers.bayhan.processes import EXAMPLE_41, RULES, SPECIFICATIONS
+from replicate.papers.bayhan.processes import EXAMPLE_41, RULES, SPECIFICATIONS, trials
 from replicate.papers.bayhan.readings import LABELS, add_readings
 
 table_2 = paper.table(
@@ -17,6 +19,7 @@ table_2 = paper.table(
     significant_digits=6,
 )
 add_readings(table_2, EXAMPLE_41)
+table_2.trials = partial(trials, EXAMPLE_41, RULES)
 
 for _column, _says in (("settling_time", "which rule settles first"), ("overshoot", "which rule overshoots least")):
     rank(table_2, _column, table_2.rows, f"the ranking by {_column.replace('_', ' ')}: {_says}")

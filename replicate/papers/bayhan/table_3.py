@@ -1,8 +1,10 @@
 """Table 3: time-domain specifications for Example 4.2, the rules that the paper found stable."""
 
+from functools import partial
+
 from replicate.exhibits import rank
 from replicate.papers.bayhan import paper
-from replicate.papers.bayhan.processes import EXAMPLE_42, SPECIFICATIONS
+from replicate.papers.bayhan.processes import EXAMPLE_42, SPECIFICATIONS, trials
 from replicate.papers.bayhan.readings import LABELS, add_readings
 
 ROWS = ("PA", "ZN", "ISE", "IAE", "ITAE", "ITAESPC")
@@ -18,6 +20,7 @@ table_3 = paper.table(
     significant_digits=6,
 )
 add_readings(table_3, EXAMPLE_42)
+table_3.trials = partial(trials, EXAMPLE_42, ROWS)
 
 for _column, _says in (("settling_time", "which rule settles first"), ("overshoot", "which rule overshoots least")):
     rank(table_3, _column, table_3.rows, f"the ranking by {_column.replace('_', ' ')}: {_says}")

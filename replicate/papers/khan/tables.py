@@ -7,8 +7,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import Table, rank
+from replicate.loops import PI
 from replicate.papers.khan import paper
-from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, loop, specifications
+from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, gains, loop, plant, specifications
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -117,3 +118,12 @@ def _register(table: Table, build: Callable[[Specifications], pd.DataFrame]) -> 
 
 _register(table_1, _table_1)
 _register(table_2, _table_2)
+
+
+def _trials(rules: tuple[str, ...], h: float) -> dict[str, tuple[str, str]]:
+    """Return plant and controller of each rule as printed, for p = 1."""
+    return {rule: (plant(1.0, h).notation(), PI(*gains(rule, 1.0, h)).notation()) for rule in rules}
+
+
+table_1.trials = partial(_trials, RULES_1, 10.0)
+table_2.trials = partial(_trials, RULES_2, 1.0)  # a row has ph = 1 and ph = 0.1: the first

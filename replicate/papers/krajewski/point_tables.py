@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from replicate.papers.krajewski import paper
-from replicate.papers.krajewski.points import METRICS, margins_at, metrics_at, named_points
+from replicate.papers.krajewski.points import METRICS, margins_at, metrics_at, named_points, trials
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,6 +68,7 @@ def point_table(exhibit: str, title: str, *, responses: bool = True, caption: st
         labels={key: LABELS[key] for key in columns if key in LABELS},
         units=UNITS,
     )
+    table.trials = partial(trials, exhibit)
 
     def frame(loop_at: Callable[[NamedPoint], tuple[float, float]]) -> pd.DataFrame:
 

@@ -88,6 +88,12 @@ def text_point(exhibit: str, row: str) -> tuple[float, float]:
     return named.a, named.b
 
 
+def trials(exhibit: str) -> dict[str, tuple[str, str]]:
+    """Return plant and controller at each point of a figure, with the digits of the text, for readers to try out."""
+    loops = {row: loop(named.a, named.b, TAU) for row, named in named_points(exhibit).items()}
+    return {row: (at.plant.notation(), at.controller.notation()) for row, at in loops.items()}
+
+
 @cache
 def response(a: float, b: float) -> Signal:
     """Return the exact unit step response at a point, until every mode has decayed to rounding."""

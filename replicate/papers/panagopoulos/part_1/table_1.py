@@ -16,6 +16,7 @@ from replicate.papers.panagopoulos.part_1.designs import (
 from replicate.papers.panagopoulos.part_1.frequency_grid import peak_on_grid, weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
+from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
 
 if TYPE_CHECKING:
@@ -36,6 +37,9 @@ table_1 = paper.table(
     "number can be read.)",
     shared_labels=COLUMNS,
     labels=design_rows(ROWS),
+)
+table_1.trials = lambda: trials(
+    table_1.id, {row: plant for row, (plant, _) in ROWS.items()}, printed_weights(table_1.id)
 )
 
 

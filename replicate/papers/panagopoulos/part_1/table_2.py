@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
+from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,6 +23,9 @@ table_2 = paper.table(
     "a slow mode (examples 1 to 4).",
     shared_labels=COLUMNS,
     labels=design_rows(ROWS),
+)
+table_2.trials = lambda: trials(
+    table_2.id, {row: plant for row, (plant, _) in ROWS.items()}, printed_weights(table_2.id)
 )
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
+from replicate.papers.panagopoulos.part_1.printed_gains import trials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,6 +24,7 @@ table_3 = paper.table(
     shared_labels=COLUMNS,
     labels={row: f"${row.replace('=', ' = ')}$" for row in ROWS},
 )
+table_3.trials = lambda: trials(table_3.id, {row: f"G12 {row}" for row in ROWS}, {})
 
 
 @table_3.reading(

@@ -14,6 +14,7 @@ from replicate.papers.panagopoulos.part_1.designs import design, weight
 from replicate.papers.panagopoulos.part_1.frequency_grid import weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
+from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
 from replicate.papers.panagopoulos.part_1.simple_models import METHODS, area_method, ziegler_nichols
 
@@ -41,6 +42,16 @@ for _plant in ("G1", "G2", "G3"):
     for _column in ("Ms", "IAE", "o", "ts", "Mp"):
         _methods = [f"{_plant} {_method}" for _method in METHOD_NAMES]
         rank(table_5, _column, _methods, f"the ranking of the three methods by {COLUMNS[_column]} for {label(_plant)}")
+
+
+def _trials() -> dict[str, tuple[str, str]]:
+    """Return the printed rows; the new design has the set-point weight that Table 1 prints for it."""
+    weights = printed_weights("I-table-1")
+    new = {row: weights[f"{plant} Ms={MS}"] for row, (plant, method) in ROWS.items() if method == "New"}
+    return trials(table_5.id, {row: plant for row, (plant, _) in ROWS.items()}, new)
+
+
+table_5.trials = _trials
 
 
 def text_controller(plant: str, method: str) -> PI:

@@ -36,6 +36,7 @@ example = paper.table(
         "omega2": r"$\omega_2$",
     },
 )
+example.trials = lambda: {row: (G4.notation(), controller.notation()) for row, controller in CONTROLLERS.items()}
 
 
 @example.reading("as-written", "Exact", "The error over the whole response, the poles as roots.")

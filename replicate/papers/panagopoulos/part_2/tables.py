@@ -10,6 +10,7 @@ from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
+from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected, weight
@@ -88,6 +89,12 @@ def _with_filter(peak_of: Callable[[Plant, PID], Resonance], *, complete: bool) 
     return compute
 
 
+def _trials(table: Table) -> dict[str, tuple[str, str]]:
+    """Return plant and printed controller of the rows that have no set-point filter."""
+    plain = [row for row in ROWS if printed_number(table.id, row, "Tsp") == 0.0]
+    return {row: (PLANTS[split(row)[0]].notation(), printed(table.id, row).notation()) for row in plain}
+
+
 def _add_readings(table: Table) -> None:
     # The scan of the superseded table has lost one derivative time.
     lost = {LOST_TD: ("k", "Ti", "b")} if table.id == SUPERSEDED else {}
@@ -139,6 +146,7 @@ def _add_readings(table: Table) -> None:
         "The optimum under the circle alone",
         "The largest $k_i$ with neither curvature nor phase constraint.",
     )(_designs(table, "ms-only"))
+    table.trials = lambda: _trials(table)
 
 
 table_1 = paper.table(

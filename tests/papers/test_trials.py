@@ -1,0 +1,95 @@
+"""What the papers offer for trying out: rows that exist, and loops that the page and the core both read."""
+
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+from replicate.exhibits import Paper, Table
+from replicate.loops import PID
+from replicate.loops.notation import parse_controller, parse_plant
+from replicate.run.library import Library
+
+PAPERS = {paper.id: paper for paper in Library(bundled=True).papers()}
+MOST_POLES = 15  # of a plant on the page
+
+
+def tables(paper: Paper) -> list[Table]:
+    return [one for one in paper.exhibits.values() if isinstance(one, Table) and one.trials is not None]
+
+
+@pytest.mark.parametrize("id", PAPERS)
+def test_each_paper_has_rows_to_try_out(id: str) -> None:
+    found = tables(PAPERS[id])
+    assert found
+    for table in found:
+        assert table.trials is not None
+        rows = table.trials()
+        assert rows, table.id
+        assert set(rows) <= set(table.rows), table.id
+
+
+@pytest.mark.parametrize("id", PAPERS)
+def test_the_page_can_read_each_loop(id: str) -> None:
+    for table in tables(PAPERS[id]):
+        assert table.trials is not None
+        for row, (plant_text, controller_text) in table.trials().items():
+            where = f"{table.id}, {row}: {plant_text}, {controller_text}"
+            plant, controller = parse_plant(plant_text), parse_controller(controller_text)
+            assert plant.is_rational, where
+            assert len(plant.parts) == 1, where
+            assert plant.num.size < plant.den.size <= MOST_POLES + 1, where
+            read = (controller.k, controller.ki, controller.kd)
+            plain = PID(*read, b=controller.b, derivative_filter=controller.derivative_filter)
+            assert controller.notation() in {plain.notation(), plain.notation().replace(",kd=0", "")}, where
+
+
+def printed(paper: str, table: str) -> dict[str, dict[str, str]]:
+    text = (PAPERS[paper].folder() / "printed" / f"{table}.csv").read_text(encoding="utf-8")
+    return {row["row"]: row for row in csv.DictReader(text.splitlines())}
+
+
+def controllers(paper: str, table: str) -> dict[str, PID]:
+    found = PAPERS[paper].exhibits[table]
+    assert isinstance(found, Table)
+    assert found.trials is not None
+    return {row: parse_controller(text) for row, (_, text) in found.trials().items()}
+
+
+@pytest.mark.parametrize("table", ["I-table-1", "I-table-5", "II-table-1", "IIs-table-2"])
+def test_gains_are_those_printed_in_the_row(table: str) -> None:
+    texts = printed("panagopoulos", table)
+    for row, controller in controllers("panagopoulos", table).items():
+        cells = texts[row]
+        assert controller.k == float(cells["k"])
+        if cells.get("ki"):
+            assert controller.ki == float(cells["ki"])
+        else:
+            assert controller.k / controller.ki == pytest.approx(float(cells["Ti"]), rel=1e-12)
+        if cells.get("Td"):
+            assert controller.kd / controller.k == pytest.approx(float(cells["Td"]), rel=1e-12)
+        if cells.get("b"):
+            assert controller.b == float(cells["b"])
+
+
+@pytest.mark.parametrize("table", ["II-table-1", "IIs-table-2"])
+def test_rows_with_a_setpoint_filter_are_left_out(table: str) -> None:
+    without = [row for row, cells in printed("panagopoulos", table).items() if float(cells["Tsp"]) == 0.0]
+    assert without
+    assert list(controllers("panagopoulos", table)) == without
+
+
+def test_the_series_form_keeps_its_transfer_function() -> None:
+    texts = printed("ali", "table-2")
+    s = 0.3 + 2j
+    for row, controller in controllers("ali", "table-2").items():
+        gain, ti, td = float(texts[row]["KKp"]), float(texts[row]["Ti"]), float(row) / 2
+        series = gain * (1 + 1 / (s * ti)) * (1 + s * td) / (1 + 0.1 * s * td)  # (2), alpha = 0.1
+        assert controller.feedback(s) == pytest.approx(series, rel=1e-12)
+
+
+def test_points_of_the_plane_are_gains() -> None:
+    texts = printed("krajewski", "fig-9-values")
+    for row, controller in controllers("krajewski", "fig-9-values").items():
+        assert controller.ki == pytest.approx(float(texts[row]["a"]), abs=5e-5)
