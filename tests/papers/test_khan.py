@@ -27,6 +27,7 @@ from replicate.papers.khan import (
     sweep,
 )
 from replicate.papers.khan import paper as khan
+from replicate.papers.khan.fit_quality import largest_jump
 
 FOLDER = Path(processes.__file__).parent
 
@@ -335,3 +336,21 @@ def test_printed_tables_are_complete(table: str, rows: int, columns: int) -> Non
         lines = list(csv.reader(stream))
     assert len(lines) == rows + 1
     assert all(len(line) == columns + 1 and all(line) for line in lines)
+
+
+def test_the_largest_jump_between_cases_iii_and_iv_on_a_dense_grid() -> None:
+    p = 3.0
+    k = np.linspace(0.0, 0.99 * sweep.stability_limit(p), 200_001)
+    three = (
+        (-0.5967 + 0.07306 * p - 59.467 * np.exp(-p / 1.0871))
+        + (22.9 - 1.346 * p + 73.31 * np.exp(-p / 1.67)) * k
+        + (-0.43035 + 0.04611 * p + 58.842 * np.exp(-p / 1.159))
+        * np.exp((-2.221 + 0.05809 * p - 0.8723 * np.exp(p / 1.6229)) * k)
+    )
+    four = (0.0578 - 0.005653 * p - 58.493 * np.exp(-p / 1.1135)) + (
+        15.424 - 0.637 * p + 61.7669 * np.exp(-p / 2.3895)
+    ) * k
+    jump = np.maximum(four, 0.0) - np.maximum(three, 0.0)
+    found, _, at = largest_jump(("III", "IV"), (p, 0.0), (p, float(k[-1])))
+    assert found == pytest.approx(jump[np.argmax(np.abs(jump))], abs=1e-3)
+    assert at == pytest.approx(k[np.argmax(np.abs(jump))], abs=1e-4)

@@ -231,3 +231,10 @@ def test_small_crossovers_do_not_lose_digits() -> None:
     assert float(crossover(1e-9, 0.5)) == pytest.approx(float(expected), rel=1e-14)
     x, y = point(0.5, 0.7, 50.0)
     assert float(crossover(x, y)) == pytest.approx(0.7, rel=1e-14)
+
+
+def test_the_corner_of_figure_8_has_one_definition_and_its_overbar_wherever_it_is_printed() -> None:
+    corner = [named_points("fig-8")["upper"], named_points("fig-11")["a"], named_points("fig-12")["a"]]
+    assert len({(named.a, named.b, named.exact()) for named in corner}) == 1
+    cells = [paper.printed_cells(f"{named.exhibit}-values")[named.row, "b"] for named in corner]
+    assert cells == ["0.91[6]"] * 3

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from replicate.exhibits import ClaimVerdict, Finding
@@ -15,9 +15,10 @@ from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.bryant import gain_for_damping
 from replicate.papers.khan.claims import claims
+from replicate.papers.khan.extrema import largest
 from replicate.papers.khan.fits import rise_time_fit
 from replicate.papers.khan.processes import NAMES, PRINTED, RESTORED, gains, loop, plant, settling_after_load
-from replicate.papers.khan.robustness import robustness
+from replicate.papers.khan.robustness import smallest
 from replicate.papers.khan.sweep import stability_limit, sweep
 from replicate.papers.khan.tables import RULES_1, RULES_2
 
@@ -78,13 +79,9 @@ def small_overshoot() -> Finding:
     def overshoot(ph: float) -> float:
         return 100.0 * loop("Proposed", 1.0, ph, RESTORED).step().overshoot()
 
-    ph = np.geomspace(0.01, 20.0, 61)
-    at = int(np.argmax([overshoot(float(x)) for x in ph]))
-    around = (float(ph[max(at - 1, 0)]), float(ph[min(at + 1, ph.size - 1)]))
-    found = minimize_scalar(lambda x: -overshoot(x), bounds=around, method="bounded", options={"xatol": 1e-7})
-    largest = -float(found.fun)
-    return Finding("holds" if largest < 1.0 else "fails", largest,
-                   f"For $0.01 \\le ph \\le 20$ the largest overshoot is {largest:.4f} %, at $ph = {found.x:.3f}$: "
+    at, highest = largest(overshoot, np.geomspace(0.01, 20.0, 61))
+    return Finding("holds" if highest < 1.0 else "fails", highest,
+                   f"For $0.01 \\le ph \\le 20$ the largest overshoot is {highest:.4f} %, at $ph = {at:.3f}$: "
                    "always, not almost always.")  # fmt: skip
 
 
@@ -95,39 +92,42 @@ def small_overshoot() -> Finding:
     printed="2.5",
 )
 def gain_margin() -> Finding:
-    ph, margin = robustness(RESTORED)[:2]
-    lowest, at = float(margin.min()), float(ph[margin.argmin()])
-    printed = float(robustness(PRINTED)[1].min())
+    at, lowest = smallest(lambda closed: closed.margins().gain, RESTORED)
+    printed = smallest(lambda closed: closed.margins().gain, PRINTED)[1]
     return Finding(
         "holds" if lowest > 2.5 else "fails",
         lowest,
-        f"The smallest is {lowest:.4f}, at $ph = {at:g}$ (with (7a) as printed: {printed:.4f}).",
+        f"The smallest is {lowest:.4f}, at $ph = {at:.4g}$ (with (7a) as printed: {printed:.4f}).",
     )
 
 
 @claims.claim("phase-margin", "For $0.01 \\le ph \\le 20$ its phase margin is above 60 degrees.", where="Section III-C",
               printed="60")  # fmt: skip
 def phase_margin() -> Finding:
-    lowest = float(np.degrees(robustness(RESTORED)[2].min()))
+    lowest = smallest(lambda closed: closed.margins().phase, RESTORED)[1]
     return Finding("holds" if lowest > 60.0 else "fails", lowest, f"The smallest is {lowest:.2f} degrees.")
 
 
 @claims.claim("sensitivity", "For $0.01 \\le ph \\le 20$ the sensitivity peak of rule (7) is between 1.3 and 2.0.",
               where="Section III-C")  # fmt: skip
 def sensitivity() -> Finding:
-    ms = robustness(RESTORED)[3]
-    low, high = float(ms.min()), float(ms.max())
+    low = smallest(lambda closed: float(closed.sensitivity_peak()), RESTORED)[1]
+    high = -smallest(lambda closed: -float(closed.sensitivity_peak()), RESTORED)[1]
     return Finding("holds" if low > 1.3 and high < 2.0 else "fails", high, f"It lies between {low:.4f} and {high:.4f}.")
 
 
 @claims.claim("margin-from-Ms", "The gain margin is greater than $M_s/(M_s - 1)$.", where="Section III-A")
 def margin_from_sensitivity() -> Finding:
-    _, gain, _, ms = robustness(RESTORED)
-    smallest = float(np.min(gain - ms / (ms - 1.0)))
+    def excess(closed: Loop) -> float:
+        ms = float(closed.sensitivity_peak())
+        return closed.margins().gain - ms / (ms - 1.0)
+
+    at, least = smallest(excess, RESTORED)
     return Finding(
-        "holds" if smallest > 0.0 else "fails",
-        smallest,
-        f"For rule (7), $0.01 \\le ph \\le 20$, the gain margin exceeds it by at least {smallest:.3f}.",
+        "holds" if least > 0.0 else "fails",
+        least,
+        f"For rule (7), $0.01 \\le ph \\le 20$, the gain margin exceeds it by at least {least:.3f}, "
+        f"at $ph = {at:.4g}$.",
     )
 
 

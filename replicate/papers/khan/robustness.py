@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 
+from replicate.loops import Loop
+from replicate.papers.khan.extrema import largest
 from replicate.papers.khan.processes import loop
 
 
@@ -21,3 +24,17 @@ def robustness(variant: str, points: int = 61) -> tuple[np.ndarray, ...]:
         np.radians([m.phase for m in margins]),
         np.array([float(closed.sensitivity_peak()) for closed in loops]),
     )
+
+
+def smallest(of_loop: Callable[[Loop], float], variant: str) -> tuple[float, float]:
+    """Return the ph in 0.01..20 at which a quantity of the rule's loop is smallest, and how small, by optimisation.
+
+    The two cases of the rule, which meet at ph = 0.2 with a jump, are searched apart.
+    """
+
+    def negative(x: float) -> float:
+        return -of_loop(loop("Proposed", 1.0, float(np.exp(x)), variant))
+
+    parts = (np.linspace(np.log(0.01), np.log(0.2), 16), np.linspace(np.log(0.2 + 1e-9), np.log(20.0), 25))
+    at, value = max((largest(negative, part) for part in parts), key=lambda found: found[1])
+    return float(np.exp(at)), -value
