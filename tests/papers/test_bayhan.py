@@ -342,3 +342,9 @@ def test_what_the_copy_at_hand_lost_is_not_held_against_the_paper(claims: dict[s
 @pytest.mark.parametrize("id", ["others-overshoot", "settles-third", "near-optimal-tau-cl"])
 def test_what_is_true_of_the_table_only_holds_partly(claims: dict[str, Claim], id: str) -> None:
     assert claims[id].check().verdict == "holds-partly"
+
+
+def test_cohen_coons_integral_time_scales_with_time_only_when_corrected(claims: dict[str, Claim]) -> None:
+    finding = claims["cohen-coon-factor"].check()
+    assert (finding.verdict, finding.value) == ("undecided", pytest.approx(1.0))  # L/tau and K are the same
+    assert claims["residue-hurwitz"].check().verdict == "holds"

@@ -12,6 +12,7 @@ from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number, share
 from replicate.loops import Loop
 from replicate.papers.bayhan.claims import PROCESSES, claims
+from replicate.papers.bayhan.pole_assignment import assign
 from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process, specifications
 
 
@@ -25,6 +26,27 @@ def _limit_of_dominance(process: Process) -> float:
     signs = np.array([margin(a) > 0 for a in grid])
     first = int(np.flatnonzero(~signs)[0])
     return float(optimize.brentq(margin, grid[first - 1], grid[first], xtol=1e-13))
+
+
+@claims.claim(
+    "residue-hurwitz",
+    "The residue polynomial is Hurwitz if and only if $c_0$ and $c_1$ are positive.",
+    where="section III, below (25)",
+)
+def residue_hurwitz() -> Finding:
+    wrong, total, stable = 0, 0, 0
+    for process in PROCESSES:
+        for a in np.linspace(0.05, 6.0, 120):
+            found = assign(process.K, process.L, process.tau, float(a))
+            hurwitz = bool(np.all(np.roots([1.0, float(found.c1), float(found.c0)]).real < 0.0))
+            wrong += hurwitz != (found.c0 > 0 and found.c1 > 0)
+            total, stable = total + 1, stable + hurwitz
+    return Finding(
+        "fails" if wrong else "holds",
+        wrong,
+        f"For the paper's three processes and {total} choices of $a$ up to 6 the roots disagree with the signs of (23) "
+        f"and (24) {wrong} times; {stable} of the polynomials are Hurwitz.",
+    )
 
 
 def _dominance(process: Process) -> Finding:

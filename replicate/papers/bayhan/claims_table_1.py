@@ -63,6 +63,28 @@ def itse_exponent() -> Finding:
 
 
 @claims.claim(
+    "cohen-coon-factor",
+    "The integral time of the Cohen-Coon rule has the factor $1/K$.",
+    where="Table 1",
+)
+def cohen_coon_factor() -> Finding:
+    def stretched(variant: Literal["printed", "corrected"]) -> float:
+        slow, fast = (
+            float(competing_rules(variant)["CC"].evaluate(K=1.0, tau=unit, L=unit).ti) for unit in (10.0, 1.0)
+        )
+        return slow / fast
+
+    printed, mended = stretched("printed"), stretched("corrected")
+    return Finding(
+        "holds" if math.isclose(printed, 10.0) else "undecided" if math.isclose(mended, 10.0) else "fails",
+        printed,
+        "A time must grow tenfold when all times of the process do: with the factor $1/K$ it grows by "
+        f"{number(printed)}, with $\\tau$ in its place by {number(mended)}. One symbol, in the paper or in the copy at "
+        "hand; Example 4.1 has $K = \\tau = 1$, where the two are the same.",
+    )
+
+
+@claims.claim(
     "itse-label",
     "The rule “ITSE for load disturbance” minimises the time-weighted squared error.",
     where="section I, Table 1",
