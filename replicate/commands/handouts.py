@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,6 +21,7 @@ from replicate.commands.options import (
     output_folder,
     recompute,
 )
+from replicate.errors import ReplicateError
 from replicate.run.limits import UNIT_TIMEOUT
 from replicate.terminal.streams import echo
 
@@ -32,27 +34,94 @@ def handout(
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
     format: Annotated[str, typer.Option("--format", help="File format: pdf or html.")] = "pdf",  # noqa: A002
+    variants: Annotated[
+        int | None, typer.Option("--variants", min=1, help="A class set: so many sheets, each with its own numbers.")
+    ] = None,
+    roster: Annotated[
+        Path | None, typer.Option("--roster", help="A class set: a CSV file with one student per line.")
+    ] = None,
+    roster_id: Annotated[
+        str, typer.Option("--roster-id", help="The roster's column that names the sheets; default: the first.")
+    ] = "",
+    seed: Annotated[str, typer.Option("--seed", help="What the numbers of a class set are drawn from.")] = "1",
+    form: Annotated[str | None, typer.Option("--form", help="Make one sheet again, from the id on its pages.")] = None,
+    stress: Annotated[
+        int | None, typer.Option("--stress", min=1, help="Draw so many forms of each exercise and test the answers.")
+    ] = None,
     jobs: Jobs = None,
     out: Out = None,
     no_cache: NoCache = False,
     unit_timeout: UnitTimeout = UNIT_TIMEOUT,
     verbose: Verbose = False,
 ) -> None:
-    """Build teaching handouts, with and without solutions."""
-    from replicate.handout import build_handouts, checked_format, with_handout
+    """Build teaching handouts, with and without solutions, or a class set: a sheet per student and a key."""
+    from replicate.handout import (
+        ClassSet,
+        Form,
+        build_handouts,
+        checked_format,
+        read_roster,
+        stressed,
+        varying,
+        with_handout,
+    )
     from replicate.staging import staged
 
     within = library(papers_dir, bundled)
-    place = output_folder(within, out)
-    chosen = with_handout(within.papers(papers or ()), all_needed=bool(papers))
+    again = Form.read(form) if form is not None else None
+    given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
+    chosen = with_handout(within.papers(given), all_needed=bool(given))
     file_format = checked_format(format)
+    class_options = {"--variants": variants, "--roster": roster, "--form": form, "--stress": stress}
+    kinds = [name for name, value in class_options.items() if value is not None]
+    if kinds:
+        _check_class_options(kinds, len(chosen), file_format, papers)
+        varying(chosen[0])
+    if stress is not None:
+        for variation in varying(chosen[0]).variations.values():
+            for line in stressed(variation, stress):
+                echo(line)
+        return
+    students = (
+        read_roster(roster, roster_id) if roster else [f"{number:03}" for number in range(1, (variants or 0) + 1)]
+    )
+    place = output_folder(within, out)
     editions = (False, True) if solutions is None else (solutions,)
     with staged(place, "handouts", renews=lambda _: False) as fresh:  # those of other papers, and other editions, stay
         outcome = recompute(chosen, None, jobs, place, no_cache, unit_timeout=unit_timeout, verbose=verbose)
         verdicts = outcome.judgement.verdicts
-        written = build_handouts(
-            outcome.papers, outcome.results, verdicts, fresh / "handouts", solutions=editions, file_format=file_format
-        )
+        if kinds:
+            class_set = ClassSet(outcome.papers[0], outcome.results, verdicts, solutions=bool(solutions))
+            files = [class_set.again(again)] if again else class_set.files(students, seed)
+            written = [_written(fresh / "handouts" / name, content) for name, content in files]
+        else:
+            written = build_handouts(
+                outcome.papers,
+                outcome.results,
+                verdicts,
+                fresh / "handouts",
+                solutions=editions,
+                file_format=file_format,
+            )
     for path in written:
         echo(f"handout: {place / 'handouts' / path.name}")
     exit_with(within, outcome)
+
+
+def _check_class_options(kinds: list[str], papers: int, file_format: str, given: list[str] | None) -> None:
+    """Refuse options that do not go together."""
+    if len(kinds) > 1:
+        msg = f"{' and '.join(kinds)} do not go together; choose one"
+        raise ReplicateError(msg)
+    if papers != 1:
+        msg = f"{kinds[0]} is about one paper, {len(given) if given else 'none'} given; name one"
+        raise ReplicateError(msg)
+    if file_format != "pdf":
+        msg = f"{kinds[0]} makes PDFs, the format is '{file_format}'"
+        raise ReplicateError(msg)
+
+
+def _written(path: Path, content: bytes) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+    return path

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from random import Random
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.drawn import Figure
+from replicate.exhibits.variants import Answers, Inputs, Variation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
 
-Answer = Mapping[str, float | str]
+Values = Mapping[str, float | str]
 
 
 @dataclass
@@ -30,21 +32,24 @@ class Exercises:
         Functions that compute an answer.
     figures
         Figures drawn for the handout.
+    variations
+        Exercises whose numbers vary from student to student.
 
     Examples
     --------
     >>> exercises = Exercises()
     >>> @exercises.answer("square")
-    ... def square() -> Answer:
+    ... def square() -> Values:
     ...     return {"of_three": 3.0**2}
     >>> exercises.answers["square"]()
     {'of_three': 9.0}
     """
 
-    answers: dict[str, Callable[[], Answer]] = field(default_factory=dict)
+    answers: dict[str, Callable[[], Values]] = field(default_factory=dict)
     figures: dict[str, Figure] = field(default_factory=dict)
+    variations: dict[str, Variation] = field(default_factory=dict)
 
-    def answer(self, name: str) -> Callable[[Callable[[], Answer]], Callable[[], Answer]]:
+    def answer(self, name: str) -> Callable[[Callable[[], Values]], Callable[[], Values]]:
         """Register the decorated function as an answer: named numbers (or words) for the text.
 
         Parameters
@@ -58,11 +63,53 @@ class Exercises:
             If the name is taken.
         """
 
-        def register(compute: Callable[[], Answer]) -> Callable[[], Answer]:
-            if name in self.answers:
+        def register(compute: Callable[[], Values]) -> Callable[[], Values]:
+            if name in self.answers or name in self.variations:
                 msg = f"handout: answer '{name}' is defined twice"
                 raise PaperDefinitionError(msg)
             self.answers[name] = compute
+            return compute
+
+        return register
+
+    def vary(
+        self,
+        name: str,
+        *,
+        original: Inputs,
+        variant: Callable[[Random], Inputs],
+        requires: Mapping[str, Callable[[Inputs], bool]],
+        shown: Callable[[Inputs], Values] = lambda _: {},
+        stated: str = "",
+    ) -> Callable[[Callable[[Inputs], Answers]], Callable[[Inputs], Answers]]:
+        """Register the decorated function as the answers to an exercise whose numbers vary.
+
+        Parameters
+        ----------
+        name
+            By which the text asks for ``inputs(name)`` and ``answer(name)``.
+        original
+            The numbers of the handout that all share.
+        variant
+            Draws inputs.
+        requires
+            What inputs must satisfy, by the words that name it; they are drawn anew until they do.
+        shown
+            Computes what else the text says about inputs, for ``answer(name)``.
+        stated
+            A sentence for sheets that are marked by the key: how to round, for ``stated(name)``.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If the name is taken.
+        """
+
+        def register(compute: Callable[[Inputs], Answers]) -> Callable[[Inputs], Answers]:
+            if name in self.answers or name in self.variations:
+                msg = f"handout: answer '{name}' is defined twice"
+                raise PaperDefinitionError(msg)
+            self.variations[name] = Variation(name, original, variant, compute, requires, shown, stated)
             return compute
 
         return register

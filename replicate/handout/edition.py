@@ -15,6 +15,7 @@ from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
+from replicate.handout.form import Form
 from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, line_of, located
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
@@ -53,6 +54,8 @@ class Document:
         both hold the caption in a Div of class ``caption``.
     formulas, drawings
         What the formulas and the names of drawings in the tree stand for.
+    form
+        The id of the form if the numbers of its exercises were drawn.
     """
 
     paper: Paper
@@ -61,9 +64,18 @@ class Document:
     blocks: Blocks
     formulas: dict[Formula, Converted]
     drawings: dict[str, Drawing]
+    form: str = ""
 
 
-def edition(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], *, solutions: bool) -> Document:
+def edition(
+    paper: Paper,
+    results: Results,
+    verdicts: Sequence[VerdictRow],
+    *,
+    solutions: bool,
+    form: Form | None = None,
+    shared: dict[str, Any] | None = None,
+) -> Document:
     """Make one edition of a paper's handout.
 
     Parameters
@@ -72,6 +84,10 @@ def edition(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], *, s
         Of this paper, perhaps among others.
     solutions
         Whether the solutions are in it.
+    form
+        Whose numbers the exercises have; without one, the numbers that all share.
+    shared
+        Kept from one form to the next: what does not vary.
 
     Raises
     ------
@@ -84,7 +100,8 @@ def edition(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], *, s
     if not file.is_file():
         msg = f"{source}: the paper has no handout"
         raise TemplateError(msg)
-    placing = Placing(paper, results, verdicts)
+    shared = {} if shared is None else shared
+    placing = Placing(paper, results, verdicts, form.draw if form else "", shared)
     prose = Prose(paper, results, verdicts, placing.functions())
     lines = prose.render_lines(read_text(file, source, TemplateError), source)
     blocks = _read(lines, source)
@@ -93,11 +110,11 @@ def edition(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], *, s
     title, blocks = _title(blocks, source)
     blocks = run_programs(_placed(_numbered(blocks, source), placing), lines, source)
     try:
-        formulas = convert(formulas_in(blocks))
+        formulas = convert(formulas_in(blocks), shared.setdefault("formulas", {}))
     except FormulaError as error:
         raise located(error, lines, source) from error
     drawings = {thing.name: thing for thing in placing.things if isinstance(thing, Drawing)}
-    return Document(paper, solutions, title, blocks, formulas, drawings)
+    return Document(paper, solutions, title, blocks, formulas, drawings, str(form) if form else "")
 
 
 def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:

@@ -38,14 +38,25 @@ def formulas_in(document: Blocks) -> list[Formula]:
     return list(dict.fromkeys((kind["t"] == "DisplayMath", tex) for kind, tex in found))
 
 
-def convert(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
+def convert(formulas: Sequence[Formula], known: dict[Formula, Converted] | None = None) -> dict[Formula, Converted]:
     """Convert formulas, all in one call of pandoc per format.
+
+    Parameters
+    ----------
+    known
+        Formulas that are converted already; the new ones are added.
 
     Raises
     ------
     FormulaError
         For the first formula that pandoc cannot convert.
     """
+    known = {} if known is None else known
+    known |= _converted([formula for formula in formulas if formula not in known])
+    return {formula: known[formula] for formula in formulas}
+
+
+def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
     if not formulas:
         return {}
     try:

@@ -59,6 +59,11 @@ def check_letters(text: str, document: Document, name: str) -> None:
     raise TemplateError(msg)
 
 
+def can_be_set(text: str) -> bool:
+    """Whether the fonts at hand have all letters of a text."""
+    return all(ord(letter) in _letters() for letter in text if _is_shown(letter))
+
+
 def _is_shown(letter: str) -> bool:
     """Whether it is a letter or a pictograph of a text; signs of formulas come from a font of their own."""
     code = ord(letter)

@@ -6,6 +6,10 @@ transposed=False)``
 ``figure(name, width=1.0, size=None)``
     a figure of the paper or of the handout's own, as a vector drawing; with a size in inches
     it is drawn anew at that size;
+``inputs(name)``
+    the numbers of an exercise whose numbers vary, by their names;
+``stated(name)``
+    how its answers are to be rounded, on the sheets of a class; nothing on the handout that all share;
 ``answer(name)``
     what a function in the paper's ``handout.py`` computes for an exercise, by the names of its values;
 ``tex(number, digits=3)``, ``fixed(number, decimals)``, ``percent(number, digits=2)``
@@ -28,8 +32,9 @@ from replicate.display.inline_svg import description
 from replicate.display.tables import table_view
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Figure, Paper, Table
-from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult
+from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.key_table import Choice, key_table, legend
 from replicate.handout.tree import Element
 from replicate.run import drawing
@@ -66,13 +71,19 @@ class Placing:
     ----------
     paper, results, verdicts
         What the handout is about.
+    form
+        The key of the form whose numbers are drawn; empty for the numbers that all share.
+    shared
+        Drawings and answers that no form changes; one dict for all the sheets of a class.
     """
 
     paper: Paper
     results: Results
     verdicts: Sequence[VerdictRow]
+    form: str = ""
+    shared: dict[str, Any] = field(default_factory=dict)
     things: list[Drawing | Placed] = field(default_factory=list)
-    _answers: dict[str, Answer] = field(default_factory=dict)
+    _answers: dict[str, Values] = field(default_factory=dict)
 
     def functions(self) -> dict[str, Any]:
         """Return the functions by the names that the text uses."""
@@ -80,6 +91,8 @@ class Placing:
             "table": self.table,
             "figure": self.figure,
             "answer": self.answer,
+            "inputs": self.inputs,
+            "stated": self.stated,
             "tex": tex,
             "fixed": fixed,
             "percent": percent,
@@ -87,24 +100,43 @@ class Placing:
 
     @cached_property
     def exercises(self) -> Exercises:
-        """The answers and figures of the handout; empty if the paper's package has no module for them."""
-        if not (self.paper.folder() / "handout.py").is_file():
-            return Exercises()
-        found = getattr(importlib.import_module(f"{self.paper.package}.handout"), "exercises", None)
-        if not isinstance(found, Exercises):
-            msg = f"{self.paper.id}/handout.py: defines no 'exercises' that is a replicate.exhibits.exercises.Exercises"
-            raise PaperDefinitionError(msg)
-        return found
+        """The answers and figures of the handout."""
+        return exercises_of(self.paper)
 
-    def answer(self, name: str) -> Answer:
+    def answer(self, name: str) -> Values:
         """Return the answer of that name; it is computed once."""
-        if name not in self.exercises.answers:
-            msg = f"answer('{name}'): no such answer; allowed: {_listed(self.exercises.answers)}"
+        variation = self.exercises.variations.get(name)
+        if variation is None and name not in self.exercises.answers:
+            known = [*self.exercises.answers, *self.exercises.variations]
+            msg = f"answer('{name}'): no such answer; allowed: {_listed(known)}"
             raise TemplateError(msg)
-        if name not in self._answers:
+        kept = self.shared if variation is None else self._answers
+        if name not in kept:
             with _said_by(f"answer('{name}')"):
-                self._answers[name] = self.exercises.answers[name]()
-        return self._answers[name]
+                if variation is None:
+                    kept[name] = self.exercises.answers[name]()
+                else:
+                    drawn = self.inputs(name)
+                    found = {key: answer.value for key, answer in variation.answers(drawn).items()}
+                    kept[name] = {**variation.shown(drawn), **found}
+        values: Values = kept[name]
+        return values
+
+    def inputs(self, name: str) -> Inputs:
+        """Return the numbers of an exercise on this form."""
+        variation = self._variation("inputs", name)
+        return variation.drawn(self.form) if self.form else variation.original
+
+    def stated(self, name: str) -> str:
+        """Return how the answers to an exercise are to be rounded, with a space before it, on a form only."""
+        variation = self._variation("stated", name)
+        return f" {variation.stated}" if self.form and variation.stated else ""
+
+    def _variation(self, function: str, name: str) -> Variation:
+        if name not in self.exercises.variations:
+            msg = f"{function}('{name}'): no such exercise; allowed: {_listed(self.exercises.variations)}"
+            raise TemplateError(msg)
+        return self.exercises.variations[name]
 
     def table(
         self,
@@ -145,8 +177,11 @@ class Placing:
             assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker
             if size is not None:
                 drawn, width = replace(drawn, size=size), min(1.0, size[0] / TEXT_WIDTH)
-            with _said_by(f"figure('{name}')"):
-                result = drawing.capture(f"{self.paper.id}-handout", drawn)
+            drawing_key = f"figure {name} {size}"
+            if drawing_key not in self.shared:
+                with _said_by(f"figure('{name}')"):
+                    self.shared[drawing_key] = drawing.capture(f"{self.paper.id}-handout", drawn)
+            result = self.shared[drawing_key]
             return self._mark(Drawing(name, result.svg, description(drawn.alt, result.axes), width))
         known = self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
@@ -161,6 +196,23 @@ class Placing:
     def _mark(self, thing: Drawing | Placed) -> str:
         self.things.append(thing)
         return f"{OPEN}{len(self.things) - 1}{CLOSE}"
+
+
+def exercises_of(paper: Paper) -> Exercises:
+    """Return what a paper's handout computes and draws; nothing if its package has no module for it.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If the module defines no `Exercises`.
+    """
+    if not (paper.folder() / "handout.py").is_file():
+        return Exercises()
+    found = getattr(importlib.import_module(f"{paper.package}.handout"), "exercises", None)
+    if not isinstance(found, Exercises):
+        msg = f"{paper.id}/handout.py: defines no 'exercises' that is a replicate.exhibits.exercises.Exercises"
+        raise PaperDefinitionError(msg)
+    return found
 
 
 @contextmanager

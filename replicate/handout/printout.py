@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -101,6 +102,8 @@ def markup(document: Document) -> str:
     }
     arguments = [f"{key}: {quoted(value)}" for key, value in settings.items()]
     arguments.append(f"solutions: {'true' if document.solutions else 'false'}")
+    if document.form:
+        arguments.append(f"form: {quoted(document.form)}")
     head = f'#import "{TEMPLATE}": *\n#show: handout.with({", ".join(arguments)})\n\n'
     return head + body.replace("\r\n", "\n")
 
@@ -183,7 +186,8 @@ def _failed(name: str, error: typst.TypstError | typst.TypstWarning, text: str) 
     return TemplateError(f"{name}: cannot be typeset: {error.message}{hints}{about}")
 
 
-def _api_version() -> list[int]:
+@cache
+def _api_version() -> tuple[int, ...]:
     """Return the version of the tree's format that this pandoc reads and writes."""
     empty = json.loads(pypandoc.convert_text("", "json", format="markdown"))
-    return list(empty["pandoc-api-version"])
+    return tuple(empty["pandoc-api-version"])

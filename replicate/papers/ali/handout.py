@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Exercises, Values
 from replicate.loops import Loop
 from replicate.papers.ali.structures import Settings, plant, series
 from replicate.papers.ali.tuning import gain_product, integral_time, smallest_sensitivity
@@ -25,13 +25,13 @@ FULL, REDUCED = Fraction(1, 2), Fraction(2, 5)  # exponents of the two tables
 
 
 @exercises.answer("means")
-def means() -> Answer:
+def means() -> Values:
     """Return geometric and arithmetic mean of 1 and 2T/theta."""
     return {"geometric": gain_product(HARD), "arithmetic": float(1 + 2 / HARD) / 2}
 
 
 @exercises.answer("smallest")
-def smallest() -> Answer:
+def smallest() -> Values:
     """Return the maximum sensitivity below which the design loop cannot go."""
     return {"0.2": smallest_sensitivity(Fraction(1, 5))}
 
@@ -53,7 +53,7 @@ def _window() -> tuple[float, float]:
 
 
 @exercises.answer("best-gain")
-def best_gain() -> Answer:
+def best_gain() -> Values:
     """Return where in the window the maximum sensitivity is smallest, and the gains of both tables."""
     low, high = _window()
     inset = 0.01 * (high - low)

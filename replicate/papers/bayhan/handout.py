@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import cmath
 import math
+from dataclasses import replace
+from random import Random
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import optimize
 
-from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Exercises, Values
+from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
 from replicate.loops import Loop
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.evidence import in_steps, six_digits
-from replicate.papers.bayhan.processes import EXAMPLE_41, RULES, competing_rules, controllers
+from replicate.papers.bayhan.processes import EXAMPLE_41, competing_rules, controllers
 from replicate.papers.bayhan.readings import AUTHORS
 from replicate.papers.bayhan.toolchain import sampled_response, sampled_specifications
 
@@ -22,74 +25,157 @@ if TYPE_CHECKING:
 
 exercises = Exercises()
 
+ASKED = ("ZN", "ITAESPC")  # the rules whose integral gains the first exercise asks for
+CLEAR = 0.05  # so far from one, as a logarithm, that an answer rounded early differs from a wrong one
+
 
 @exercises.answer("example")
-def example() -> Answer:
+def example() -> Values:
     """Return the pole assignment of Example 4.1."""
     found = EXAMPLE_41.pole_assignment()
     return {"a": EXAMPLE_41.a, "Kp": found.k, "Ki": found.ki}
 
 
-def _gains(rule: str) -> Answer:
-    found = competing_rules()[rule].evaluate(**EXAMPLE_41.symbols)
-    kp, ti = float(found.kp), float(found.ti)
-    return {"Kp": kp, "Ti": ti, "right": kp / ti, "wrong": 1.0 / ti}
+def _plant(rng: Random) -> Inputs:
+    """Draw a process with numbers of two digits."""
+    return {"K": rng.randint(3, 30) / 10, "tau": rng.randint(5, 60) / 10, "L": rng.randint(3, 60) / 10}
 
 
-@exercises.answer("gains-ZN")
-def gains_zn() -> Answer:
-    """Return the gains of Ziegler and Nichols for Example 4.1, integral gain by (3) and without Kp."""
-    return _gains("ZN")
+def _competitors(inputs: Inputs) -> dict[str, tuple[float, float]]:
+    """Return Kp and Ti of the ten rules of Table 1."""
+    tau = float(inputs["tau"])
+    process = replace(EXAMPLE_41, K=float(inputs["K"]), tau=tau, L=float(inputs["L"]), tau_cl=EXAMPLE_41.tau_cl * tau)
+    found = {name: rule.evaluate(**process.symbols) for name, rule in competing_rules().items()}
+    return {name: (float(gains.kp), float(gains.ti)) for name, gains in found.items()}
 
 
-@exercises.answer("gains-ITAESPC")
-def gains_itaespc() -> Answer:
-    """Return the gains of the rule ITAESPC for Example 4.1."""
-    return _gains("ITAESPC")
+def _proportional_gains(inputs: Inputs) -> dict[str, float]:
+    return {name: kp for name, (kp, _) in _competitors(inputs).items()}
 
 
-@exercises.answer("who-suffers")
-def who_suffers() -> Answer:
-    """Sort the competing rules by whether leaving out Kp raises or lowers the integral gain."""
-    found = controllers(EXAMPLE_41)
-    others = [rule for rule in RULES if rule != "PA"]
+def _gains_clear_of_one(inputs: Inputs) -> bool:
+    gains = _proportional_gains(inputs).values()
+    return all(abs(math.log(kp)) > CLEAR for kp in gains) and min(gains) < 1.0 < max(gains)
+
+
+def _smallest_suffers(inputs: Inputs) -> bool:
+    gains = _proportional_gains(inputs).values()
+    return min(gains) * max(gains) < 1.0
+
+
+def _times_clear_of_one(inputs: Inputs) -> bool:
+    """Whether dividing by Ti differs from multiplying by it."""
+    found = _competitors(inputs)
+    return all(abs(math.log(found[rule][1])) > CLEAR for rule in ASKED)
+
+
+def _shown(inputs: Inputs) -> Values:
+    """Return the process and all rules as the text names them: which got too much integral action, which too little."""
+    gains = _proportional_gains(inputs)
+    found = _competitors(inputs)
+    K, tau, L = (f"{float(inputs[name]):g}" for name in ("K", "tau", "L"))
     return {
-        "gains": ", ".join(f"{found[rule].k:.3f}" for rule in others),
-        "smallest": min(others, key=lambda rule: found[rule].k),
-        "more": ", ".join(rule for rule in others if found[rule].k < 1.0),
-        "less": ", ".join(rule for rule in others if found[rule].k > 1.0),
+        "process": rf"K = \tau = L = {K}" if K == tau == L else rf"K = {K},\ \tau = {tau},\ L = {L}",
+        **{f"{rule} Kp": found[rule][0] for rule in ASKED},
+        **{f"{rule} Ti": found[rule][1] for rule in ASKED},
+        "gains": ", ".join(f"{kp:.3f}" for kp in gains.values()),
+        "smallest": min(gains, key=lambda rule: gains[rule]),
+        "more": ", ".join(rule for rule, kp in gains.items() if kp < 1.0),
+        "less": ", ".join(rule for rule, kp in gains.items() if kp > 1.0),
     }
 
 
+@exercises.vary(
+    "missing-factor",
+    original={"K": EXAMPLE_41.K, "tau": EXAMPLE_41.tau, "L": EXAMPLE_41.L},
+    variant=_plant,
+    requires={
+        "K, tau and L differ": lambda inputs: len(set(inputs.values())) == len(inputs),
+        "L/tau from 0.3 to 2": lambda inputs: 0.3 <= float(inputs["L"]) / float(inputs["tau"]) <= 2.0,
+        "Kp of some rules below one, of others above, of none near one": _gains_clear_of_one,
+        "the smallest Kp farthest from one": _smallest_suffers,
+        "Ti not near one": _times_clear_of_one,
+    },
+    shown=_shown,
+    stated="Carry on with at least three significant digits, and state $K_i$ with three.",
+)
+def missing_factor(inputs: Inputs) -> Answers:
+    """Return for two rules the integral gain by (3) and without Kp, carried on with gains of three digits."""
+    found: dict[str, Answer] = {}
+    competitors = _competitors(inputs)
+    for rule in ASKED:
+        kp, ti = competitors[rule]
+        p, t = rounded(kp, 3), rounded(ti, 3)
+        found[f"{rule} Kp/Ti"] = Answer(
+            kp / ti,
+            digits=3,
+            carried=(p / t, p / ti, kp / t),
+            mistakes={"Kp forgotten": 1 / ti, "multiplied by Ti": kp * ti},
+        )
+        found[f"{rule} 1/Ti"] = Answer(
+            1 / ti, digits=3, carried=(1 / t,), mistakes={"Kp kept": kp / ti, "not inverted": ti}
+        )
+    return found
+
+
 @exercises.answer("exact-double-pole")
-def exact_double_pole() -> Answer:
+def exact_double_pole() -> Values:
     """Return the gains that give the loop with the exact dead time, K = tau = L = 1, a double pole at -a."""
     a = EXAMPLE_41.a
     return {"Kp": (3 * a - 1 - a**2) * math.exp(-a), "Ki": a**2 * (2 - a) * math.exp(-a)}
 
 
-@exercises.answer("pade-phase")
-def pade_phase() -> Answer:
-    """Return how far the phase of the second-order Padé model (7) is off, in degrees, by omega L."""
+def _pade_error(x: float) -> float:
+    """Return how far the phase of the second-order Padé model (7) is off at omega L = x, in degrees."""
+    s = 1j * x
+    return math.degrees(cmath.phase((1 - s / 2 + s**2 / 12) / (1 + s / 2 + s**2 / 12) * cmath.exp(s)))
 
-    def error(x: float) -> float:
-        s = 1j * x
-        return math.degrees(cmath.phase((1 - s / 2 + s**2 / 12) / (1 + s / 2 + s**2 / 12) * cmath.exp(s)))
 
+@exercises.answer("pade-crossover")
+def pade_crossover() -> Values:
+    """Return omega L at the gain crossover of Example 4.1 and the error of the Padé model there, in degrees."""
     margins = Loop(EXAMPLE_41.plant, EXAMPLE_41.pole_assignment()).margins()
     crossover = margins.gain_crossover * EXAMPLE_41.L
-    return {"1": error(1), "2": error(2), "4": error(4), "crossover": crossover, "there": error(crossover)}
+    return {"omega L": crossover, "error": _pade_error(crossover)}
+
+
+def _frequencies(rng: Random) -> Inputs:
+    """Draw a frequency at which the model is good, one at which it still is, and one at which it fails."""
+    ranges = {"low": (10, 16), "middle": (17, 27), "high": (33, 46)}
+    return {name: rng.randint(*ends) / 10 for name, ends in ranges.items()}
+
+
+@exercises.vary(
+    "pade-phase",
+    original={"low": 1.0, "middle": 2.0, "high": 4.0},
+    variant=_frequencies,
+    requires={"the arctangent passes 90 degrees": lambda inputs: float(inputs["high"]) > math.sqrt(12)},
+    stated="Carry on with at least two decimals, and state the errors with two.",
+)
+def pade_phase(inputs: Inputs) -> Answers:
+    """Return the error of the phase at three values of omega L, carried on with angles of two decimals."""
+    found: dict[str, Answer] = {}
+    for name, drawn in inputs.items():
+        error, dead_time = _pade_error(float(drawn)), math.degrees(float(drawn))
+        found[name] = Answer(
+            error,
+            unit="degrees",
+            tolerance=0.01,
+            carried=(round(dead_time, 2) - round(dead_time - error, 2),),
+            mistakes={"half of the angle": (dead_time + error) / 2, "wrong sign": -error},
+        )
+    return found
 
 
 @exercises.answer("sample-counts")
-def sample_counts() -> Answer:
+def sample_counts() -> Values:
     """Count the rows of Tables 2 and 3 whose printed settling time is sample 909 or 910 of their own grid."""
     counts = in_steps()["settling_time"]
     return {"rows": float(counts.round().isin([909.0, 910.0]).sum()), "of": float(len(counts))}
 
 
 @exercises.answer("misprint")
-def misprint() -> Answer:
+def misprint() -> Values:
     """Return the authors' delay time of the rule IAESPC, in steps of its sample grid, and where it leaves the print."""
     found = controllers(EXAMPLE_41, AUTHORS.convention, AUTHORS.variant)["IAESPC"]
     response = sampled_response(EXAMPLE_41, found.k, found.ki)

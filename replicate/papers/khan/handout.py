@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Exercises, Values
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import PRINTED, RESTORED, case_gains, loop, plant, settling_after_load
@@ -23,13 +23,13 @@ LOAD_AT = 100.0  # when the load of Table I enters
 
 
 @exercises.answer("double-root")
-def double_root() -> Answer:
+def double_root() -> Values:
     """Return K_b h, at which two real poles of proportional control meet, by ph."""
     return {str(ph): math.exp(-(1 + ph)) for ph in (0, 1, 3)}
 
 
 @exercises.answer("wrong-digit")
-def wrong_digit() -> Answer:
+def wrong_digit() -> Values:
     """Return the digit that is wrong in Haalman's load settling time, which Bryant's row prints, and the right one."""
     text = paper.printed_cells("table-1")["Bryant", "td"]
     settled = settling_after_load(loop("Haalman", 1.0, 10.0), LOAD_AT)
@@ -48,7 +48,7 @@ def _margins(variant: str) -> tuple[NDArray[np.float64], NDArray[np.float64], ND
 
 
 @exercises.answer("margins")
-def margins() -> Answer:
+def margins() -> Values:
     """Return the smallest gain margin and the extremes of M_s of (7a) as printed."""
     _, gain, ms = _margins(PRINTED)
     return {"gain": float(gain.min()), "low": float(ms.min()), "high": float(ms.max())}

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Exercises, Values
 from replicate.loops import Signal
 from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.normalised_loop import lag, loop, point
@@ -27,7 +27,7 @@ _COUNTS = {0: "none", 1: "one", 2: "two", 3: "three"}  # small numbers in runnin
 
 
 @exercises.answer("slips")
-def slips() -> Answer:
+def slips() -> Values:
     """Return how many single wrong digits explain the column of 75 degrees, and the first of them."""
     found = single_digit_slips("75")
     tau, right, wrong = found[0]
@@ -35,7 +35,7 @@ def slips() -> Answer:
 
 
 @exercises.answer("at-0.3")
-def at_a_third() -> Answer:
+def at_a_third() -> Values:
     """Return the printed hyperbola of 45 degrees at tau = 0.3, and how far below the exact end it and the fit are."""
     ends = upper_ends("45")
     exact = float(ends[list(TAUS).index(0.3)])
@@ -84,7 +84,7 @@ def _margins() -> NDArray[np.float64]:
 
 
 @exercises.answer("arc")
-def arc() -> Answer:
+def arc() -> Values:
     """Return where on the arc the response settles first, and where its second dip leaves the 2 % band."""
     margins = _margins()
     times = [_step(float(margin)).settling_time() for margin in margins]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import optimize
 
-from replicate.exhibits.exercises import Answer, Exercises
+from replicate.exhibits.exercises import Exercises, Values
 from replicate.loops import Loop, Signal, design_pi
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design, load_response
@@ -26,13 +26,13 @@ TIMED = ("G1", "G2", "G3", "G5", "G6")  # the plants whose printed times belong 
 
 
 @exercises.answer("undershoot")
-def undershoot() -> Answer:
+def undershoot() -> Values:
     """Return the lowest value of the load response of G6 with Ms = 2."""
     return {"G6": load_response("G6", 2.0).trough().value}
 
 
 @exercises.answer("late")
-def late() -> Answer:
+def late() -> Values:
     """Return by how many per cent the print is later than the one-sided times, and how far off the others are."""
     frame = levels()
     rows = [f"{plant} Ms={ms}" for plant in TIMED for ms in (1.4, 2.0)]
@@ -42,7 +42,7 @@ def late() -> Answer:
 
 
 @exercises.answer("dead-time")
-def dead_time() -> Answer:
+def dead_time() -> Values:
     """Return the design for a pure dead time, Ms = 2."""
     found = design("G7", 2.0)
     return {"w": found.frequency, "k": found.k, "ki": found.ki}
@@ -82,7 +82,7 @@ def _jump() -> float:
 
 
 @exercises.answer("jump")
-def jump() -> Answer:
+def jump() -> Values:
     """Return where the two-sided settling time of G1 jumps, and from where to where."""
     ms = _jump()
     before, after = two_sided(_load(ms - 1e-6)), two_sided(_load(ms + 1e-6))

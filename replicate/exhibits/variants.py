@@ -1,0 +1,163 @@
+"""Exercises with numbers of one's own: what is drawn for a student, the answers to it, and what a marker accepts.
+
+Each draw starts from a hash of form key and exercise, so that it depends on no other student and no other exercise.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import random
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from replicate.errors import PaperDefinitionError
+
+Inputs = Mapping[str, float | str]
+
+TRIES = 1000  # draws before a seed is given up
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A number to be found, and what is accepted for it.
+
+    Attributes
+    ----------
+    value
+        Along the exact path.
+    unit
+        Of `value`; empty for a pure number.
+    digits
+        Significant digits to be stated; half a unit of the last one is accepted on both sides.
+    tolerance
+        Instead of digits: the largest absolute deviation, in the unit of `value`.
+    carried
+        The values of those who carry on intermediate results rounded as the text says, themselves unrounded.
+    mistakes
+        Wrong values by the mistake that leads to them; none of them may be accepted.
+
+    Raises
+    ------
+    PaperDefinitionError
+        Unless the value is finite and either digits or tolerance is given.
+
+    Examples
+    --------
+    >>> Answer(0.3, digits=2, carried=(0.31,)).accepted
+    (0.295, 0.315)
+    >>> Answer(30.0, unit="degrees", tolerance=0.5).accepts(30.6)
+    False
+    """
+
+    value: float
+    unit: str = ""
+    digits: int | None = None
+    tolerance: float | None = None
+    carried: tuple[float, ...] = ()
+    mistakes: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if not all(math.isfinite(value) for value in (self.value, *self.carried)):
+            msg = f"an answer, exact or carried on, does not exist: {[self.value, *self.carried]}"
+            raise PaperDefinitionError(msg)
+        if (self.digits is None) == (self.tolerance is None):
+            msg = "an answer needs either digits or tolerance"
+            raise PaperDefinitionError(msg)
+        if not (self.digits is None or self.digits >= 1) or not (self.tolerance is None or 0 < self.tolerance < math.inf):
+            msg = f"an answer has digits={self.digits}, tolerance={self.tolerance}; allowed: positive numbers"
+            raise PaperDefinitionError(msg)
+
+    @property
+    def accepted(self) -> tuple[float, float]:
+        """The ends of the accepted interval: the exact path and the carried ones, each with its margin."""
+        paths = (self.value, *self.carried)
+        return min(path - self._margin(path) for path in paths), max(path + self._margin(path) for path in paths)
+
+    def accepts(self, value: float) -> bool:
+        """Whether a stated value is in the accepted interval; its ends belong to it."""
+        lower, upper = self.accepted
+        slack = 1e-12 * max(abs(lower), abs(upper))  # the ends are computed in floating point
+        return lower - slack <= value <= upper + slack
+
+    def _margin(self, value: float) -> float:
+        if self.tolerance is not None:
+            return self.tolerance
+        assert self.digits is not None  # noqa: S101  -- for the type checker
+        if value == 0.0:
+            return 0.0
+        return 0.5 * 10.0 ** (math.floor(math.log10(abs(value))) - self.digits + 1)
+
+
+Answers = Mapping[str, Answer]
+
+
+@dataclass(frozen=True)
+class Variation:
+    """An exercise whose numbers vary.
+
+    Attributes
+    ----------
+    name
+        By which the text asks for it.
+    original
+        The numbers of the handout that all share.
+    variant
+        Draws inputs.
+    answers
+        Computes the answers to inputs, by name.
+    requires
+        What inputs must satisfy, by the words that name it; they are drawn anew until they do.
+    shown
+        Computes what else the text says about inputs.
+    stated
+        A sentence for sheets that are marked by the key: how to round, in Markdown.
+    """
+
+    name: str
+    original: Inputs
+    variant: Callable[[random.Random], Inputs]
+    answers: Callable[[Inputs], Answers]
+    requires: Mapping[str, Callable[[Inputs], bool]] = field(default_factory=dict)
+    shown: Callable[[Inputs], Mapping[str, float | str]] = lambda _: {}
+    stated: str = ""
+
+    def drawn(self, key: str) -> Inputs:
+        """Return the inputs of one form.
+
+        Parameters
+        ----------
+        key
+            What identifies the form; the same key draws the same inputs, always.
+
+        Raises
+        ------
+        PaperDefinitionError
+            If no draw satisfies what is required.
+        """
+        digest = hashlib.sha256(f"{key}\0{self.name}".encode()).digest()
+        rng = random.Random(int.from_bytes(digest, "big"))  # noqa: S311  -- numbers of an exercise, no secret
+        failures = dict.fromkeys(self.requires, 0)
+        for _ in range(TRIES):
+            inputs = self.variant(rng)
+            failed = next((words for words, holds in self.requires.items() if not holds(inputs)), None)
+            if failed is None:
+                return inputs
+            failures[failed] += 1
+        worst = max(failures, key=lambda words: failures[words])
+        msg = (
+            f"exercise '{self.name}': no draw of {TRIES} satisfies all that is required; "
+            f"{failures[worst]} fail '{worst}'; use another seed"
+        )
+        raise PaperDefinitionError(msg)
+
+
+def rounded(value: float, digits: int) -> float:
+    """Return a number rounded to significant digits, as students carry it on.
+
+    Examples
+    --------
+    >>> rounded(1.15607, 3)
+    1.16
+    """
+    return float(f"{value:.{digits - 1}e}")

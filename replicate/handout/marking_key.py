@@ -1,0 +1,102 @@
+"""The key of a class set as CSV and PDF: what each student is to find, and what is accepted."""
+
+from __future__ import annotations
+
+import csv
+import io
+import tempfile
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
+from pathlib import Path
+
+import typst
+
+from replicate.errors import TemplateError
+from replicate.exhibits import Paper
+from replicate.exhibits.exercises import Exercises
+from replicate.handout.form import Form
+from replicate.handout.letters import can_be_set, fonts_dir
+from replicate.resources import templates_dir
+
+TEMPLATE = "handout_key.typ"
+_DIGITS = 7  # of the key's numbers, more than any answer is stated with
+
+
+@dataclass(frozen=True)
+class KeyRow:
+    """One answer of one student; numbers as text, the ends of the interval rounded outwards."""
+
+    student: str
+    exercise: str
+    part: str
+    answer: str
+    lower: str
+    upper: str
+    unit: str
+    form: str
+
+
+def key_rows(exercises: Exercises, student: str, form: Form) -> list[KeyRow]:
+    """Return the answers of a student.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If no draw satisfies what an exercise requires, or an answer does not exist.
+    """
+    rows = []
+    for name, variation in exercises.variations.items():
+        for part, answer in variation.answers(variation.drawn(form.draw)).items():
+            lower, upper = answer.accepted
+            numbers = (
+                _text(answer.value, ROUND_HALF_EVEN),
+                _text(lower, ROUND_FLOOR),
+                _text(upper, ROUND_CEILING),
+            )
+            rows.append(KeyRow(student, name, part, *numbers, answer.unit, str(form)))
+    return rows
+
+
+def key_csv(rows: Sequence[KeyRow]) -> bytes:
+    """Return the key as CSV, one answer a line."""
+    text = io.StringIO(newline="")
+    writer = csv.DictWriter(text, [field.name for field in fields(KeyRow)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(row) for row in rows)
+    return text.getvalue().encode()
+
+
+def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str) -> bytes:
+    """Return the key as PDF; a student whose name no font at hand can show stands there by the key of the form.
+
+    Raises
+    ------
+    TemplateError
+        If it cannot be set.
+    """
+    shown = [row if can_be_set(row.student) else replace(row, student=row.form.split(":")[1]) for row in rows]
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        (root / "key.csv").write_bytes(key_csv(shown))
+        (root / TEMPLATE).write_text((templates_dir() / TEMPLATE).read_text(encoding="utf-8"), encoding="utf-8")
+        try:
+            made = typst.compile(
+                str(root / TEMPLATE),
+                root=str(root),
+                ignore_system_fonts=True,
+                font_paths=[str(fonts_dir())],
+                format="pdf",
+                pdf_standards=["ua-1"],
+                sys_inputs={"paper": paper.id, "citation": paper.citation, "seed": seed},
+            )
+        except typst.TypstError as error:
+            msg = f"{paper.id}: the key cannot be typeset: {error.message}"
+            raise TemplateError(msg) from error
+    assert isinstance(made, bytes)  # noqa: S101  -- for the type checker: one PDF, not a list of pages
+    return made
+
+
+def _text(value: float, rounding: str) -> str:
+    """Return a number in plain decimals, so that any spreadsheet reads it."""
+    return format(Context(prec=_DIGITS, rounding=rounding).create_decimal(Decimal(value)).normalize(), "f")

@@ -1,0 +1,79 @@
+"""A roster: a CSV file with one student or group per line, and the column that names them."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import unicodedata
+from pathlib import Path
+
+from replicate.errors import ReplicateError
+from replicate.exhibits.plain_text import read_text
+
+_UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')  # in a file's name, on some system
+_LONGEST = 60  # characters of a name, so that its file's name fits any system
+_RESERVED = {"key", "key-forms", "solutions"}  # files of other kinds have these names
+
+
+def read_roster(path: Path, column: str = "") -> list[str]:
+    """Return the ids of a roster.
+
+    Parameters
+    ----------
+    path
+        A CSV file whose first line names the columns, separated by commas, semicolons or tabs.
+    column
+        The one with the ids; the first if empty.
+
+    Raises
+    ------
+    ReplicateError
+        If there is no such file or column, nobody in it, an id missing, or two ids would name one file.
+    """
+    text = read_text(path, path.name, ReplicateError)
+    head = text.splitlines()[0] if text.strip() else ""
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count))
+    try:
+        columns = [name.strip() for name in next(rows, [])]
+        lines = [(rows.line_num, row) for row in rows if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
+        raise ReplicateError(msg) from error
+    if not lines:
+        msg = f"{path.name}: the roster is empty: it needs a line with the names of the columns and one per student"
+        raise ReplicateError(msg)
+    if column and column not in columns:
+        msg = f"{path.name}: no column '{column}'; allowed: {', '.join(columns)}"
+        raise ReplicateError(msg)
+    at = columns.index(column) if column else 0
+    students: list[str] = []
+    seen: dict[str, tuple[int, str]] = {}
+    for number, row in lines:
+        student = unicodedata.normalize("NFC", row[at].strip()) if at < len(row) else ""
+        if not student:
+            msg = f"{path.name}:{number}: no entry in the column '{columns[at]}', which names the sheets"
+            raise ReplicateError(msg)
+        name = file_stem(student).casefold()
+        if name in seen:
+            line, other = seen[name]
+            msg = (
+                f"{path.name}:{number}: '{student}' names the same sheet as '{other}' in line {line}; "
+                "choose a column in which all differ with --roster-id"
+            )
+            raise ReplicateError(msg)
+        seen[name] = (number, student)
+        students.append(student)
+    return students
+
+
+def file_stem(student: str) -> str:
+    """Return an id as part of a file's name.
+
+    Examples
+    --------
+    >>> file_stem("Ångström/2"), file_stem("key")
+    ('Ångström_2', 'key_')
+    """
+    stem = _UNSAFE.sub("_", student)[:_LONGEST].rstrip(". ") or "_"
+    return f"{stem}_" if stem.casefold() in _RESERVED else stem

@@ -1,0 +1,240 @@
+"""Class sets: exercises that take numbers, what a marker accepts, rosters, forms and the sheets themselves."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from pathlib import Path
+from random import Random
+
+import pytest
+import synthetic
+from typer.testing import CliRunner
+
+from replicate.cli import app
+from replicate.errors import PaperDefinitionError, ReplicateError
+from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.variants import Answer, Answers, Inputs, Variation, rounded
+from replicate.handout import ClassSet, Form, read_roster, stressed
+from replicate.handout import class_set as class_set_module
+from replicate.handout import placing as placing_module
+from replicate.handout.edition import edition
+from replicate.handout.printout import markup, pdf
+from replicate.papers.bayhan.handout import exercises as bayhan
+
+TEXT = """# A toy
+
+## Exercises
+
+::: exercise
+## Divide
+Divide ${{ inputs('division')['a'] }}$ by ${{ inputs('division')['b'] }}$.{{ stated('division') }}
+
+::: solution
+It is ${{ fixed(answer('division')['quotient'], 4) }}$.
+:::
+:::
+"""
+
+
+def division() -> Exercises:
+    found = Exercises()
+
+    @found.vary(
+        "division",
+        original={"a": 1, "b": 4},
+        variant=lambda rng: {"a": rng.randint(11, 99), "b": rng.randint(3, 9)},
+        requires={"a is no multiple of b": lambda inputs: float(inputs["a"]) % float(inputs["b"]) != 0},
+        stated="State three digits.",
+    )
+    def quotient(inputs: Inputs) -> Answers:
+        a, b = float(inputs["a"]), float(inputs["b"])
+        return {"quotient": Answer(a / b, digits=3, mistakes={"multiplied": a * b, "upside down": b / a})}
+
+    return found
+
+
+@pytest.fixture
+def toy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ClassSet:
+    (tmp_path / "toy").mkdir()
+    (tmp_path / "toy" / "handout.md").write_text(TEXT, encoding="utf-8")
+    paper = synthetic.paper(tmp_path / "toy")
+    made = division()
+    monkeypatch.setattr(placing_module, "exercises_of", lambda _: made)
+    monkeypatch.setattr(class_set_module, "exercises_of", lambda _: made)
+    return ClassSet(paper, {}, ())
+
+
+def test_the_accepted_interval_covers_all_paths_and_their_rounding() -> None:
+    answer = Answer(0.50689, digits=3, carried=(0.586 / 1.16,))
+    lower, upper = answer.accepted
+    assert (lower, upper) == pytest.approx((0.586 / 1.16 - 0.0005, 0.50689 + 0.0005), rel=1e-12)
+    assert answer.accepts(0.505)
+    assert answer.accepts(0.507)
+    assert not answer.accepts(0.508)
+
+
+@pytest.mark.parametrize(("value", "margin"), [(9.996, 0.005), (-120.0, 0.5), (0.00123, 0.000005)])
+def test_digits_are_half_a_unit_of_the_last_one(value: float, margin: float) -> None:
+    lower, upper = Answer(value, digits=3).accepted
+    assert (value - lower, upper - value) == pytest.approx((margin, margin), rel=1e-6)
+
+
+def test_what_is_rounded_as_asked_is_accepted() -> None:
+    rng = Random(3)  # noqa: S311  -- numbers to try
+    for _ in range(500):
+        value, digits = rng.choice((-1, 1)) * 10 ** rng.uniform(-6, 6), rng.randint(1, 6)
+        assert Answer(value, digits=digits).accepts(rounded(value, digits))
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [{"value": math.nan, "digits": 3}, {"value": 1.0}, {"value": 1.0, "digits": 2, "tolerance": 0.1},
+     {"value": 1.0, "digits": 0}, {"value": 1.0, "tolerance": -1.0},
+     {"value": 1.0, "digits": 2, "carried": (math.inf,)}],
+)  # fmt: skip
+def test_an_answer_that_does_not_exist_is_refused(arguments: dict[str, float]) -> None:
+    with pytest.raises(PaperDefinitionError):
+        Answer(**arguments)  # type: ignore[arg-type]
+
+
+def test_a_draw_depends_on_key_and_exercise_only_and_meets_what_is_required() -> None:
+    one, other = bayhan.variations["missing-factor"], bayhan.variations["pade-phase"]
+    assert one.drawn("a") == one.drawn("a") != one.drawn("b")
+    other.drawn("a")
+    for number in range(30):
+        inputs = one.drawn(str(number))
+        assert all(holds(inputs) for holds in one.requires.values())
+
+
+def test_a_seed_that_no_draw_satisfies_is_one_line() -> None:
+    never = Variation("never", {}, lambda rng: {"x": rng.random()}, lambda _: {}, {"x above one": lambda _: False})
+    with pytest.raises(
+        PaperDefinitionError, match=r"no draw of 1000 .*1000 fail 'x above one'; use another seed"
+    ) as found:
+        never.drawn("a")
+    assert "\n" not in str(found.value)
+
+
+def test_the_missing_factor_by_hand() -> None:
+    """Ziegler and Nichols: Kp = 0.9 tau/(K L), Ti = 3 L; ITAESPC as the exercise prints it."""
+    variation = bayhan.variations["missing-factor"]
+    for inputs in (variation.original, variation.drawn("x"), variation.drawn("y")):
+        K, tau, L = (float(inputs[name]) for name in ("K", "tau", "L"))
+        found = variation.answers(inputs)
+        assert found["ZN Kp/Ti"].value == pytest.approx(0.9 * tau / (K * L) / (3 * L), rel=1e-12)
+        assert found["ZN 1/Ti"].value == pytest.approx(1 / (3 * L), rel=1e-12)
+        kp, ti = 0.586 * (L / tau) ** -0.916 / K, tau / (1.03 - 0.165 * L / tau)
+        assert found["ITAESPC Kp/Ti"].value == pytest.approx(kp / ti, rel=1e-12)
+        by_hand = float(f"{float(f'{kp:.3g}') / float(f'{ti:.3g}'):.3g}")
+        assert found["ITAESPC Kp/Ti"].accepts(by_hand)
+
+
+def test_the_error_of_pade_by_hand() -> None:
+    variation = bayhan.variations["pade-phase"]
+    inputs = variation.drawn("x")
+    for name, answer in variation.answers(inputs).items():
+        x = float(inputs[name])
+        by_formula = math.degrees(x - 2 * math.atan2(6 * x, 12 - x * x))
+        assert answer.value == pytest.approx(by_formula, abs=1e-9)
+        assert answer.accepts(round(by_formula, 2))
+
+
+@pytest.mark.parametrize("name", sorted(bayhan.variations))
+def test_exercises_stand_the_stress(name: str) -> None:
+    assert list(stressed(bayhan.variations[name], 120))
+
+
+def test_stress_finds_a_mistake_that_is_accepted() -> None:
+    wrong = Variation("w", {}, lambda _: {"x": 1}, lambda _: {"y": Answer(1.0, digits=2, mistakes={"slip": 1.04})})
+    with pytest.raises(PaperDefinitionError, match=r"'slip'.* is accepted"):
+        list(stressed(wrong, 3))
+    guessed = Variation("g", {}, lambda _: {"x": 1}, lambda _: {"y": Answer(1.0, digits=2)})
+    with pytest.raises(PaperDefinitionError, match="100% of the forms"):
+        list(stressed(guessed, 100))
+
+
+def test_a_form_is_read_back_and_names_nobody() -> None:
+    form = Form.of("bayhan", "2026 W: ä/2", "Ada Lovelace")
+    assert Form.read(str(form)) == form
+    assert "Ada" not in str(form)
+    with pytest.raises(ReplicateError, match="allowed: PAPER:KEY:SEED"):
+        Form.read("bayhan:short:1")
+
+
+def test_a_roster_of_many_scripts() -> None:
+    students = read_roster(Path(__file__).parents[1] / "examples" / "roster.csv")
+    assert len(students) == len(set(students)) >= 8
+    assert any(not student.isascii() for student in students)
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "message"),
+    [
+        ("", "", "roster is empty"),
+        ("name,mail\n\n", "", "roster is empty"),
+        ("name,mail\nAda,a\nada,b\n", "", "r.csv:3: 'ada' names the same sheet as 'Ada' in line 2"),
+        ("name;mail\nAda;a\n", "id", "no column 'id'; allowed: name, mail"),
+        ("name,id\nAda,\n", "id", "r.csv:2: no entry in the column 'id'"),
+        ("name\nA/B\nA:B\n", "", "names the same sheet"),
+    ],
+)
+def test_a_roster_that_cannot_be_used_is_one_line(tmp_path: Path, text: str, column: str, message: str) -> None:
+    (tmp_path / "r.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(ReplicateError, match=message) as found:
+        read_roster(tmp_path / "r.csv", column)
+    assert "\n" not in str(found.value)
+
+
+def test_sheets_do_not_depend_on_the_rest_of_the_class(toy: ClassSet) -> None:
+    small, large = dict(toy.files(["Ada", "山田"], "1")), dict(toy.files(["Bob", "Ada", "山田"], "1"))
+    assert set(small) == {"toy-key.csv", "toy-key.pdf", "toy-Ada.pdf", "toy-山田.pdf"}
+    assert {name: large[name] for name in small if "key" not in name} == {
+        name: content for name, content in small.items() if "key" not in name
+    }
+    assert small == dict(toy.files(["Ada", "山田"], "1"))
+    assert small["toy-Ada.pdf"] != dict(toy.files(["Ada"], "2"))["toy-Ada.pdf"]
+
+
+def test_sheet_and_key_are_of_one_variant_and_the_form_makes_it_again(toy: ClassSet) -> None:
+    files = dict(toy.files(["Ada"], "1"))
+    (row,) = csv.DictReader(io.StringIO(files["toy-key.csv"].decode()))
+    form = Form.read(row["form"])
+    sheet = edition(toy.paper, {}, (), solutions=False, form=form)
+    source = markup(sheet)
+    assert pdf(sheet) == files["toy-Ada.pdf"]
+    assert f'form: "{row["form"]}"' in source
+    a, b = (float(tex) for displayed, tex in sheet.formulas)
+    assert float(row["lower"]) <= float(f"{a / b:.3g}") <= float(row["upper"])
+    assert not float(row["lower"]) <= float(f"{b / a:.3g}") <= float(row["upper"])
+    assert "State three digits." in source
+    assert "Ada" not in source
+    assert toy.again(form) == (f"toy-{form.key}.pdf", files["toy-Ada.pdf"])
+
+
+def test_the_handout_that_all_share_has_the_original_numbers(toy: ClassSet) -> None:
+    shared = edition(toy.paper, {}, (), solutions=True)
+    assert [tex for _, tex in shared.formulas] == ["1", "4", "0.2500"]
+    assert "form:" not in markup(shared)
+    assert "State three digits." not in markup(shared)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["bayhan", "--variants", "2", "--form", "bayhan:0123456789ab:1"], "do not go together"),
+        (["bayhan", "khan", "--variants", "2"], "about one paper"),
+        (["khan", "--variants", "2"], "no exercise has numbers that vary"),
+        (["bayhan", "--variants", "2", "--format", "html"], "makes PDFs"),
+        (["bayhan", "--roster", "nobody.csv"], "nobody.csv: cannot be read"),
+    ],
+)
+def test_options_that_cannot_be_met_are_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, options: list[str], message: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    outcome = CliRunner().invoke(app, ["handout", "--bundled", *options])
+    assert outcome.exit_code != 0
+    assert message in (str(outcome.exception) + outcome.output)
+    assert not list(tmp_path.iterdir())
