@@ -64,7 +64,8 @@ class Answer:
         if (self.digits is None) == (self.tolerance is None):
             msg = "an answer needs either digits or tolerance"
             raise PaperDefinitionError(msg)
-        if not (self.digits is None or self.digits >= 1) or not (self.tolerance is None or 0 < self.tolerance < math.inf):
+        margin = self.tolerance if self.digits is None else self.digits
+        if margin is None or not 0 < margin < math.inf:
             msg = f"an answer has digits={self.digits}, tolerance={self.tolerance}; allowed: positive numbers"
             raise PaperDefinitionError(msg)
 
