@@ -372,7 +372,7 @@ def test_row_heads_that_are_not_found_are_an_error() -> None:
 
 
 def test_a_handout_begins_with_its_title(make: Make) -> None:
-    with pytest.raises(TemplateError, match=r"toy/handout\.md:1: a handout begins with its title"):
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:1: a handout must begin with its title"):
         make("Hello.\n")
 
 
