@@ -54,7 +54,10 @@ def handout(
     unit_timeout: UnitTimeout = UNIT_TIMEOUT,
     verbose: Verbose = False,
 ) -> None:
-    """Build teaching handouts, with and without solutions, or a class set: a sheet per student and a key."""
+    """Build teaching handouts, or a class set with a key.
+
+    A handout comes with and without solutions; a class set has a sheet for each student.
+    """
     from replicate.handout import (
         ClassSet,
         Form,

@@ -34,7 +34,10 @@ def report(
     unit_timeout: UnitTimeout = UNIT_TIMEOUT,
     verbose: Verbose = False,
 ) -> None:
-    """Recompute every exhibit and write the report; of papers that are named, their pages and what all share."""
+    """Recompute every exhibit and write the report.
+
+    Of papers that are named, their pages are written and what all pages share.
+    """
     from replicate.report.data import expected_files, write_outputs
     from replicate.report.pages import build_report
     from replicate.report.scope import Scope, owner_of

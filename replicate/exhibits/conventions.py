@@ -94,6 +94,7 @@ def settle(table: Table, matches: Mapping[Key, Match], *, exact: bool = True) ->
     settled = {}
     for key, one in matches.items():
         convention = conventions[table.quantity(*key)]
-        holds = one.kind != "equal" or one.how in {convention, "either"}
+        # Words, bounds and points read off a figure are neither rounded nor truncated.
+        holds = one.kind != "equal" or one.how in {convention, "either", ""}
         settled[key] = (one if holds else replace(one, kind="near"), convention)
     return settled
