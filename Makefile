@@ -1,5 +1,6 @@
-# Needs Python 3.11 or newer and make, nothing else: each target creates .venv from requirements.lock when it
-# is missing or stale. Another Python: make report PYTHON=python3.12
+# Needs Python 3.11 or newer and make, nothing else: each target creates .venv when it is missing or stale, from
+# requirements.lock where it only runs, and adds requirements-dev.lock where it tests or builds.
+# Another Python: make report PYTHON=python3.12
 
 PYTHON ?= python3
 VENV := .venv
@@ -27,7 +28,7 @@ handouts: $(VENV)/.ready ## build the handouts of all papers, build/handouts/*.p
 ##@ Does it still hold?
 
 .PHONY: test
-test: $(VENV)/.ready ## run the tests and the examples in the docstrings: make test [ARGS=--cov]
+test: $(VENV)/.developed ## run the tests and the examples in the docstrings: make test [ARGS=--cov]
 	$(BIN)/python -m pytest -n auto --dist loadscope $(ARGS)
 
 .PHONY: check
@@ -43,38 +44,41 @@ accept: $(VENV)/.ready ## make the present state the accepted one: make accept R
 	$(BIN)/replicate accept $(ONLY) --reason "$$REASON"
 
 .PHONY: drift
-drift: $(VENV)/.ready build/drift/.ready ## papers and gallery under an older matplotlib and other BLAS kernels: no alarm
+drift: $(VENV)/.developed build/drift/.ready ## papers and gallery under an older matplotlib and other BLAS kernels: no alarm
 	@build/drift/bin/python -c 'import matplotlib; print("matplotlib", matplotlib.__version__, "and kernels for", "$(DRIFT_CORE)")'
 	$(BIN)/python tests/gallery_drift.py write build/drift/gallery
 	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/python tests/gallery_drift.py compare build/drift/gallery
 	OPENBLAS_CORETYPE=$(DRIFT_CORE) build/drift/bin/replicate diff $(ONLY) --out build/drift/run
 
 .PHONY: torture
-torture: $(VENV)/.ready ## attack every promise and count what held: killed, interrupted, damaged, misused
+torture: $(VENV)/.developed ## attack every promise and count what held: killed, interrupted, damaged, misused
 	$(BIN)/python -m pytest tests/torture --torture -n auto --dist load -q $(ARGS)
 
 .PHONY: bench
-bench: $(VENV)/.ready ## measure speed and accuracy against python-control
+bench: $(VENV)/.developed ## measure speed and accuracy against python-control
 	set -e; for script in benchmarks/*.py; do $(BIN)/python "$$script"; done
 
 .PHONY: units
-units: $(VENV)/.ready ## try 1,000 random loops in other units of time and gain (about 20 minutes)
+units: $(VENV)/.developed ## try 1,000 random loops in other units of time and gain (about 20 minutes)
 	$(BIN)/python tests/loops/equivariance.py 1000
 
 ##@ Working on it
 
 .PHONY: lint
-lint: $(VENV)/.ready ## ruff (rules and format) and mypy --strict
+lint: $(VENV)/.developed ## ruff (rules and format) and mypy --strict
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+COMPILE := --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+    --custom-compile-command "make lock"
+
 .PHONY: lock
-lock: $(VENV)/.ready ## remake requirements.lock from pyproject.toml: make lock [ARGS=--upgrade]
-	$(BIN)/uv pip compile pyproject.toml --group dev --output-file requirements.lock --quiet \
-	    --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
-	    --custom-compile-command "make lock" $(ARGS)
-	$(BIN)/python .ci/date_lock.py $(BIN)/uv
+lock: $(VENV)/.developed ## remake both locks from pyproject.toml: make lock [ARGS=--upgrade]
+	$(BIN)/uv pip compile pyproject.toml --group build --output-file requirements.lock $(COMPILE) $(ARGS)
+	$(BIN)/uv pip compile pyproject.toml --group dev --all-extras --constraint requirements.lock \
+	    --output-file requirements-dev.lock $(COMPILE) $(ARGS)
+	$(BIN)/python .ci/date_lock.py $(BIN)/uv requirements.lock requirements-dev.lock
 
 .PHONY: dist
 dist: $(VENV)/.ready ## build the source archive and the wheel in dist/
@@ -116,6 +120,11 @@ $(VENV)/.locked: requirements.lock
 
 $(VENV)/.ready: $(VENV)/.locked pyproject.toml
 	@$(PIP) install --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(VENV)/.developed: requirements-dev.lock $(VENV)/.ready
+	@echo "adding to $(VENV) what requirements-dev.lock names"
+	@$(PIP) install --require-hashes --only-binary :all: -r requirements-dev.lock
 	@touch $@
 
 # Not from the lock, on purpose: the point is to run with another matplotlib than the locked one.

@@ -37,11 +37,12 @@ def test_newest_versions_and_vulnerabilities_are_looked_at_on_a_schedule() -> No
     assert "pip-audit" in text
 
 
-def test_the_lock_says_how_old_it_is_and_every_file_has_its_digest() -> None:
-    text = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+@pytest.mark.parametrize("name", ["requirements.lock", "requirements-dev.lock"])
+def test_the_locks_say_how_old_they_are_and_every_file_has_its_digest(name: str) -> None:
+    text = (ROOT / name).read_text(encoding="utf-8")
     assert re.search(r"^# newest file published: \d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ\n\Z", text, re.MULTILINE)
     entries = re.split(r"\n(?=\S)", re.sub(r"^#.*\n", "", text, flags=re.MULTILINE).strip())
-    assert len(entries) > 40
+    assert len(entries) > 30
     assert all("--hash=sha256:" in entry for entry in entries if not entry.startswith("#"))
 
 
