@@ -7,29 +7,16 @@ from typing import Annotated
 
 import typer
 
-from replicate.commands.options import (
-    Bundled,
-    Jobs,
-    NoCache,
-    Out,
-    Papers,
-    PapersDir,
-    UnitTimeout,
-    Verbose,
-    exit_with,
-    library,
-    output_folder,
-    recompute,
-)
+from replicate.commands.computing import Computing, computing
+from replicate.commands.options import Papers, exit_with
 from replicate.errors import ReplicateError
-from replicate.run.limits import UNIT_TIMEOUT
 from replicate.terminal.streams import echo
 
 
+@computing
 def handout(
+    run: Computing,
     papers: Papers = None,
-    papers_dir: PapersDir = None,
-    bundled: Bundled = False,
     solutions: Annotated[
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
@@ -48,11 +35,6 @@ def handout(
     stress: Annotated[
         int | None, typer.Option("--stress", min=1, help="Draw so many forms of each exercise and test the answers.")
     ] = None,
-    jobs: Jobs = None,
-    out: Out = None,
-    no_cache: NoCache = False,
-    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
-    verbose: Verbose = False,
 ) -> None:
     """Build teaching handouts, or a class set with a key.
 
@@ -70,10 +52,9 @@ def handout(
     )
     from replicate.staging import staged
 
-    within = library(papers_dir, bundled)
     again = Form.read(form) if form is not None else None
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
-    chosen = with_handout(within.papers(given), all_needed=bool(given))
+    chosen = with_handout(run.within.papers(given), all_needed=bool(given))
     file_format = checked_format(format)
     class_options = {"--variants": variants, "--roster": roster, "--form": form, "--stress": stress}
     kinds = [name for name, value in class_options.items() if value is not None]
@@ -88,10 +69,10 @@ def handout(
     students = (
         read_roster(roster, roster_id) if roster else [f"{number:03}" for number in range(1, (variants or 0) + 1)]
     )
-    place = output_folder(within, out)
     editions = (False, True) if solutions is None else (solutions,)
-    with staged(place, "handouts", renews=lambda _: False) as fresh:  # those of other papers, and other editions, stay
-        outcome = recompute(chosen, None, jobs, place, no_cache, unit_timeout=unit_timeout, verbose=verbose)
+    # Those of other papers, and other editions, stay.
+    with staged(run.folder, "handouts", renews=lambda _: False) as fresh:
+        outcome = run.recompute(chosen)
         verdicts = outcome.judgement.verdicts
         if kinds:
             class_set = ClassSet(outcome.papers[0], outcome.results, verdicts, solutions=bool(solutions))
@@ -107,8 +88,8 @@ def handout(
                 file_format=file_format,
             )
     for path in written:
-        echo(f"handout: {place / 'handouts' / path.name}")
-    exit_with(within, outcome)
+        echo(f"handout: {run.folder / 'handouts' / path.name}")
+    exit_with(run.within, outcome)
 
 
 def _check_class_options(kinds: list[str], papers: int, file_format: str, given: list[str] | None) -> None:

@@ -1,4 +1,4 @@
-"""What several commands share: options, and computing with progress on standard error."""
+"""What several commands share: options, folders, and how they end."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from replicate.terminal.streams import echo
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
     from replicate.run.library import Library
-    from replicate.run.outcome import Outcome, Selection
+    from replicate.run.outcome import Outcome
 
 DIFFERS, BROKEN = 1, 2
 
@@ -23,15 +23,6 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", help="Folder for the results; default: the project's.", file_okay=False),
 ]
-UnitTimeout = Annotated[
-    float,
-    typer.Option("--unit-timeout", metavar="SECONDS", help="Stop a reading, figure or claim that takes longer."),
-]
-Verbose = Annotated[
-    bool,
-    typer.Option("--verbose", "-v", help="Show why each result is recomputed, and what its code writes."),
-]
-NoCache = Annotated[bool, typer.Option("--no-cache", help="Recompute everything and keep nothing.")]
 Accepted = Annotated[
     Path | None,
     typer.Option("--accepted", help="Folder of the accepted state; default: the project's own."),
@@ -47,27 +38,6 @@ Bundled = Annotated[bool, typer.Option("--bundled", help="The papers that come w
 
 BUILD = Path("build")
 MOST_FAILURES = 12
-
-
-def recompute(
-    papers: list[Paper],
-    selection: Selection | None,
-    jobs: int | None,
-    out: Path,
-    no_cache: bool,
-    *,
-    unit_timeout: float,
-    verbose: bool,
-) -> Outcome:
-    """Compute and judge with progress on standard error."""
-    from replicate.run.outcome import recompute
-    from replicate.terminal.console import console
-    from replicate.terminal.progress import progress_on
-
-    errors = console(stderr=True)
-    with progress_on(errors, verbose=verbose) as progress:
-        cache = None if no_cache else out / "cache"
-        return recompute(papers, selection, jobs=jobs, cache_dir=cache, progress=progress, unit_timeout=unit_timeout)
 
 
 def tell_failures(outcome: Outcome) -> None:

@@ -7,22 +7,9 @@ from typing import Annotated
 
 import typer
 
-from replicate.commands.options import (
-    Bundled,
-    Jobs,
-    NoCache,
-    Out,
-    PapersDir,
-    UnitTimeout,
-    Verbose,
-    accepted_folder,
-    exit_with,
-    library,
-    output_folder,
-    recompute,
-)
+from replicate.commands.computing import Computing, computing
+from replicate.commands.options import Bundled, PapersDir, accepted_folder, exit_with, library, output_folder
 from replicate.errors import ReplicateError, UnknownPaperError
-from replicate.run.limits import UNIT_TIMEOUT
 from replicate.terminal.streams import echo
 
 
@@ -48,17 +35,12 @@ def list_(
     exit_with(within)
 
 
+@computing
 def show(
+    run: Computing,
     paper: Annotated[str, typer.Argument(metavar="PAPER")],
     exhibit: Annotated[str, typer.Argument(metavar="EXHIBIT")],
     reading: Annotated[str | None, typer.Option("--reading", help="Show only this reading.")] = None,
-    papers_dir: PapersDir = None,
-    bundled: Bundled = False,
-    jobs: Jobs = None,
-    out: Out = None,
-    no_cache: NoCache = False,
-    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
-    verbose: Verbose = False,
 ) -> None:
     """Show one exhibit: prints, readings, verdicts, explanations."""
     from replicate.exhibits import Table
@@ -66,9 +48,7 @@ def show(
     from replicate.terminal.console import console
     from replicate.terminal.show import print_exhibit
 
-    within = library(papers_dir, bundled)
-    folder = output_folder(within, out)
-    owner = within.paper(paper)
+    owner = run.within.paper(paper)
     found = find_exhibit(owner, exhibit)
     readings = list(found.readings) if isinstance(found, Table) else []
     if reading is not None:
@@ -76,14 +56,12 @@ def show(
             msg = f"{paper}/{exhibit} has no reading '{reading}'; known: {', '.join(readings) or 'none'}"
             raise UnknownPaperError(msg)
         readings = [reading]
-    outcome = recompute(
-        [owner], [(owner.id, found.id)], jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose
-    )
+    outcome = run.recompute([owner], [(owner.id, found.id)])
     if outcome.judgement.problems and not outcome.failures:
         # An explanation may quote another exhibit; then the whole paper is needed.
-        outcome = recompute([owner], None, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
+        outcome = run.recompute([owner])
     print_exhibit(outcome, paper, found, readings, console())
-    exit_with(within, outcome)
+    exit_with(run.within, outcome)
 
 
 def chart(

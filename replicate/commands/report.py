@@ -2,37 +2,15 @@
 
 from __future__ import annotations
 
-from replicate.commands.options import (
-    BROKEN,
-    DIFFERS,
-    Accepted,
-    Bundled,
-    Jobs,
-    NoCache,
-    Out,
-    Papers,
-    PapersDir,
-    UnitTimeout,
-    Verbose,
-    accepted_folder,
-    exit_with,
-    library,
-    output_folder,
-    recompute,
-)
-from replicate.run.limits import UNIT_TIMEOUT
+from replicate.commands.computing import Computing, computing
+from replicate.commands.options import BROKEN, DIFFERS, Accepted, Papers, accepted_folder, exit_with
 from replicate.terminal.streams import echo
 
 
+@computing
 def report(
+    run: Computing,
     papers: Papers = None,
-    papers_dir: PapersDir = None,
-    bundled: Bundled = False,
-    jobs: Jobs = None,
-    out: Out = None,
-    no_cache: NoCache = False,
-    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
-    verbose: Verbose = False,
 ) -> None:
     """Recompute every exhibit and write the report.
 
@@ -48,22 +26,20 @@ def report(
     from replicate.whatif import NAME as WHATIF
     from replicate.whatif import rows_of, whatif_page
 
-    within = library(papers_dir, bundled)
-    folder = output_folder(within, out)
-    chosen = within.papers(papers or ())
+    chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
-    pages_there = [name.removeprefix("report/") for name in files_of(folder, "report")] if papers else []
-    others = {owner_of(page, within.ids()) for page in pages_there} - named - {""}
-    in_order = [one.name for one in within.known if one.name in {*named, *others}]
-    everyone = within.papers(in_order) if others else chosen
-    about = site_of(within.project, bundled=all(within.is_bundled(paper.id) for paper in everyone))
+    pages_there = [name.removeprefix("report/") for name in files_of(run.folder, "report")] if papers else []
+    others = {owner_of(page, run.within.ids()) for page in pages_there} - named - {""}
+    in_order = [one.name for one in run.within.known if one.name in {*named, *others}]
+    everyone = run.within.papers(in_order) if others else chosen
+    about = site_of(run.within.project, bundled=all(run.within.is_bundled(paper.id) for paper in everyone))
     scope = Scope(named, others)
-    with staged(folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
+    with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
-        outcome = recompute(everyone, None, jobs, folder, no_cache, unit_timeout=unit_timeout, verbose=verbose)
+        outcome = run.recompute(everyone)
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
-        index = folder / "report" / pages[0].name
+        index = run.folder / "report" / pages[0].name
         rows = rows_of(outcome.papers)
         if rows:
             page = whatif_page(rows, back="index.html")
@@ -74,18 +50,13 @@ def report(
     outcome = outcome.of(named)
     print_summary(outcome, console())
     echo(f"\nreport: {index}")
-    exit_with(within, outcome)
+    exit_with(run.within, outcome)
 
 
+@computing
 def check(
+    run: Computing,
     papers: Papers = None,
-    papers_dir: PapersDir = None,
-    bundled: Bundled = False,
-    jobs: Jobs = None,
-    out: Out = None,
-    no_cache: NoCache = False,
-    unit_timeout: UnitTimeout = UNIT_TIMEOUT,
-    verbose: Verbose = False,
     accepted: Accepted = None,
 ) -> None:
     """Check that all is explained and as accepted.
@@ -95,16 +66,13 @@ def check(
     from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
 
-    within = library(papers_dir, bundled)
-    chosen = within.papers(papers or ())
-    baseline = accepted_folder(within, chosen, accepted)
-    outcome = recompute(
-        chosen, None, jobs, output_folder(within, out), no_cache, unit_timeout=unit_timeout, verbose=verbose
-    )
-    comparison = compare(outcome, baseline, within.ids())
+    chosen = run.within.papers(papers or ())
+    baseline = accepted_folder(run.within, chosen, accepted)
+    outcome = run.recompute(chosen)
+    comparison = compare(outcome, baseline, run.within.ids())
     problems = find_problems(outcome, comparison)
     for problem in problems:
         echo(problem)
     comparisons = outcome.judgement.compared
     echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
-    exit_with(within, outcome, BROKEN if comparison.broken else DIFFERS if problems else 0)
+    exit_with(run.within, outcome, BROKEN if comparison.broken else DIFFERS if problems else 0)

@@ -1,0 +1,109 @@
+"""What all commands that compute share: the options, given to the command as one argument."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
+
+import typer
+
+from replicate.commands.options import Bundled, Jobs, Out, PapersDir, library, output_folder
+from replicate.run.limits import UNIT_TIMEOUT
+
+if TYPE_CHECKING:
+    from replicate.exhibits import Paper
+    from replicate.run.library import Library
+    from replicate.run.outcome import Outcome, Selection
+
+Returned = TypeVar("Returned")
+
+
+@dataclass(frozen=True)
+class Computing:
+    """How a command computes, as its options say.
+
+    Attributes
+    ----------
+    within
+        The papers within reach.
+    folder
+        Where what the command makes goes; kept results lie in its folder ``cache``.
+    jobs
+        Number of processes; one per core if ``None``.
+    no_cache
+        Recompute everything and keep nothing.
+    unit_timeout
+        Seconds after which a reading, figure or claim is stopped.
+    verbose
+        Show why each result is recomputed.
+    """
+
+    within: Library
+    folder: Path
+    jobs: int | None
+    no_cache: bool
+    unit_timeout: float
+    verbose: bool
+
+    def recompute(self, papers: list[Paper], selection: Selection | None = None) -> Outcome:
+        """Compute and judge with progress on standard error."""
+        from replicate.run.outcome import recompute
+        from replicate.terminal.console import console
+        from replicate.terminal.progress import progress_on
+
+        with progress_on(console(stderr=True), verbose=self.verbose) as progress:
+            return recompute(
+                papers,
+                selection,
+                jobs=self.jobs,
+                cache_dir=None if self.no_cache else self.folder / "cache",
+                progress=progress,
+                unit_timeout=self.unit_timeout,
+            )
+
+
+def _options(
+    papers_dir: PapersDir = None,
+    bundled: Bundled = False,
+    jobs: Jobs = None,
+    out: Out = None,
+    no_cache: Annotated[bool, typer.Option("--no-cache", help="Recompute everything and keep nothing.")] = False,
+    unit_timeout: Annotated[
+        float,
+        typer.Option("--unit-timeout", metavar="SECONDS", help="Stop a reading, figure or claim that takes longer."),
+    ] = UNIT_TIMEOUT,
+    verbose: Annotated[
+        bool, typer.Option("--verbose", "-v", help="Show why each result is recomputed, and what its code writes.")
+    ] = False,
+) -> Computing:
+    within = library(papers_dir, bundled)
+    return Computing(within, output_folder(within, out), jobs, no_cache, unit_timeout, verbose)
+
+
+def computing(command: Callable[..., Returned]) -> Callable[..., Returned]:
+    """Return a command with the options of all that compute, in place of its first argument."""
+    shared = _with_types(_options)
+    own = _with_types(command)[1:]
+
+    @functools.wraps(command)
+    def with_options(**values: Any) -> Returned:
+        run = _options(**{option.name: values.pop(option.name) for option in shared})
+        return command(run, **values)
+
+    parameters = [one.replace(kind=inspect.Parameter.KEYWORD_ONLY) for one in (*own, *shared)]
+    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    with_options.__annotations__ = {one.name: one.annotation for one in parameters}
+    return with_options
+
+
+def _with_types(function: Callable[..., Any]) -> list[inspect.Parameter]:
+    """Return the parameters of a function, their annotations evaluated."""
+    hints = get_type_hints(function, include_extras=True)
+    return [
+        one.replace(annotation=hints.get(one.name, one.annotation))
+        for one in inspect.signature(function).parameters.values()
+    ]
