@@ -9,6 +9,7 @@ ReplicateError                 shown to the user as one line, exit status 2
 ├── AcceptedStateError         a file of the accepted state is damaged (file, line)
 ├── FigureError                what should be compared is not a figure, or has no name that can be a file's
 ├── FigureRecordError          a record of a figure is damaged, or newer than this version
+├── SweepFileError             the file of a sweep is malformed (file, line)
 ├── TemplateError              prose asks for a result that does not exist
 └── OutputError                a result cannot be written
 
@@ -67,6 +68,10 @@ class FigureRecordError(ReplicateError):
     def __init__(self, why: str, line: int | None = None) -> None:
         super().__init__(f"the record of a figure {f'(line {line}) ' if line else ''}{why}")
         self.why, self.line = why, line
+
+
+class SweepFileError(ReplicateError):
+    """The file of a sweep is malformed."""
 
 
 class TemplateError(ReplicateError):

@@ -25,6 +25,7 @@ ALLOWED = {
     "display": {"errors", "exhibits", "figures", "resources", "run", "verdicts"},
     "report": {"display", "errors", "exhibits", "figures", "resources", "run", "verdicts"},
     "handout": {"display", "errors", "exhibits", "figures", "resources", "run", "verdicts"},
+    "sweeps": {"errors", "loops", "run", "staging"},
     "whatif": {"display", "errors", "exhibits", "figures", "loops", "resources"},
     "diff": {"display", "errors", "exhibits", "figures", "resources", "run", "staging", "verdicts"},
 }

@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-from replicate.commands.options import Bundled, Jobs, Out, PapersDir, library, output_folder
+from replicate.commands.options import Backend, Bundled, Jobs, Out, PapersDir, Scheduler, library, output_folder
 from replicate.run.limits import UNIT_TIMEOUT
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
     from replicate.run.library import Library
     from replicate.run.outcome import Outcome, Selection
+    from replicate.run.parallel import Executor
 
 Returned = TypeVar("Returned")
 
@@ -40,6 +41,8 @@ class Computing:
         Seconds after which a reading, figure or claim is stopped.
     verbose
         Show why each result is recomputed.
+    executor
+        Does the units; processes on this machine if ``None``.
     """
 
     within: Library
@@ -48,6 +51,7 @@ class Computing:
     no_cache: bool
     unit_timeout: float
     verbose: bool
+    executor: Executor | None = None
 
     def recompute(self, papers: list[Paper], selection: Selection | None = None) -> Outcome:
         """Compute and judge with progress on standard error."""
@@ -63,6 +67,7 @@ class Computing:
                 cache_dir=None if self.no_cache else self.folder / "cache",
                 progress=progress,
                 unit_timeout=self.unit_timeout,
+                executor=self.executor,
             )
 
 
@@ -79,9 +84,23 @@ def _options(
     verbose: Annotated[
         bool, typer.Option("--verbose", "-v", help="Show why each result is recomputed, and what its code writes.")
     ] = False,
+    backend: Backend = "local",
+    scheduler: Scheduler = None,
 ) -> Computing:
+    executor = _executor(backend, scheduler, unit_timeout)
     within = library(papers_dir, bundled)
-    return Computing(within, output_folder(within, out), jobs, no_cache, unit_timeout, verbose)
+    return Computing(within, output_folder(within, out), jobs, no_cache, unit_timeout, verbose, executor)
+
+
+def _executor(backend: str, scheduler: str | None, unit_timeout: float) -> Executor | None:
+    from replicate.run.backends import LOCAL, backend_of
+
+    chosen = backend_of(backend, scheduler, None)
+    if backend == LOCAL:
+        return None
+    from replicate.run.cluster import ClusterPool
+
+    return ClusterPool(chosen, unit_timeout)
 
 
 def computing(command: Callable[..., Returned]) -> Callable[..., Returned]:

@@ -36,6 +36,11 @@ PapersDir = Annotated[
 ]
 Bundled = Annotated[bool, typer.Option("--bundled", help="The papers that come with replicate.")]
 
+Backend = Annotated[str, typer.Option("--backend", metavar="local|dask", help="Where the work is done.")]
+Scheduler = Annotated[
+    str | None, typer.Option("--scheduler", metavar="ADDRESS", help="With --backend dask, such as tcp://host:8786.")
+]
+
 BUILD = Path("build")
 MOST_FAILURES = 12
 

@@ -10,7 +10,7 @@ from replicate.errors import ReplicateError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.run.limits import UNIT_TIMEOUT
-from replicate.run.parallel import Progress, failures, run
+from replicate.run.parallel import Executor, Progress, failures, run
 from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.rows import Judgement
@@ -71,6 +71,7 @@ def recompute(
     cache_dir: Path | None,
     progress: Callable[[Progress], None] | None = None,
     unit_timeout: float = UNIT_TIMEOUT,
+    executor: Executor | None = None,
 ) -> Outcome:
     """Compute the exhibits of papers and judge them.
 
@@ -78,7 +79,7 @@ def recompute(
     ----------
     selection
         ``(paper, exhibit)`` pairs; all exhibits if not given.
-    jobs, cache_dir, progress, unit_timeout
+    jobs, cache_dir, progress, unit_timeout, executor
         As for `replicate.run.parallel.run`.
 
     Raises
@@ -97,7 +98,15 @@ def recompute(
     papers = [paper for paper in papers if paper.id in inputs]
     if not papers:
         raise next(iter(broken.values()))
-    results = run(papers, selection, jobs=jobs, cache_dir=cache_dir, progress=progress, unit_timeout=unit_timeout)
+    results = run(
+        papers,
+        selection,
+        jobs=jobs,
+        cache_dir=cache_dir,
+        progress=progress,
+        unit_timeout=unit_timeout,
+        executor=executor,
+    )
     judgements = {}
     for paper in papers:
         exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]

@@ -14,7 +14,7 @@ from replicate.staging.journal import ROOM, finish, is_interrupted, new_folder, 
 from replicate.staging.lock import locked
 from replicate.staging.manifest import MANIFEST, Manifest, digest, refuse_foreign
 
-_LOCK = "lock"
+LOCK = "lock"
 
 
 def _everything(_: str) -> bool:
@@ -110,10 +110,10 @@ def _room(target: Path) -> Iterator[Path]:
     """Make, lock and finally remove the hidden folder of a run; yield the empty folder for what is new."""
     existed = target.is_dir()
     try:
-        with locked(target / ROOM / _LOCK, _say):
+        with locked(target / ROOM / LOCK, say):
             done = finish(target)
             if done:
-                _say(f"{target}: {done}")
+                say(f"{target}: {done}")
             fresh = new_folder(target)
             fresh.mkdir()
             try:
@@ -121,7 +121,7 @@ def _room(target: Path) -> Iterator[Path]:
             finally:
                 throw_away(target)
     except OSError as error:
-        raise _unwritable(target, error) from error
+        raise unwritable(target, error) from error
     finally:
         with suppress(OSError):  # it holds a manifest, or another run is waiting
             (target / ROOM).rmdir()
@@ -129,7 +129,7 @@ def _room(target: Path) -> Iterator[Path]:
                 target.rmdir()
 
 
-def _unwritable(target: Path, error: OSError) -> OSError | OutputError:
+def unwritable(target: Path, error: OSError) -> OSError | OutputError:
     """Return the error to raise: one about another place, say a file that is read, is none of ours."""
     elsewhere = error.filename and not Path(error.filename).absolute().is_relative_to(target.absolute())
     if error.errno in (None, errno.EPIPE) or elsewhere:
@@ -137,5 +137,6 @@ def _unwritable(target: Path, error: OSError) -> OSError | OutputError:
     return OutputError(f"{target}: cannot be written: {error.strerror or error}")
 
 
-def _say(text: str) -> None:
-    print(text, file=sys.stderr)  # noqa: T201  -- to whoever waits for the run, as progress is
+def say(text: str) -> None:
+    """Tell whoever waits for the run, on standard error."""
+    print(text, file=sys.stderr)  # noqa: T201  -- as progress is

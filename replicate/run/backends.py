@@ -1,0 +1,174 @@
+"""Where work is done: by processes on this machine (joblib), or by the workers of a Dask cluster.
+
+Either calls the same function with the same arguments, so the results are the same. Dask is asked directly, not through
+joblib's backend for it: that one computes in this process when the cluster has a single core, and gives up everything
+when one task cannot be done.
+"""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Callable, Generator, Iterator, Sequence
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.util import find_spec
+from itertools import islice
+from typing import Any, Protocol, TypeVar
+
+from replicate.errors import ReplicateError
+
+Item = TypeVar("Item")
+Made = TypeVar("Made")
+
+LOCAL, DASK = "local", "dask"
+NAMES = (LOCAL, DASK)
+ANSWER = 10  # seconds in which a scheduler must answer, and have a worker
+_ATTEMPTS = 3  # a local worker that dies takes joblib's pool with it: what is left is begun anew
+
+
+class Backend(Protocol):
+    """Something that applies a function to items."""
+
+    def unordered(
+        self, function: Callable[[Item], Made], items: Sequence[Item]
+    ) -> Generator[tuple[Item, Made], None, None]:
+        """Yield every item with what the function makes of it, as it is done; items are begun in the given order.
+
+        Raises
+        ------
+        ReplicateError
+            If workers are lost time and again, or the scheduler does not answer.
+        """
+
+
+@dataclass(frozen=True)
+class LocalProcesses:
+    """Processes on this machine.
+
+    Parameters
+    ----------
+    jobs
+        Their number.
+    """
+
+    jobs: int
+
+    def unordered(
+        self, function: Callable[[Item], Made], items: Sequence[Item]
+    ) -> Generator[tuple[Item, Made], None, None]:
+        """Yield every item with what the function makes of it, as it is done."""
+        import joblib
+        from joblib.externals.loky.process_executor import TerminatedWorkerError
+
+        waiting = dict(enumerate(items))
+        for attempt in range(1, _ATTEMPTS + 1):
+            parallel = joblib.Parallel(self.jobs, return_as="generator_unordered", batch_size=1)
+            try:
+                for number, made in parallel(
+                    joblib.delayed(_numbered)(function, *each) for each in list(waiting.items())
+                ):
+                    yield waiting.pop(number), made
+            except TerminatedWorkerError as error:
+                if attempt == _ATTEMPTS:
+                    msg = f"worker processes were ended {attempt} times; perhaps for want of memory: try fewer --jobs"
+                    raise ReplicateError(msg) from error
+            if not waiting:
+                return
+
+
+@dataclass(frozen=True)
+class DaskCluster:
+    """The workers of a Dask cluster, which see the same files and have the same packages.
+
+    Parameters
+    ----------
+    scheduler
+        Its address, such as ``tcp://host:8786``.
+    """
+
+    scheduler: str
+
+    def unordered(
+        self, function: Callable[[Item], Made], items: Sequence[Item]
+    ) -> Generator[tuple[Item, Made], None, None]:
+        """Yield every item with what the function makes of it, as it is done; a lost worker's items are done anew."""
+        distributed = import_module("distributed")
+        with _client(self.scheduler) as client:
+            waiting = iter(enumerate(items))
+            begun: dict[str, Item] = {}
+            done = distributed.as_completed(loop=client.loop)
+
+            def give(most: int) -> None:
+                # A few more than there are cores, so that none waits for its next one; all would fill the memory.
+                for number, item in islice(waiting, max(0, most - len(begun))):
+                    future = client.submit(function, item, pure=False, priority=-number)
+                    begun[future.key] = item
+                    done.add(future)
+
+            give(_ahead(client))
+            for future in done:
+                item = begun.pop(future.key)
+                give(_ahead(client))
+                try:
+                    made = future.result()
+                except (distributed.KilledWorker, CancelledError) as error:
+                    msg = f"{item}: the workers that were at it were lost, or the scheduler {self.scheduler} was"
+                    raise ReplicateError(msg) from error
+                yield item, made
+
+
+def backend_of(name: str, scheduler: str | None, jobs: int | None) -> Backend:
+    """Return the backend that options name.
+
+    Raises
+    ------
+    ReplicateError
+        If there is none of this name, or it lacks a scheduler or a package.
+    """
+    if name not in NAMES:
+        msg = f"--backend must be {' or '.join(NAMES)}, not {name!r}"
+        raise ReplicateError(msg)
+    if name == LOCAL:
+        if scheduler is not None:
+            msg = "--scheduler belongs to --backend dask"
+            raise ReplicateError(msg)
+        return LocalProcesses(jobs or os.cpu_count() or 1)
+    if find_spec("distributed") is None:
+        msg = "--backend dask needs Dask, which is not installed: pip install 'paper-replicate[cluster]'"
+        raise ReplicateError(msg)
+    if scheduler is None:
+        msg = "--backend dask needs the address of a scheduler: --scheduler tcp://HOST:8786"
+        raise ReplicateError(msg)
+    return DaskCluster(scheduler)
+
+
+def _numbered(function: Callable[[Item], Made], number: int, item: Item) -> tuple[int, Made]:
+    return number, function(item)
+
+
+@contextmanager
+def _client(scheduler: str) -> Iterator[Any]:
+    """Yield a client of a scheduler that answers in time; what the library logs of lost connections is not shown."""
+    distributed = import_module("distributed")
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    try:
+        client = distributed.Client(scheduler, timeout=ANSWER, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        msg = f"no scheduler answers at {scheduler} within {ANSWER} s"
+        raise ReplicateError(msg) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=ANSWER)
+        except TimeoutError as error:
+            msg = f"the scheduler {scheduler} has no worker after {ANSWER} s: start one with 'dask worker {scheduler}'"
+            raise ReplicateError(msg) from error
+        yield client
+
+
+def _ahead(client: Any) -> int:
+    """Return how many tasks may be under way."""
+    cores: int = sum(client.ncores().values())
+    return 2 * max(1, cores)

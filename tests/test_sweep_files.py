@@ -1,0 +1,204 @@
+"""A sweep from a file: its values, its blocks, what it does after an interruption, and what it refuses."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from replicate.errors import OutputError
+from replicate.loops import PI, Loop, Plant
+from replicate.run.backends import LocalProcesses
+from replicate.sweeps import read_sweep_file, run_sweep
+from replicate.sweeps.sweep_file import SweepFile
+
+Run = Callable[..., tuple[int, str, str]]
+
+GRID = """
+plants = ["e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3"]
+metrics = ["overshoot", "iae", "rightmost_pole"]
+block = 4
+
+[controllers]
+k = { from = 0.1, to = 1, points = 3 }
+ki = [0.2, 5.0]
+"""
+
+
+def read(folder: Path) -> pd.DataFrame:
+    return pd.concat([pd.read_csv(path) for path in sorted(folder.glob("block-*.csv"))], ignore_index=True)
+
+
+def written(path: Path, text: str = GRID) -> SweepFile:
+    path.write_text(text, encoding="utf-8")
+    return read_sweep_file(path)
+
+
+def test_every_loop_of_the_grid_has_its_row_with_the_values_of_the_loop(replicate: Run) -> None:
+    Path("s.toml").write_text(GRID, encoding="utf-8")
+    assert replicate("sweep", "s.toml", "-j1")[0] == 0
+    rows = read(Path("build/sweeps/s"))
+    assert list(zip(rows["plant"], rows["k"], rows["ki"], strict=True)) == [
+        (plant, k, ki) for plant in ("e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3") for k in (0.1, 0.55, 1.0) for ki in (0.2, 5.0)
+    ]
+    row: Any
+    for row in rows.itertuples():
+        plant = Plant([1.0], [1.0, 1.0], 1.0) if row.plant == "e^{-s}/(s+1)" else Plant([1], [1, 3, 3, 1], 0.5)
+        loop = Loop(plant, PI(row.k, row.ki))
+        pole = loop.rightmost_pole()
+        assert complex(row.rightmost_pole_re, row.rightmost_pole_im) == pytest.approx(pole, rel=1e-9)
+        assert row.stable == loop.is_stable() == (row.ki < 1)
+        if row.stable:
+            assert row.iae == pytest.approx(loop.step().iae(), rel=1e-9)
+        else:
+            assert math.isnan(row.iae)
+            assert "unstable" in row.reason
+
+
+def test_parquet_holds_the_same_as_csv(tmp_path: Path) -> None:
+    sweep = written(tmp_path / "s.toml")
+    for file_format in ("csv", "parquet"):
+        run_sweep(sweep, tmp_path / file_format, file_format, LocalProcesses(1))
+    parquet = pd.concat([pd.read_parquet(path) for path in sorted((tmp_path / "parquet").glob("*.parquet"))])
+    csv = read(tmp_path / "csv")
+    assert list(parquet.columns) == list(csv.columns)
+    np.testing.assert_allclose(parquet["iae"], csv["iae"], rtol=1e-11)
+
+
+@pytest.mark.parametrize(("block", "pairing"), [(1, "grid"), (3, "grid"), (7, "grid"), (100, "grid"), (2, "pairwise")])
+def test_blocks_hold_every_loop_once_in_order(tmp_path: Path, block: int, pairing: str) -> None:
+    controllers = "[controllers]\nk = [0.1, 0.2, 0.3, 0.4, 0.5]\nki = 0.1\n"
+    plants = "[plants]\ngain = [1, 2, 3, 4, 5]\ntime_constant = 2\ndead_time = 1\n"
+    text = f"block = {block}\npairing = '{pairing}'\nmetrics = 'stable'\n{plants}{controllers}"
+    sweep = written(tmp_path / "s.toml", text)
+    run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    rows = read(tmp_path / "out")
+    assert len(rows) == sweep.loops
+    assert max(len(pd.read_csv(path)) for path in (tmp_path / "out").glob("*.csv")) <= block
+    expected = (
+        [(gain, k) for gain in range(1, 6) for k in (0.1, 0.2, 0.3, 0.4, 0.5)]
+        if pairing == "grid"
+        else [(gain, gain / 10) for gain in range(1, 6)]
+    )
+    assert list(zip(rows["gain"], rows["k"], strict=True)) == expected
+
+
+def test_an_interrupted_sweep_goes_on_and_ends_as_one_that_was_not(tmp_path: Path) -> None:
+    text = GRID.replace("points = 3", "points = 20")
+    written(tmp_path / "s.toml", text)
+    command = [sys.executable, "-m", "replicate", "sweep", str(tmp_path / "s.toml"), "-j1", "--out"]
+    with subprocess.Popen(
+        [*command, "killed"], cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    ) as run:
+        blocks = tmp_path / "killed/sweeps/s"
+        end = time.monotonic() + 60
+        while len(list(blocks.glob("block-*.csv"))) < 2:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+        os.kill(run.pid, signal.SIGKILL)
+    there = {path: path.stat().st_mtime_ns for path in blocks.glob("block-*.csv")}
+    sweep = read_sweep_file(tmp_path / "s.toml")
+    assert len(there) < len(list(sweep.blocks()))
+    run_sweep(sweep, blocks, "csv", LocalProcesses(1))
+    assert {path: path.stat().st_mtime_ns for path in there} == there  # not done again
+    run_sweep(sweep, tmp_path / "whole", "csv", LocalProcesses(1))
+    names = sorted(path.name for path in (tmp_path / "whole").iterdir())
+    assert sorted(path.name for path in blocks.iterdir()) == names
+    assert all((blocks / name).read_bytes() == (tmp_path / "whole" / name).read_bytes() for name in names)
+
+
+def test_a_damaged_block_is_computed_anew(tmp_path: Path) -> None:
+    sweep = written(tmp_path / "s.toml")
+    run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    block = tmp_path / "out/block-000001.csv"
+    whole = block.read_bytes()
+    block.write_bytes(whole[:-20])
+    assert run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1)) == 1
+    assert block.read_bytes() == whole
+
+
+def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
+    sweep = written(tmp_path / "s.toml")
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/thesis.tex").write_text("text", encoding="utf-8")
+    with pytest.raises(OutputError, match=r"mine: holds thesis\.tex"):
+        run_sweep(sweep, tmp_path / "mine", "csv", LocalProcesses(1))
+    run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    other = written(tmp_path / "s.toml", GRID.replace("0.2, 5.0", "0.3, 5.0"))
+    with pytest.raises(OutputError, match="holds the blocks of another sweep"):
+        run_sweep(other, tmp_path / "out", "csv", LocalProcesses(1))
+    about = json.loads((tmp_path / "out/sweep.json").read_text(encoding="utf-8"))
+    assert about["loops"] == 12
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
+def test_a_full_disk_is_one_line(tmp_path: Path) -> None:
+    sweep = written(tmp_path / "s.toml")
+    run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    (tmp_path / "out/block-000002.csv").unlink()
+    (tmp_path / "out/block-000002.csv.partial").symlink_to("/dev/full")
+    with pytest.raises(OutputError, match=r"block-000002\.csv: cannot be written: No space left"):
+        run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    assert (tmp_path / "out/block-000001.csv").is_file()
+    assert run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1)) == 1  # and goes on where it was
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("block = 4", "block = 0", "s.toml:4: block is 0; expected: a whole number of loops, at least 1"),
+        ("block = 4", "blocks = 4", "s.toml:4: 'blocks' is unknown; allowed: plants, controllers"),
+        ('"iae"', '"iea"', "s.toml:3: unknown metric 'iea': allowed are overshoot"),
+        ("ki = [0.2, 5.0]", "ki = []", "s.toml:8: ki must be a number, a list of numbers, or a range"),
+        ("ki = [0.2, 5.0]", "ki = [nan]", "s.toml:8: ki must be a number, a list of numbers, or a range"),
+        ("ki = [0.2, 5.0]", "Ki = [0.2]", "s.toml:8: controllers: 'Ki' is unknown; allowed: k, ki"),
+        ("points = 3", "points = 0", "s.toml:7: k is no range: expected"),
+        ("(s+1)^3", "(s+1^3", "s.toml:2: plants[1]: "),
+        ('plants = ["e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3"]', "plants = []", "s.toml:2: plants must be a text"),
+        ('plants = ["e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3"]', "", "s.toml:1: 'plants' is missing"),
+        ("block = 4", "until = -1", "s.toml:4: until is -1; expected: a number above 0"),
+        ("block = 4", "pairing = 'pairs'", "s.toml:4: pairing is 'pairs'; allowed: grid, pairwise"),
+        ("block = 4", "pairing = 'pairwise'", "s.toml:4: pairs need as many plants as controllers, not 2 plants and 6"),
+        ("block = 4", "block = ", "s.toml: is not readable TOML: "),
+    ],
+)
+def test_what_is_wrong_in_the_file_is_one_line(replicate: Run, old: str, new: str, message: str) -> None:
+    assert old in GRID
+    Path("s.toml").write_text(GRID.replace(old, new), encoding="utf-8")
+    status, out, err = replicate("sweep", "s.toml")
+    assert (status, out) == (2, "")
+    assert err.startswith(f"replicate: {message}")
+    assert err.count("\n") == 1
+    assert not Path("build").exists()
+
+
+def test_the_files_of_the_documentation_are_read(tmp_path: Path) -> None:
+    root = Path(__file__).parent.parent
+    assert read_sweep_file(root / "examples/sweeps/foptd.toml").loops == 500_000
+    page = (root / "docs/sweeps.md").read_text(encoding="utf-8")
+    assert written(tmp_path / "page.toml", page.split("```toml\n")[1].split("```")[0]).loops == 20_000
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--format", "xlsx"), "the format must be csv or parquet, not 'xlsx'"),
+        (("--backend", "spark"), "--backend must be local or dask, not 'spark'"),
+        (("--backend", "dask"), "--backend dask needs the address of a scheduler: --scheduler tcp://HOST:8786"),
+        (("--scheduler", "tcp://here:1"), "--scheduler belongs to --backend dask"),
+    ],
+)
+def test_what_is_wrong_in_the_options_is_one_line(replicate: Run, options: tuple[str, ...], message: str) -> None:
+    Path("s.toml").write_text(GRID, encoding="utf-8")
+    assert replicate("sweep", "s.toml", *options) == (2, "", f"replicate: {message}\n")
