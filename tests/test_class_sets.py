@@ -9,16 +9,13 @@ from pathlib import Path
 from random import Random
 
 import pytest
-import synthetic
+import toy_class
 from typer.testing import CliRunner
 
 from replicate.cli import app
 from replicate.errors import PaperDefinitionError, ReplicateError
-from replicate.exhibits.exercises import Exercises
-from replicate.exhibits.variants import Answer, Answers, Inputs, Variation, rounded
+from replicate.exhibits.variants import Answer, Variation, rounded
 from replicate.handout import ClassSet, Form, read_roster, stressed
-from replicate.handout import class_set as class_set_module
-from replicate.handout import placing as placing_module
 from replicate.handout.edition import edition
 from replicate.handout.printout import markup, pdf
 from replicate.papers.bayhan.handout import exercises as bayhan
@@ -28,7 +25,7 @@ TEXT = """# A toy
 ## Exercises
 
 ::: exercise
-## Divide
+## Divide {vary="division"}
 Divide ${{ inputs('division')['a'] }}$ by ${{ inputs('division')['b'] }}$.{{ stated('division') }}
 
 ::: solution
@@ -38,32 +35,9 @@ It is ${{ fixed(answer('division')['quotient'], 4) }}$.
 """
 
 
-def division() -> Exercises:
-    found = Exercises()
-
-    @found.vary(
-        "division",
-        original={"a": 1, "b": 4},
-        variant=lambda rng: {"a": rng.randint(11, 99), "b": rng.randint(3, 9)},
-        requires={"a is no multiple of b": lambda inputs: float(inputs["a"]) % float(inputs["b"]) != 0},
-        stated="State three digits.",
-    )
-    def quotient(inputs: Inputs) -> Answers:
-        a, b = float(inputs["a"]), float(inputs["b"])
-        return {"quotient": Answer(a / b, digits=3, mistakes={"multiplied": a * b, "upside down": b / a})}
-
-    return found
-
-
 @pytest.fixture
 def toy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ClassSet:
-    (tmp_path / "toy").mkdir()
-    (tmp_path / "toy" / "handout.md").write_text(TEXT, encoding="utf-8")
-    paper = synthetic.paper(tmp_path / "toy")
-    made = division()
-    monkeypatch.setattr(placing_module, "exercises_of", lambda _: made)
-    monkeypatch.setattr(class_set_module, "exercises_of", lambda _: made)
-    return ClassSet(paper, {}, ())
+    return toy_class.class_set(tmp_path, monkeypatch, TEXT)
 
 
 def test_the_accepted_interval_covers_all_paths_and_their_rounding() -> None:
@@ -199,7 +173,7 @@ def test_sheets_do_not_depend_on_the_rest_of_the_class(toy: ClassSet) -> None:
 
 def test_sheet_and_key_are_of_one_variant_and_the_form_makes_it_again(toy: ClassSet) -> None:
     files = dict(toy.files(["Ada"], "1"))
-    (row,) = csv.DictReader(io.StringIO(files["toy-key.csv"].decode()))
+    row, *_ = csv.DictReader(io.StringIO(files["toy-key.csv"].decode()))
     form = Form.read(row["form"])
     sheet = edition(toy.paper, {}, (), solutions=False, form=form)
     source = markup(sheet)
@@ -210,7 +184,7 @@ def test_sheet_and_key_are_of_one_variant_and_the_form_makes_it_again(toy: Class
     assert not float(row["lower"]) <= float(f"{b / a:.3g}") <= float(row["upper"])
     assert "State three digits." in source
     assert "Ada" not in source
-    assert toy.again(form) == (f"toy-{form.key}.pdf", files["toy-Ada.pdf"])
+    assert list(toy.again(form)) == [(f"toy-{form.key}.pdf", files["toy-Ada.pdf"])]
 
 
 def test_the_handout_that_all_share_has_the_original_numbers(toy: ClassSet) -> None:
@@ -226,7 +200,12 @@ def test_the_handout_that_all_share_has_the_original_numbers(toy: ClassSet) -> N
         (["bayhan", "--variants", "2", "--form", "bayhan:0123456789ab:1"], "do not go together"),
         (["bayhan", "khan", "--variants", "2"], "about one paper"),
         (["khan", "--variants", "2"], "no exercise has numbers that vary"),
-        (["bayhan", "--variants", "2", "--format", "html"], "makes PDFs"),
+        (["--form", "bayhan:0123456789ab:1", "--format", "moodle"], "about a class"),
+        (["bayhan", "--variants", "2", "--select", "7"], "no exercise 7; allowed: 1 to 6"),
+        (["bayhan", "--variants", "2", "--select", "2,2"], "--select is '2,2', allowed"),
+        (["bayhan", "--points", "4,five"], "--points is '4,five', allowed: positive numbers"),
+        (["bayhan", "--points", "4,5"], "--points has 2 numbers, the sheet has 6 exercises; give one, or 6"),
+        (["bayhan", "--language", "xx"], "--language is 'xx', allowed: de, en"),
         (["bayhan", "--roster", "nobody.csv"], "nobody.csv: cannot be read"),
     ],
 )

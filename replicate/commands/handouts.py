@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import chain
 from pathlib import Path
 from typing import Annotated
 
@@ -20,7 +21,9 @@ def handout(
     solutions: Annotated[
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
-    format: Annotated[str, typer.Option("--format", help="File format: pdf or html.")] = "pdf",  # noqa: A002
+    format: Annotated[  # noqa: A002
+        str, typer.Option("--format", help="Of the files: pdf or html; for learning platforms: moodle.")
+    ] = "pdf",
     variants: Annotated[
         int | None, typer.Option("--variants", min=1, help="A class set: so many sheets, each with its own numbers.")
     ] = None,
@@ -35,32 +38,53 @@ def handout(
     stress: Annotated[
         int | None, typer.Option("--stress", min=1, help="Draw so many forms of each exercise and test the answers.")
     ] = None,
+    select: Annotated[
+        str, typer.Option("--select", metavar="2,4,5", help="Only these exercises; they keep their numbers.")
+    ] = "",
+    points: Annotated[
+        str, typer.Option("--points", metavar="4,6,2", help="For the exercises of the sheet; one number is for each.")
+    ] = "",
+    title: Annotated[str, typer.Option("--title", help="In place of the handout's own.")] = "",
+    date: Annotated[str, typer.Option("--date", help="Printed at the top, as it stands.")] = "",
+    language: Annotated[
+        str, typer.Option("--language", help="Of the words besides the text: en, de, or a file like en.toml.")
+    ] = "en",
 ) -> None:
     """Build teaching handouts, or a class set with a key.
 
     A handout comes with and without solutions; a class set has a sheet for each student.
     """
     from replicate.handout import (
+        BANKS,
         ClassSet,
         Form,
+        Sheet,
         build_handouts,
+        check_sheet,
         checked_format,
+        read_points,
         read_roster,
+        read_selection,
         stressed,
         varying,
         with_handout,
     )
+    from replicate.handout import language as language_of
     from replicate.staging import staged
 
     again = Form.read(form) if form is not None else None
+    selected = read_selection(select) if select else again.select if again else ()
+    sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language))
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
     chosen = with_handout(run.within.papers(given), all_needed=bool(given))
     file_format = checked_format(format)
     class_options = {"--variants": variants, "--roster": roster, "--form": form, "--stress": stress}
     kinds = [name for name, value in class_options.items() if value is not None]
     if kinds:
-        _check_class_options(kinds, len(chosen), file_format, papers)
+        _check_class_options(kinds, len(chosen), again is not None and file_format in BANKS, papers)
         varying(chosen[0])
+    for paper in chosen:
+        check_sheet(paper, sheet)
     if stress is not None:
         for variation in varying(chosen[0]).variations.values():
             for line in stressed(variation, stress):
@@ -75,9 +99,13 @@ def handout(
         outcome = run.recompute(chosen)
         verdicts = outcome.judgement.verdicts
         if kinds:
-            class_set = ClassSet(outcome.papers[0], outcome.results, verdicts, solutions=bool(solutions))
-            files = [class_set.again(again)] if again else class_set.files(students, seed)
-            written = [_written(fresh / "handouts" / name, content) for name, content in files]
+            class_set = ClassSet(outcome.papers[0], outcome.results, verdicts, bool(solutions), sheet, file_format)
+            if again:
+                made = class_set.again(again)
+            else:
+                bank = file_format if file_format in BANKS else "moodle"  # what a platform can import is in every set
+                made = chain(class_set.files(students, seed), class_set.bank(students, seed, bank))
+            written = [_written(fresh / "handouts" / name, content) for name, content in made]
         else:
             written = build_handouts(
                 outcome.papers,
@@ -86,13 +114,14 @@ def handout(
                 fresh / "handouts",
                 solutions=editions,
                 file_format=file_format,
+                sheet=sheet,
             )
     for path in written:
         echo(f"handout: {run.folder / 'handouts' / path.name}")
     exit_with(run.within, outcome)
 
 
-def _check_class_options(kinds: list[str], papers: int, file_format: str, given: list[str] | None) -> None:
+def _check_class_options(kinds: list[str], papers: int, one_in_a_bank: bool, given: list[str] | None) -> None:
     """Refuse options that do not go together."""
     if len(kinds) > 1:
         msg = f"{' and '.join(kinds)} do not go together; choose one"
@@ -100,8 +129,8 @@ def _check_class_options(kinds: list[str], papers: int, file_format: str, given:
     if papers != 1:
         msg = f"{kinds[0]} is about one paper, {len(given) if given else 'none'} given; name one"
         raise ReplicateError(msg)
-    if file_format != "pdf":
-        msg = f"{kinds[0]} makes PDFs, the format is '{file_format}'"
+    if one_in_a_bank:
+        msg = "--form makes one sheet again; a file of questions is about a class: use --variants or --roster"
         raise ReplicateError(msg)
 
 

@@ -36,6 +36,8 @@ class Answer:
         The values of those who carry on intermediate results rounded as the text says, themselves unrounded.
     mistakes
         Wrong values by the mistake that leads to them; none of them may be accepted.
+    asked
+        What is asked for, in short, where it stands alone: words, and LaTeX between ``$``. If empty, its name.
 
     Raises
     ------
@@ -56,6 +58,7 @@ class Answer:
     tolerance: float | None = None
     carried: tuple[float, ...] = ()
     mistakes: Mapping[str, float] = field(default_factory=dict)
+    asked: str = ""
 
     def __post_init__(self) -> None:
         if not all(math.isfinite(value) for value in (self.value, *self.carried)):
@@ -73,7 +76,7 @@ class Answer:
     def accepted(self) -> tuple[float, float]:
         """The ends of the accepted interval: the exact path and the carried ones, each with its margin."""
         paths = (self.value, *self.carried)
-        return min(path - self._margin(path) for path in paths), max(path + self._margin(path) for path in paths)
+        return min(path - self.margin(path) for path in paths), max(path + self.margin(path) for path in paths)
 
     def accepts(self, value: float) -> bool:
         """Whether a stated value is in the accepted interval; its ends belong to it."""
@@ -81,7 +84,8 @@ class Answer:
         slack = 1e-12 * max(abs(lower), abs(upper))  # the ends are computed in floating point
         return lower - slack <= value <= upper + slack
 
-    def _margin(self, value: float) -> float:
+    def margin(self, value: float) -> float:
+        """Return how far from a value its statement may be: half a unit of the last digit, or the tolerance."""
         if self.tolerance is not None:
             return self.tolerance
         assert self.digits is not None  # noqa: S101  -- for the type checker

@@ -1,18 +1,19 @@
-"""Write the handouts of papers: for each a plain edition and one with solutions, as PDF or as web page."""
+"""Write the handouts of papers: for each a plain edition and one with solutions, or a file of questions."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal, get_args
 
-from replicate.errors import ReplicateError, TemplateError
+from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.handout.edition import FILE, edition
+from replicate.handout.formats import BANKS, EDITIONS
+from replicate.handout.placing import exercises_of
+from replicate.handout.questions import questions_of
+from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
-
-Format = Literal["pdf", "html"]
 
 
 def build_handouts(
@@ -22,7 +23,8 @@ def build_handouts(
     folder: Path,
     *,
     solutions: Sequence[bool] = (False, True),
-    file_format: Format = "pdf",
+    file_format: str = "pdf",
+    sheet: Sheet | None = None,
 ) -> list[Path]:
     """Write handouts.
 
@@ -36,11 +38,15 @@ def build_handouts(
         Where the files go; it is created if it does not exist.
     solutions
         The editions: without solutions, with them, or both.
+    file_format
+        As `replicate.handout.formats` names them.
+    sheet
+        What a lecturer sets for all of them.
 
     Returns
     -------
     list of Path
-        ``<paper>.pdf`` and ``<paper>-solutions.pdf``, or the same with ``.html``. Nothing is written before
+        ``<paper>.pdf`` and ``<paper>-solutions.pdf``, or as the format has them. Nothing is written before
         all of them are complete.
 
     Raises
@@ -50,17 +56,15 @@ def build_handouts(
     """
     made: dict[str, bytes] = {}
     for paper in papers:
+        if file_format in BANKS:
+            document = edition(paper, results, verdicts, solutions=True, sheet=sheet)
+            questions = list(questions_of(document, exercises_of(paper), None))
+            made |= {f"{paper.id}{suffix}": content for suffix, content in BANKS[file_format](questions).items()}
+            continue
         for with_solutions in solutions:
-            document = edition(paper, results, verdicts, solutions=with_solutions)
-            name = f"{paper.id}{'-solutions' if with_solutions else ''}.{file_format}"
-            if file_format == "pdf":
-                from replicate.handout.printout import pdf
-
-                made[name] = pdf(document)
-            else:
-                from replicate.handout.webpage import webpage
-
-                made[name] = webpage(document).encode()
+            document = edition(paper, results, verdicts, solutions=with_solutions, sheet=sheet)
+            name = f"{paper.id}{'-solutions' if with_solutions else ''}"
+            made |= {f"{name}{suffix}": content for suffix, content in EDITIONS[file_format](document).items()}
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in made.items():
         (folder / name).write_bytes(content)
@@ -81,18 +85,3 @@ def with_handout(papers: Sequence[Paper], *, all_needed: bool = False) -> list[P
         msg = f"{missing[0]}/{FILE}: the paper has no handout"
         raise TemplateError(msg)
     return found
-
-
-def checked_format(text: str) -> Format:
-    """Return a format if there is one of that name.
-
-    Raises
-    ------
-    ReplicateError
-        If there is not.
-    """
-    for known in get_args(Format):
-        if text == known:
-            return known  # type: ignore[no-any-return]
-    msg = f"the format is '{text}', allowed: {', '.join(get_args(Format))}"
-    raise ReplicateError(msg)

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from importlib.resources.abc import Traversable
+from pathlib import Path
 from typing import Any
 
 import pypandoc
@@ -15,11 +17,13 @@ from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
+from replicate.handout.exercise_heads import selected, with_heads
 from replicate.handout.form import Form
 from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, line_of, located
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
-from replicate.handout.tree import Blocks, Element, classes, div, elements, plain, string, text_of, transform
+from replicate.handout.sheet import Language, Sheet, language
+from replicate.handout.tree import Blocks, Element, attribute, classes, div, elements, plain, string, text_of, transform
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import VerdictRow
 
@@ -37,7 +41,6 @@ _FOREIGN = {
     "RawBlock": "raw text for one format",
     "Image": "an image from a file",
 }
-_EXERCISE_LEVEL = 2  # below the section that they stand in, whatever the text writes
 _MARK = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
 
@@ -56,6 +59,10 @@ class Document:
         What the formulas and the names of drawings in the tree stand for.
     form
         The id of the form if the numbers of its exercises were drawn.
+    sheet
+        What a lecturer set besides.
+    language
+        Of the text; the words besides are in that of `sheet`.
     """
 
     paper: Paper
@@ -65,6 +72,8 @@ class Document:
     formulas: dict[Formula, Converted]
     drawings: dict[str, Drawing]
     form: str = ""
+    sheet: Sheet = field(default_factory=Sheet)
+    language: Language = field(default_factory=lambda: language("en"))
 
 
 def edition(
@@ -74,6 +83,7 @@ def edition(
     *,
     solutions: bool,
     form: Form | None = None,
+    sheet: Sheet | None = None,
     shared: dict[str, Any] | None = None,
 ) -> Document:
     """Make one edition of a paper's handout.
@@ -86,6 +96,8 @@ def edition(
         Whether the solutions are in it.
     form
         Whose numbers the exercises have; without one, the numbers that all share.
+    sheet
+        What a lecturer sets besides.
     shared
         Kept from one form to the next: what does not vary.
 
@@ -94,8 +106,11 @@ def edition(
     TemplateError
         If there is no handout, the text asks for something that does not exist, a program in it fails, or a
         formula cannot be converted. The message names file, line and what is wrong.
+    ReplicateError
+        If what is set for the sheet does not go with the text.
     """
-    file = paper.folder() / FILE
+    sheet = sheet or Sheet()
+    file, text_language = _file(paper, sheet.language)
     source = display_name(file)
     if not file.is_file():
         msg = f"{source}: the paper has no handout"
@@ -108,13 +123,39 @@ def edition(
     if not solutions:
         blocks = transform(blocks, lambda element: [] if "solution" in classes(element) else None)
     title, blocks = _title(blocks, source)
-    blocks = run_programs(_placed(_numbered(blocks, source), placing), lines, source)
+    blocks = with_heads(blocks, source, placing.exercises, sheet)
+    blocks = selected(run_programs(_placed(blocks, placing), lines, source, shared), sheet)
     try:
         formulas = convert(formulas_in(blocks), shared.setdefault("formulas", {}))
     except FormulaError as error:
         raise located(error, lines, source) from error
     drawings = {thing.name: thing for thing in placing.things if isinstance(thing, Drawing)}
-    return Document(paper, solutions, title, blocks, formulas, drawings, str(form) if form else "")
+    return Document(
+        paper,
+        solutions,
+        sheet.title or title,
+        blocks,
+        formulas,
+        drawings,
+        str(form) if form else "",
+        sheet,
+        text_language,
+    )
+
+
+def without_solutions(document: Document) -> Document:
+    """Return the edition for those who are to solve the exercises."""
+    blocks: Blocks = transform(document.blocks, lambda element: [] if "solution" in classes(element) else None)
+    kept = {formula: document.formulas[formula] for formula in formulas_in(blocks)}
+    shown = {attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)}
+    drawings = {name: drawing for name, drawing in document.drawings.items() if name in shown}
+    return replace(document, solutions=False, blocks=blocks, formulas=kept, drawings=drawings)
+
+
+def _file(paper: Paper, wanted: Language) -> tuple[Traversable, Language]:
+    """Return the text in the language wanted if there is one, otherwise the English one."""
+    translated = paper.folder() / f"{Path(FILE).stem}.{wanted.tag}.md"
+    return (translated, wanted) if translated.is_file() else (paper.folder() / FILE, language("en"))
 
 
 def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
@@ -158,30 +199,6 @@ def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:
         return [{"t": "Header", "c": [level - 1, attributes, content]}]
 
     return text_of(blocks[0]["c"][2]), transform(blocks[1:], raised)
-
-
-def _numbered(blocks: Blocks, source: str) -> Blocks:
-    """Write into the heading of each exercise its number, and with what it is to be solved."""
-    number = 0
-    for element in elements(blocks):
-        if "exercise" not in classes(element):
-            continue
-        number += 1
-        heading = element["c"][1][0] if element["c"][1] else None
-        if heading is None or heading["t"] != "Header":
-            msg = f"{source}: exercise {number} does not begin with a heading"
-            raise TemplateError(msg)
-        _, attributes, title = heading["c"]
-        tool = dict(attributes[2]).get("tool", "")
-        head: list[Any] = [
-            {"t": "Span", "c": [["", ["number"], []], [string(f"Exercise {number}")]]},
-            {"t": "Space"},
-            *title,
-        ]
-        if tool:
-            head += [{"t": "Space"}, {"t": "Span", "c": [["", ["tool"], []], [string(tool)]]}]
-        heading["c"] = [_EXERCISE_LEVEL, ["", [], []], head]
-    return blocks
 
 
 def _placed(blocks: Blocks, placing: Placing) -> Blocks:

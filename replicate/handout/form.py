@@ -10,6 +10,7 @@ from urllib.parse import quote, unquote
 from replicate.errors import ReplicateError
 
 _KEY = re.compile(r"[0-9a-f]{12}")
+_NUMBERS = re.compile(r"([1-9]\d{0,2}(\.[1-9]\d{0,2})*)?")
 
 
 @dataclass(frozen=True)
@@ -24,22 +25,27 @@ class Form:
         Of the class set.
     key
         Twelve hexadecimal digits of a hash of seed and student.
+    select
+        The numbers of its exercises; nothing for all.
 
     Examples
     --------
     >>> form = Form.of("bayhan", "2026 W", "Ada")
     >>> Form.read(str(form)) == form
     True
+    >>> print(Form.of("bayhan", "1", "Ada", (2, 4)))
+    bayhan:2b6cdeb0ee62:1:2.4
     """
 
     paper: str
     seed: str
     key: str
+    select: tuple[int, ...] = ()
 
     @classmethod
-    def of(cls, paper: str, seed: str, student: str) -> Form:
+    def of(cls, paper: str, seed: str, student: str, select: tuple[int, ...] = ()) -> Form:
         """Return the form of a student."""
-        return cls(paper, seed, hashlib.sha256(f"{seed}\0{student}".encode()).hexdigest()[:12])
+        return cls(paper, seed, hashlib.sha256(f"{seed}\0{student}".encode()).hexdigest()[:12], select)
 
     @classmethod
     def read(cls, text: str) -> Form:
@@ -51,15 +57,20 @@ class Form:
             If it is none.
         """
         paper, _, rest = text.strip().partition(":")
-        key, _, seed = rest.partition(":")
-        if not paper or not _KEY.fullmatch(key):
-            msg = f"the form is '{text}', allowed: PAPER:KEY:SEED as printed on a sheet, KEY with 12 hexadecimal digits"
+        key, _, rest = rest.partition(":")
+        seed, _, numbers = rest.partition(":")
+        if not paper or not _KEY.fullmatch(key) or not _NUMBERS.fullmatch(numbers):
+            msg = (
+                f"the form is '{text}', allowed: PAPER:KEY:SEED as printed on a sheet, KEY with 12 hexadecimal digits; "
+                "if only some exercises are on it, also :2.4.5"
+            )
             raise ReplicateError(msg)
-        return cls(paper, unquote(seed), key)
+        return cls(paper, unquote(seed), key, tuple(int(number) for number in numbers.split(".") if number))
 
     def __str__(self) -> str:
         """Return the id as printed on every page."""
-        return f"{self.paper}:{self.key}:{quote(self.seed, safe='')}"
+        numbers = f":{'.'.join(str(number) for number in self.select)}" if self.select else ""
+        return f"{self.paper}:{self.key}:{quote(self.seed, safe='')}{numbers}"
 
     @property
     def draw(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from pathlib import Path
@@ -14,7 +14,7 @@ import typst
 
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
-from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.variants import Variation
 from replicate.handout.form import Form
 from replicate.handout.letters import can_be_set, fonts_dir
 from replicate.resources import templates_dir
@@ -37,7 +37,7 @@ class KeyRow:
     form: str
 
 
-def key_rows(exercises: Exercises, student: str, form: Form) -> list[KeyRow]:
+def key_rows(variations: Mapping[str, Variation], student: str, form: Form) -> list[KeyRow]:
     """Return the answers of a student.
 
     Raises
@@ -46,13 +46,13 @@ def key_rows(exercises: Exercises, student: str, form: Form) -> list[KeyRow]:
         If no draw satisfies what an exercise requires, or an answer does not exist.
     """
     rows = []
-    for name, variation in exercises.variations.items():
+    for name, variation in variations.items():
         for part, answer in variation.answers(variation.drawn(form.draw)).items():
             lower, upper = answer.accepted
             numbers = (
-                _text(answer.value, ROUND_HALF_EVEN),
-                _text(lower, ROUND_FLOOR),
-                _text(upper, ROUND_CEILING),
+                plain_decimals(answer.value),
+                plain_decimals(lower, ROUND_FLOOR),
+                plain_decimals(upper, ROUND_CEILING),
             )
             rows.append(KeyRow(student, name, part, *numbers, answer.unit, str(form)))
     return rows
@@ -97,6 +97,6 @@ def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str) -> bytes:
     return made
 
 
-def _text(value: float, rounding: str) -> str:
+def plain_decimals(value: float, rounding: str = ROUND_HALF_EVEN) -> str:
     """Return a number in plain decimals, so that any spreadsheet reads it."""
     return format(Context(prec=_DIGITS, rounding=rounding).create_decimal(Decimal(value)).normalize(), "f")

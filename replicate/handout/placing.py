@@ -47,10 +47,11 @@ OPEN, CLOSE = "\ue002", "\ue003"
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure to be placed: its SVG, its words and its width as a fraction of the text's."""
+    """A figure to be placed: its SVG and PNG, its words and its width as a fraction of the text's."""
 
     name: str
     svg: str
+    png: bytes
     alt: str
     width: float
 
@@ -182,7 +183,7 @@ class Placing:
                 with _said_by(f"figure('{name}')"):
                     self.shared[drawing_key] = drawing.capture(f"{self.paper.id}-handout", drawn)
             result = self.shared[drawing_key]
-            return self._mark(Drawing(name, result.svg, description(drawn.alt, result.axes), width))
+            return self._mark(Drawing(name, result.svg, result.png, description(drawn.alt, result.axes), width))
         known = self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
             figures = [id for id, other in self.paper.exhibits.items() if isinstance(other, Figure)]
@@ -191,7 +192,7 @@ class Placing:
         if known.error:
             msg = f"figure('{name}'): could not be drawn: {known.error}"
             raise TemplateError(msg)
-        return self._mark(Drawing(name, known.svg, description(found.alt, known.axes), width))
+        return self._mark(Drawing(name, known.svg, known.png, description(found.alt, known.axes), width))
 
     def _mark(self, thing: Drawing | Placed) -> str:
         self.things.append(thing)

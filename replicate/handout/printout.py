@@ -7,20 +7,20 @@ Only fonts inside the typst package are used, and nothing tells the time: the sa
 
 from __future__ import annotations
 
-import json
+import io
 import re
 import tempfile
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-import pypandoc
+import segno
 import typst
 
 import replicate
 from replicate.errors import TemplateError
 from replicate.handout.edition import FILE, Document
 from replicate.handout.letters import check_letters, fonts_dir
+from replicate.handout.pandoc import written
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import (
     Blocks,
@@ -35,6 +35,7 @@ from replicate.handout.tree import (
 from replicate.resources import templates_dir
 
 TEMPLATE = "handout.typ"
+FORM = "form.svg"  # its id, for a camera
 
 # Functions of the template, by the class of a Div or Span.
 _BLOCKS = {"lead", "key", "exercise", "solution"}
@@ -56,6 +57,8 @@ def pdf(document: Document) -> bytes:
         root = Path(folder)
         template = (templates_dir() / TEMPLATE).read_text(encoding="utf-8")
         (root / TEMPLATE).write_text(template, encoding="utf-8")
+        if document.form:
+            (root / FORM).write_bytes(form_code(document.form))
         for drawing in document.drawings.values():
             (root / f"{drawing.name}.svg").write_text(drawing.svg, encoding="utf-8")
         main = root / "main.typ"
@@ -86,26 +89,41 @@ def pdf(document: Document) -> bytes:
 
 def markup(document: Document) -> str:
     """Return the Typst source of a handout."""
-    paper = document.paper
     blocks = transform(document.blocks, lambda element: _for_typst(element, document))
-    tree = {"pandoc-api-version": _api_version(), "meta": {}, "blocks": blocks}
-    body = str(
-        pypandoc.convert_text(
-            json.dumps(tree), "typst", format="json", extra_args=["--sandbox", "--wrap=none", "--fail-if-warnings"]
-        )
-    )
+    (body,) = written([blocks], "typst")
+    return head(document) + body
+
+
+def head(document: Document) -> str:
+    """Return the Typst source before the text: the template and what it is to say."""
+    paper, sheet = document.paper, document.sheet
     settings = {
         "title": document.title,
         "citation": paper.citation,
         "authors": ", ".join(paper.authors),
         "software": f"replicate {replicate.__version__}",
+        "date": sheet.date,
+        "text-lang": document.language.tag,
+        "text-region": document.language.region,
+        "lang": sheet.language.tag,
+        "region": sheet.language.region,
     }
     arguments = [f"{key}: {quoted(value)}" for key, value in settings.items()]
     arguments.append(f"solutions: {'true' if document.solutions else 'false'}")
     if document.form:
         arguments.append(f"form: {quoted(document.form)}")
-    head = f'#import "{TEMPLATE}": *\n#show: handout.with({", ".join(arguments)})\n\n'
-    return head + body.replace("\r\n", "\n")
+    words = ", ".join(f"{quoted(name)}: {quoted(word)}" for name, word in sheet.language.words.items())
+    arguments.append(f"words: ({words})")
+    return f'#import "{TEMPLATE}": *\n#show: handout.with({", ".join(arguments)})\n\n'
+
+
+def form_code(form: str) -> bytes:
+    """Return the id of a form as a QR code, an SVG that tells no time."""
+    out = io.BytesIO()
+    segno.make(form, micro=False, error="m", boost_error=False).save(
+        out, kind="svg", border=0, xmldecl=False, svgns=True, nl=False
+    )
+    return out.getvalue()
 
 
 def quoted(text: str) -> str:
@@ -184,10 +202,3 @@ def _failed(name: str, error: typst.TypstError | typst.TypstWarning, text: str) 
     about = f": '{text.splitlines()[int(found[1]) - 1].strip()[:80]}'" if found else ""
     hints = f" ({'; '.join(error.hints)})" if error.hints else ""
     return TemplateError(f"{name}: cannot be typeset: {error.message}{hints}{about}")
-
-
-@cache
-def _api_version() -> tuple[int, ...]:
-    """Return the version of the tree's format that this pandoc reads and writes."""
-    empty = json.loads(pypandoc.convert_text("", "json", format="markdown"))
-    return tuple(empty["pandoc-api-version"])

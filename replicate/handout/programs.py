@@ -10,6 +10,7 @@ import io
 import traceback
 from collections.abc import Sequence
 from contextlib import redirect_stdout
+from dataclasses import dataclass, field
 from typing import Any
 
 from replicate.errors import TemplateError
@@ -21,7 +22,9 @@ LONGEST_LINE = 88  # characters; what fits between the margins
 LONGEST_RUN = 60.0  # seconds
 
 
-def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str) -> Blocks:
+def run_programs(
+    document: Blocks, lines: Sequence[tuple[str, int]], source: str, known: dict[str, Any] | None = None
+) -> Blocks:
     """Return the document with the output of its programs.
 
     Parameters
@@ -29,13 +32,16 @@ def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str
     lines, source
         For error messages: the text that the document was read from with the line of the source that each
         line stems from, and the name of the source.
+    known
+        What programs wrote on another sheet, by all that had run until then; the new ones are added.
 
     Raises
     ------
     TemplateError
         If a program fails, or a line of it or of its output is too long for the page.
     """
-    names: dict[str, Any] = {"__name__": "handout"}
+    known = {} if known is None else known
+    runs = Runs({"__name__": "handout"}, known)
 
     def changed(element: Element) -> list[Element] | None:
         if element["t"] != "CodeBlock":
@@ -46,7 +52,7 @@ def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str
             _check_width(line, f"{source}:{number}")
         if "run" not in classes(element):
             return None
-        written = _run(code, names, source, first)
+        written = runs.written(code, source, first)
         for line in written.splitlines():
             _check_width(line, f"{source}:{first}: the output")
         program = {"t": "CodeBlock", "c": [["", ["python"], []], code]}
@@ -56,6 +62,34 @@ def run_programs(document: Blocks, lines: Sequence[tuple[str, int]], source: str
 
     result: Blocks = transform(document, changed)
     return result
+
+
+@dataclass
+class Runs:
+    """Programs that share their names; one that an earlier sheet had after the same others does not run again.
+
+    Attributes
+    ----------
+    names
+        What the programs have defined.
+    known
+        What they wrote, by the text of a program and of all before it.
+    """
+
+    names: dict[str, Any]
+    known: dict[str, Any]
+    _before: list[tuple[str, str, int]] = field(default_factory=list)
+    _done: int = 0
+
+    def written(self, code: str, source: str, first: int) -> str:
+        """Return what a program writes; the programs before it are run only if it has to be."""
+        self._before.append((code, source, first))
+        key = "\0".join(["program", *(one for one, _, _ in self._before)])
+        if key not in self.known:
+            for late in self._before[self._done :]:
+                self.known[key] = _run(late[0], self.names, late[1], late[2])
+            self._done = len(self._before)
+        return str(self.known[key])
 
 
 def _run(code: str, names: dict[str, Any], source: str, first: int) -> str:

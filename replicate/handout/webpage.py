@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import html
-import json
 
-import pypandoc
 from markupsafe import Markup
 
 import replicate
@@ -14,7 +12,8 @@ from replicate.display.rendering import html_environment
 from replicate.display.source_code import highlight
 from replicate.exhibits.plain_text import visible
 from replicate.handout.edition import Document
-from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, transform
+from replicate.handout.pandoc import written
+from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, string, transform
 
 TEMPLATE = "handout.html"
 
@@ -22,15 +21,7 @@ TEMPLATE = "handout.html"
 def webpage(document: Document) -> str:
     """Return the page as HTML."""
     blocks = transform(document.blocks, lambda element: _for_html(element, document))
-    empty = json.loads(pypandoc.convert_text("", "json", format="markdown"))
-    body = str(
-        pypandoc.convert_text(
-            json.dumps(empty | {"blocks": blocks}),
-            "html",
-            format="json",
-            extra_args=["--sandbox", "--wrap=none", "--fail-if-warnings", "--shift-heading-level-by=1"],
-        )
-    )
+    (body,) = written([blocks], "html", "--shift-heading-level-by=1")
     return visible(
         html_environment()
         .get_template(TEMPLATE)
@@ -38,7 +29,11 @@ def webpage(document: Document) -> str:
             title=document.title,
             paper=document.paper,
             solutions=document.solutions,
-            body=Markup(body.replace("\r\n", "\n")),  # noqa: S704  -- the project's own text
+            language=document.language,
+            words=document.sheet.language,
+            date=document.sheet.date,
+            form=document.form,
+            body=Markup(body),  # noqa: S704  -- the project's own text
             software=f"replicate {replicate.__version__}",
         )
     )
@@ -60,6 +55,6 @@ def _for_html(element: Element, document: Document) -> list[Element] | None:
             head = raw_block("html", f'<figure class="drawing" style="--share: {drawing.width:g}">{svg}')
             return [head, *element["c"][1], raw_block("html", "</figure>")]
         case "Div" if "solution" in classes(element):
-            label = plain([{"t": "Strong", "c": [{"t": "Str", "c": "Solution"}]}])
+            label = plain([{"t": "Strong", "c": [string(document.sheet.language["solution"])]}])
             return [{**element, "c": [element["c"][0], [label, *element["c"][1]]]}]
     return None

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 exercises = Exercises()
 
 ASKED = ("ZN", "ITAESPC")  # the rules whose integral gains the first exercise asks for
+NAMES = {"ZN": "Ziegler and Nichols", "ITAESPC": "ITAESPC"}
 CLEAR = 0.05  # so far from one, as a logarithm, that an answer rounded early differs from a wrong one
 
 
@@ -111,9 +112,14 @@ def missing_factor(inputs: Inputs) -> Answers:
             digits=3,
             carried=(p / t, p / ti, kp / t),
             mistakes={"Kp forgotten": 1 / ti, "multiplied by Ti": kp * ti},
+            asked=f"{NAMES[rule]}, $K_i = K_p/T_i$",
         )
         found[f"{rule} 1/Ti"] = Answer(
-            1 / ti, digits=3, carried=(1 / t,), mistakes={"Kp kept": kp / ti, "not inverted": ti}
+            1 / ti,
+            digits=3,
+            carried=(1 / t,),
+            mistakes={"Kp kept": kp / ti, "not inverted": ti},
+            asked=f"{NAMES[rule]}, $1/T_i$",
         )
     return found
 
@@ -163,6 +169,7 @@ def pade_phase(inputs: Inputs) -> Answers:
             tolerance=0.01,
             carried=(round(dead_time, 2) - round(dead_time - error, 2),),
             mistakes={"half of the angle": (dead_time + error) / 2, "wrong sign": -error},
+            asked=rf"error at $\omega L = {float(drawn):g}$",
         )
     return found
 

@@ -1,0 +1,91 @@
+"""The exercises of a handout as questions of a learning platform: text, answers and solution, one by one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.variants import Answers
+from replicate.handout.edition import Document
+from replicate.handout.form import Form
+from replicate.handout.tree import Blocks, attribute, classes, elements, text_of
+
+
+@dataclass(frozen=True)
+class Question:
+    """One exercise with the numbers of one form.
+
+    Attributes
+    ----------
+    exercise
+        The name under which its numbers vary; without such a name, its number.
+    number
+        In the handout.
+    variant
+        The key of the form, or ``0`` for the numbers that all share.
+    text, solution
+        Pandoc's tree, without the heading.
+    answers
+        What is asked for, by name; nothing if the exercise is answered in words.
+    points
+        For the whole exercise, if it has any.
+    document
+        What the exercise is from: the formulas and drawings in its text.
+    """
+
+    exercise: str
+    number: int
+    title: str
+    variant: str
+    text: Blocks
+    solution: Blocks
+    answers: Answers
+    points: float | None
+    document: Document
+
+    @property
+    def id(self) -> str:
+        """A name that no other question has, of letters, digits, ``-`` and ``_``."""
+        return f"{self.document.paper.id}-{self.exercise}-{self.variant}"
+
+
+def questions_of(document: Document, exercises: Exercises, form: Form | None) -> Iterator[Question]:
+    """Yield the exercises of an edition with solutions, in the order of the text.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If an answer does not exist.
+    """
+    for block in elements(document.blocks):
+        if "exercise" not in classes(block):
+            continue
+        name = attribute(block, "vary")
+        answers: Answers = {}
+        if name:
+            variation = exercises.variations[name]
+            answers = variation.answers(variation.drawn(form.draw) if form else variation.original)
+        content = block["c"][1][1:]
+        number, points = int(attribute(block, "number")), attribute(block, "points")
+        yield Question(
+            exercise=name or f"exercise-{number}",
+            number=number,
+            title=attribute(block, "title"),
+            variant=form.key if form and name else "0",
+            text=[inner for inner in content if "solution" not in classes(inner)],
+            solution=[part for inner in content if "solution" in classes(inner) for part in inner["c"][1]],
+            answers=answers,
+            points=float(points) if points else None,
+            document=document,
+        )
+
+
+def drawings_in(blocks: Blocks) -> list[str]:
+    """Return the names of the drawings in a text."""
+    return [attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)]
+
+
+def plain_title(blocks: Blocks) -> str:
+    """Return a heading as plain text on one line."""
+    return " ".join(text_of(blocks).split())

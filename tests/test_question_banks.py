@@ -1,0 +1,138 @@
+"""Questions for learning platforms: what was written is read again by other code, and each answer computed anew."""
+
+from __future__ import annotations
+
+import base64
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import toy_class
+
+from replicate.handout import ClassSet, Sheet, build_handouts
+
+STUDENTS = ["Ada", "山田", "Bob"]
+
+
+@pytest.fixture
+def toy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ClassSet:
+    return toy_class.class_set(tmp_path, monkeypatch)
+
+
+def parsed(content: bytes) -> ET.Element:
+    return ET.fromstring(content)  # noqa: S314  -- what the test has just written
+
+
+def moodle(toy: ClassSet) -> ET.Element:
+    ((name, content),) = toy.bank(STUDENTS, "1", "moodle")
+    assert name == "toy-moodle.xml"
+    return parsed(content)
+
+
+def questions(quiz: ET.Element, kind: str) -> list[ET.Element]:
+    return [question for question in quiz.iter("question") if question.get("type") == kind]
+
+
+def text(node: ET.Element, path: str) -> str:
+    return node.findtext(path) or ""
+
+
+Band = tuple[float, float, float, str]  # lower end, upper end, per cent, feedback
+
+
+def cloze_parts(source: str) -> Iterator[tuple[int, list[Band]]]:
+    """Read embedded answers: {WEIGHT:NUMERICAL:=VALUE:TOLERANCE~%PER CENT%VALUE:TOLERANCE#FEEDBACK}."""
+    for weight, body in re.findall(r"\{(\d*):NUMERICAL:((?:[^}\\]|\\.)*)\}", source):
+        bands = []
+        for one in re.split(r"(?<!\\)~", body):
+            found = re.split(r"(?<!\\)#", one, maxsplit=1)
+            answer, feedback = found[0], found[1] if len(found) > 1 else ""
+            per_cent = 100.0 if answer.startswith("=") else float(re.match(r"%(\d+)%", answer)[1])  # type: ignore[index]
+            value, tolerance = (float(part) for part in re.sub(r"^(=|%\d+%)", "", answer).split(":"))
+            bands.append((value - tolerance, value + tolerance, per_cent, re.sub(r"\\(.)", r"\1", feedback)))
+        yield int(weight), bands
+
+
+def grade(bands: list[Band], value: float) -> float:
+    """Grade as Moodle does: the first answer that fits counts."""
+    return next((per_cent for lower, upper, per_cent, _ in bands if lower <= value <= upper), 0.0)
+
+
+def test_one_category_per_exercise_and_in_it_one_question_per_form(toy: ClassSet) -> None:
+    quiz = moodle(toy)
+    kinds = [question.get("type") for question in quiz]
+    assert kinds == ["category", *["numerical"] * 3, "category", "essay", "category", *["cloze"] * 3]
+    categories = [text(question, "category/text") for question in questions(quiz, "category")]
+    assert categories == [f"$course$/top/A toy/{name}" for name in ("1 Divide", "2 Why x < y?", "3 Two parts")]
+    ids = [text(question, "idnumber") for question in quiz if question.get("type") != "category"]
+    assert len(set(ids)) == len(ids) == 7
+    assert "Ada" not in ET.tostring(quiz, encoding="unicode")
+
+
+def test_a_numerical_question_accepts_what_the_key_accepts(toy: ClassSet) -> None:
+    for question in questions(moodle(toy), "numerical"):
+        a, b = (float(found) for found in re.findall(r"\\\((\d+)\\\)", text(question, "questiontext/text")))
+        bands = [
+            (value - tolerance, value + tolerance, float(answer.get("fraction", "")), text(answer, "feedback/text"))
+            for answer in question.iter("answer")
+            for value, tolerance in [(float(text(answer, "text")), float(text(answer, "tolerance")))]
+        ]
+        unit = 10.0 ** (len(str(int(a / b))) - 3) if a >= b else 0.01
+        early = a * float(f"{1 / b:.3g}")
+        for right in (a / b, float(f"{a / b:.3g}"), early, early + 0.499 * unit * (1 if early > a / b else -1)):
+            assert grade(bands, right) == 100
+        for wrong in (b / a, max(early, a / b) + 0.51 * unit, min(early, a / b) - 0.51 * unit, -a / b):
+            assert grade(bands, wrong) == 0
+        assert [feedback for lower, upper, _, feedback in bands if lower <= b / a <= upper] == ["upside down?"]
+
+
+def test_a_cloze_question_has_a_field_for_each_answer(toy: ClassSet) -> None:
+    for question in questions(moodle(toy), "cloze"):
+        source = text(question, "questiontext/text")
+        a, b = (float(found) for found in re.findall(r"\\\((-?\d+)\\\)", source)[:2])
+        (_, added), (_, multiplied) = cloze_parts(source)
+        assert [grade(added, value) for value in (a + b, a + b + 0.49, a + b + 0.51, a - b)] == [100, 100, 0, 0]
+        assert [grade(multiplied, value) for value in (a * b, a * b - 0.99, a * b - 1.01, -a * b)] == [100, 100, 0, 0]
+        assert added[1][3] == "sign # of b / ~?"
+        assert "the sum" in source
+        assert r"\(a + b\)" in source
+        assert "} kg" in source
+
+
+def test_an_essay_has_its_figure_inside_and_the_solution_for_those_who_grade(toy: ClassSet) -> None:
+    (question,) = questions(moodle(toy), "essay")
+    asked = text(question, "questiontext/text")
+    assert 'src="@@PLUGINFILE@@/fig-1.png" alt="y from 0 to 1 over t from 0 to 1."' in asked
+    assert r"\[\frac{1}{1 + s}\]" in asked
+    assert "figure &amp; say" in asked
+    assert "<pre>number = 6</pre>" in asked
+    (embedded,) = question.iter("file")
+    assert base64.b64decode(embedded.text or "") == toy_class.PNG
+    assert "print(7 * number)" in text(question, "graderinfo/text")
+    assert "42" in text(question, "generalfeedback/text")
+    assert "42" not in asked
+
+
+@pytest.mark.parametrize(("points", "weights", "grades"), [((4.0, 6.0, 2.0), [1, 1], ["4", "6"]),
+                                                           ((3.0,), [1, 1], ["3", "3"])])  # fmt: skip
+def test_points_are_grades(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, points: tuple[float, ...], weights: list[int], grades: list[str]
+) -> None:
+    quiz = moodle(toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(points=points)))
+    (cloze, *_), (numerical, *_), (essay,) = (questions(quiz, kind) for kind in ("cloze", "numerical", "essay"))
+    assert [weight for weight, _ in cloze_parts(text(cloze, "questiontext/text"))] == weights
+    assert [text(question, "defaultgrade") for question in (numerical, essay)] == grades
+
+
+def test_a_handout_that_all_share_has_its_questions_too(toy: ClassSet, tmp_path: Path) -> None:
+    (path,) = build_handouts([toy.paper], toy.results, (), tmp_path / "out", file_format="moodle")
+    quiz = parsed(path.read_bytes())
+    (question,) = questions(quiz, "numerical")
+    assert text(question, "idnumber") == "toy-division-0"
+    assert float(text(question, "answer/text")) == pytest.approx(1 / 4)
+
+
+def test_the_same_class_has_the_same_bytes(toy: ClassSet) -> None:
+    assert list(toy.bank(STUDENTS, "1", "moodle")) == list(toy.bank(STUDENTS[::-1], "1", "moodle"))
