@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import base64
+import io
 import re
 import xml.etree.ElementTree as ET
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -136,3 +138,119 @@ def test_a_handout_that_all_share_has_its_questions_too(toy: ClassSet, tmp_path:
 
 def test_the_same_class_has_the_same_bytes(toy: ClassSet) -> None:
     assert list(toy.bank(STUDENTS, "1", "moodle")) == list(toy.bank(STUDENTS[::-1], "1", "moodle"))
+
+
+# --------------------------------------------------------------------------------------------------------------- QTI
+
+Q = "{http://www.imsglobal.org/xsd/imsqti_v2p1}"
+CP = "{http://www.imsglobal.org/xsd/imscp_v1p1}"
+M = "{http://www.w3.org/1998/Math/MathML}"
+
+
+def package(toy: ClassSet) -> zipfile.ZipFile:
+    ((name, content),) = toy.bank(STUDENTS, "1", "qti")
+    assert name == "toy-qti.zip"
+    return zipfile.ZipFile(io.BytesIO(content))
+
+
+def items(made: zipfile.ZipFile) -> dict[str, ET.Element]:
+    found = [parsed(made.read(name)) for name in made.namelist() if name.startswith("items/")]
+    return {str(item.get("identifier")): item for item in found}
+
+
+def score(item: ET.Element, responses: dict[str, float]) -> float:
+    """Interpret the item's own rules, as a platform does."""
+    total = 0.0
+    processing = item.find(f"{Q}responseProcessing")
+    assert processing is not None
+    for condition in processing:
+        (rule,) = condition
+        both, outcome = rule
+        assert [both.tag, outcome.tag, outcome.get("identifier")] == [f"{Q}and", f"{Q}setOutcomeValue", "SCORE"]
+        holds = True
+        for relation in both:
+            variable, constant = relation
+            value, end = responses[str(variable.get("identifier"))], float(constant.text or "")
+            holds &= value >= end if relation.tag == f"{Q}gte" else value <= end
+        (added,) = outcome
+        kept, share = added
+        assert (added.tag, kept.get("identifier")) == (f"{Q}sum", "SCORE")
+        total += float(share.text or "") if holds else 0.0
+    return total
+
+
+def test_the_manifest_lists_every_file_and_nothing_else(toy: ClassSet) -> None:
+    made = package(toy)
+    manifest = parsed(made.read("imsmanifest.xml"))
+    assert manifest.tag == f"{CP}manifest"
+    assert [child.tag for child in manifest] == [f"{CP}metadata", f"{CP}organizations", f"{CP}resources"]
+    assert [node.text for node in manifest[0]] == ["QTIv2.1 Package", "1.0.0"]
+    listed = {str(file.get("href")) for file in manifest.iter(f"{CP}file")}
+    assert listed | {"imsmanifest.xml"} == set(made.namelist())
+    resources = {str(resource.get("identifier")): resource for resource in manifest.iter(f"{CP}resource")}
+    assert {resource.get("type") for resource in resources.values()} == {"imsqti_item_xmlv2p1", "imsqti_test_xmlv2p1"}
+    for resource in resources.values():
+        assert resource.get("href") in {file.get("href") for file in resource}
+    assert {dependency.get("identifierref") for dependency in manifest.iter(f"{CP}dependency")} == set(items(made))
+    assert made.read("images/fig-1.png") == toy_class.PNG
+
+
+def test_the_test_selects_one_form_of_each_exercise(toy: ClassSet) -> None:
+    made = package(toy)
+    test = parsed(made.read("test.xml"))
+    sections = list(test.iter(f"{Q}assessmentSection"))
+    assert [section.get("title") for section in sections] == ["Divide", "Why x < y?", "Two parts"]
+    references = [[str(ref.get("href")) for ref in section.iter(f"{Q}assessmentItemRef")] for section in sections]
+    assert [len(found) for found in references] == [3, 1, 3]
+    assert {href for found in references for href in found} == {
+        name for name in made.namelist() if name.startswith("items/")
+    }
+    assert all(selection.get("select") == "1" for selection in test.iter(f"{Q}selection"))
+
+
+def test_an_item_has_the_parts_of_the_standard_in_its_order(toy: ClassSet) -> None:
+    order = ["responseDeclaration", "outcomeDeclaration", "itemBody", "responseProcessing"]
+    names = set()
+    for id, item in items(package(toy)).items():
+        assert item.tag == f"{Q}assessmentItem"
+        assert re.fullmatch(r"[A-Za-z_][A-Za-z0-9_.-]*", id)  # an identifier of QTI
+        assert (item.get("adaptive"), item.get("timeDependent")) == ("false", "false")
+        places = [order.index(child.tag.removeprefix(Q)) for child in item]
+        assert places == sorted(places)
+        declared = {str(node.get("identifier")) for node in item.iter(f"{Q}responseDeclaration")}
+        interactions = [*item.iter(f"{Q}textEntryInteraction"), *item.iter(f"{Q}extendedTextInteraction")]
+        assert {node.get("responseIdentifier") for node in interactions} == declared
+        body = item.find(f"{Q}itemBody")
+        assert body is not None
+        names |= {node.tag for node in body.iter() if not node.tag.startswith(M)}
+        attributes = {key for node in body.iter() if not node.tag.startswith(M) for key in node.attrib}
+        assert "style" not in attributes
+        assert all(formula.get("alttext") for formula in body.iter(f"{M}math"))
+    blocks = {"itemBody", "div", "p", "pre", "rubricBlock", "extendedTextInteraction", "textEntryInteraction", "img"}
+    assert names == {f"{Q}{name}" for name in blocks}
+
+
+def test_an_item_scores_what_the_key_accepts(toy: ClassSet) -> None:
+    made = items(package(toy))
+    numerical = [item for id, item in made.items() if "-division-" in id]
+    for item in numerical:
+        a, b = formulas(item)[:2]
+        assert score(item, {"RESPONSE_1": float(f"{a / b:.3g}")}) == 1.0
+        assert score(item, {"RESPONSE_1": b / a}) == 0.0
+        correct = float(item.findtext(f"{Q}responseDeclaration/{Q}correctResponse/{Q}value") or "")
+        assert correct == pytest.approx(a / b, rel=1e-6)
+    for item in (item for id, item in made.items() if "-sums-" in id):
+        a, b = formulas(item)[:2]
+        assert score(item, {"RESPONSE_1": a + b, "RESPONSE_2": a * b}) == 2.0
+        assert score(item, {"RESPONSE_1": a - b, "RESPONSE_2": a * b}) == 1.0
+        assert score(item, {"RESPONSE_1": a + b + 0.51, "RESPONSE_2": a * b + 1.01}) == 0.0
+
+
+def formulas(item: ET.Element) -> list[float]:
+    """Return the numbers that are whole formulas, in the order of the text."""
+    said = (str(formula.get("alttext")).replace("minus ", "-") for formula in item.iter(f"{M}math"))
+    return [float(words) for words in said if re.fullmatch(r"-?[\d.]+", words)]
+
+
+def test_the_same_class_has_the_same_package(toy: ClassSet) -> None:
+    assert list(toy.bank(STUDENTS, "1", "qti")) == list(toy.bank(STUDENTS[::-1], "1", "qti"))

@@ -33,10 +33,16 @@ def _moodle(questions: Sequence[Question]) -> Files:
     return {"-moodle.xml": moodle_xml(questions)}
 
 
+def _qti(questions: Sequence[Question]) -> Files:
+    from replicate.handout.qti import qti_package
+
+    return {"-qti.zip": qti_package(questions)}
+
+
 #: One edition of a handout each.
 EDITIONS: dict[str, Callable[[Document], Files]] = {"pdf": _pdf, "html": _html}
 #: All exercises together, for a learning platform.
-BANKS: dict[str, Callable[[Sequence[Question]], Files]] = {"moodle": _moodle}
+BANKS: dict[str, Callable[[Sequence[Question]], Files]] = {"moodle": _moodle, "qti": _qti}
 
 
 def checked_format(text: str) -> str:

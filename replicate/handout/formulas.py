@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 
 import pypandoc
 
@@ -17,7 +18,7 @@ Formula = tuple[bool, str]  # whether it is displayed on a line of its own, and 
 
 @dataclass(frozen=True)
 class Converted:
-    """One formula: Typst markup between dollar signs, a MathML element, and both in words."""
+    """One formula: Typst markup between dollar signs, a MathML element that has its words, and the words."""
 
     typst: str
     mathml: str
@@ -69,7 +70,7 @@ def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
                 raise FormulaError(formula[1], _reason(str(error))) from error
         raise
     return {
-        formula: Converted(one, other, spoken(other))
+        formula: Converted(one, other.replace("<math", f'<math alttext="{escape(spoken(other))}"', 1), spoken(other))
         for formula, one, other in zip(formulas, typst, mathml, strict=True)
     }
 

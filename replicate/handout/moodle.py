@@ -11,17 +11,15 @@ import base64
 import html
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
 from decimal import ROUND_CEILING
 
 from replicate.exhibits.variants import Answer
 from replicate.handout.marking_key import plain_decimals
-from replicate.handout.pandoc import written
-from replicate.handout.questions import Question, drawings_in
-from replicate.handout.tree import Blocks, Element, attribute, classes, inlines, plain, raw_block, raw_inline, transform
+from replicate.handout.question_texts import Texts, texts_of
+from replicate.handout.questions import Question, different, drawings_in
+from replicate.handout.tree import Blocks
 
-_OPEN = "\ue005"  # around the name of a drawing whose words are to stand there
 _PENALTY = "0.1"  # Moodle's own
 _NUMERICAL = {"unitgradingtype": "0", "unitpenalty": "0.1", "showunits": "3", "unitsleft": "0"}  # no units asked for
 _ESSAY = {
@@ -33,15 +31,6 @@ _ESSAY = {
 }
 
 
-@dataclass(frozen=True)
-class _Texts:
-    """The parts of a question as HTML."""
-
-    text: str
-    solution: str
-    labels: dict[str, str]
-
-
 def moodle_xml(questions: Iterable[Question]) -> bytes:
     """Return a file that Moodle imports as format "Moodle XML".
 
@@ -50,11 +39,10 @@ def moodle_xml(questions: Iterable[Question]) -> bytes:
     questions
         Of any number of forms; equal ones, of exercises that do not vary, are written once.
     """
-    different = list({question.id: question for question in questions}.values())
-    different.sort(key=lambda question: (question.number, question.variant))
+    chosen = different(questions)
     quiz = ET.Element("quiz")
     category = ""
-    for question, texts in zip(different, _texts(different), strict=True):
+    for question, texts in zip(chosen, texts_of(chosen, "@@PLUGINFILE@@/", "--mathjax"), strict=True):
         course = f"$course$/top/{question.document.title.replace('/', '//')}"
         here = f"{course}/{question.number} {question.title.replace('/', '//')}"
         if here != category:
@@ -67,7 +55,7 @@ def moodle_xml(questions: Iterable[Question]) -> bytes:
     return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(quiz, encoding="unicode").encode() + b"\n"
 
 
-def _question(question: Question, texts: _Texts) -> ET.Element:
+def _question(question: Question, texts: Texts) -> ET.Element:
     kind = {0: "essay", 1: "numerical"}.get(len(question.answers), "cloze")
     out = ET.Element("question", type=kind)
     form = "" if question.variant == "0" else f" ({question.variant})"
@@ -133,38 +121,6 @@ def _weight(question: Question) -> int:
     """Return the weight of each part; Moodle takes whole numbers only."""
     share = (question.points or 0) / len(question.answers)
     return int(share) if share >= 1 and share == int(share) else 1
-
-
-def _texts(questions: Sequence[Question]) -> Iterator[_Texts]:
-    """Write the texts of all questions in one call of pandoc."""
-    pieces: list[Blocks] = []
-    for question in questions:
-        pieces += [question.text, question.solution]
-        pieces += [[plain(inlines(answer.asked or name))] for name, answer in question.answers.items()]
-    made = iter(written([transform(piece, _for_moodle) for piece in pieces], "html", "--mathjax"))
-    for question in questions:
-        text, solution = next(made), next(made)
-        alts = {name: drawing.alt for name, drawing in question.document.drawings.items()}
-        text, solution = (_with_words(part, alts) for part in (text, solution))
-        yield _Texts(text, solution, {name: next(made).strip() for name in question.answers})
-
-
-def _for_moodle(element: Element) -> list[Element] | None:
-    if element["t"] == "Div" and "drawing" in classes(element):
-        name = attribute(element, "name")
-        return [
-            raw_block("html", f'<p><img src="@@PLUGINFILE@@/{name}.png" alt="{_OPEN}{name}{_OPEN}"></p>'),
-            *element["c"][1],
-        ]
-    if element["t"] == "CodeBlock":
-        return [raw_block("html", f"<pre>{html.escape(element['c'][1], quote=False)}</pre>")]
-    if element["t"] == "Span" and "number" in classes(element):
-        return [raw_inline("html", "")]
-    return None
-
-
-def _with_words(text: str, alts: dict[str, str]) -> str:
-    return re.sub(f"{_OPEN}(.*?){_OPEN}", lambda found: html.escape(alts[found[1]]), text)
 
 
 def _settings(parent: ET.Element, settings: dict[str, str]) -> None:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answers
 from replicate.handout.edition import Document
 from replicate.handout.form import Form
-from replicate.handout.tree import Blocks, attribute, classes, elements, text_of
+from replicate.handout.tree import Blocks, attribute, classes, elements
 
 
 @dataclass(frozen=True)
@@ -86,6 +86,7 @@ def drawings_in(blocks: Blocks) -> list[str]:
     return [attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)]
 
 
-def plain_title(blocks: Blocks) -> str:
-    """Return a heading as plain text on one line."""
-    return " ".join(text_of(blocks).split())
+def different(questions: Iterable[Question]) -> list[Question]:
+    """Return questions by exercise and form; those of exercises that do not vary are the same on all forms."""
+    found = {question.id: question for question in questions}
+    return sorted(found.values(), key=lambda question: (question.number, question.variant))

@@ -45,7 +45,7 @@ _NAMES = {
 }  # fmt: skip
 
 
-def spoken(mathml: str) -> str:
+def spoken(mathml: str | ET.Element) -> str:
     r"""Return a formula in words.
 
     Parameters
@@ -59,7 +59,8 @@ def spoken(mathml: str) -> str:
     ...        "<mfrac><msub><mi>K</mi><mi>p</mi></msub><mi>T</mi></mfrac></math>")
     'K sub i equals the fraction K sub p over T, end of fraction'
     """
-    words = _say(ET.fromstring(mathml))  # noqa: S314  -- pandoc's own output
+    root = ET.fromstring(mathml) if isinstance(mathml, str) else mathml  # noqa: S314  -- pandoc's own output
+    words = _say(root)
     return re.sub(r"\s+([,.;)\]])", r"\1", re.sub(r"([(\[])\s+", r"\1", " ".join(words.split())))
 
 
