@@ -22,7 +22,7 @@ def handout(
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
     format: Annotated[  # noqa: A002
-        str, typer.Option("--format", help="Of the files: pdf or html; for learning platforms: moodle or qti.")
+        str, typer.Option("--format", help="pdf, html, docx, tex, typ, ipynb; for learning platforms moodle or qti.")
     ] = "pdf",
     variants: Annotated[
         int | None, typer.Option("--variants", min=1, help="A class set: so many sheets, each with its own numbers.")

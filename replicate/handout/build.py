@@ -9,7 +9,7 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.handout.edition import FILE, edition
-from replicate.handout.formats import BANKS, EDITIONS
+from replicate.handout.formats import BANKS, EDITIONS, named
 from replicate.handout.placing import exercises_of
 from replicate.handout.questions import questions_of
 from replicate.handout.sheet import Sheet
@@ -59,12 +59,12 @@ def build_handouts(
         if file_format in BANKS:
             document = edition(paper, results, verdicts, solutions=True, sheet=sheet)
             questions = list(questions_of(document, exercises_of(paper), None))
-            made |= {f"{paper.id}{suffix}": content for suffix, content in BANKS[file_format](questions).items()}
+            made |= named(BANKS[file_format](questions), paper.id)
             continue
         for with_solutions in solutions:
             document = edition(paper, results, verdicts, solutions=with_solutions, sheet=sheet)
             name = f"{paper.id}{'-solutions' if with_solutions else ''}"
-            made |= {f"{name}{suffix}": content for suffix, content in EDITIONS[file_format](document).items()}
+            made |= named(EDITIONS[file_format](document), name)
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in made.items():
         (folder / name).write_bytes(content)

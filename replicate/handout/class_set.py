@@ -12,7 +12,7 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import Results
 from replicate.handout.edition import Document, edition, without_solutions
 from replicate.handout.form import Form
-from replicate.handout.formats import BANKS, EDITIONS
+from replicate.handout.formats import BANKS, EDITIONS, named
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
 from replicate.handout.placing import exercises_of
 from replicate.handout.questions import questions_of
@@ -82,8 +82,7 @@ class ClassSet:
             for form in self._forms(students, seed).values()
             for question in questions_of(self._document(form), exercises, form)
         ]
-        for suffix, content in BANKS[file_format](questions).items():
-            yield f"{self.paper.id}{suffix}", content
+        yield from named(BANKS[file_format](questions), self.paper.id).items()
 
     def again(self, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the name and content of one sheet, made again from its id."""
@@ -107,8 +106,7 @@ class ClassSet:
     def _sheet(self, stem: str, form: Form) -> Iterator[tuple[str, bytes]]:
         document = self._document(form)
         made = EDITIONS[self.file_format](document if self.solutions else without_solutions(document))
-        for suffix, content in made.items():
-            yield f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}{suffix}", content
+        yield from named(made, f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}").items()
 
     def _document(self, form: Form) -> Document:
         """Return a sheet with its solutions; it is made once."""

@@ -14,7 +14,7 @@ _MARK = "\ue004"  # between two pieces
 _OPTIONS = ("--sandbox", "--wrap=none", "--fail-if-warnings")
 
 
-def written(pieces: Sequence[Blocks], target: str, *options: str) -> list[str]:
+def written(pieces: Sequence[Blocks], target: str, *options: str, raw: str = "") -> list[str]:
     """Write pieces of a tree, each as if it were alone.
 
     Parameters
@@ -23,10 +23,12 @@ def written(pieces: Sequence[Blocks], target: str, *options: str) -> list[str]:
         A format of pandoc in which raw text stays what it is, as html and typst.
     options
         Of pandoc, besides those that all calls have.
+    raw
+        What the format calls raw text that it leaves as it is; its own name if empty.
     """
     if not pieces:
         return []
-    blocks = [block for piece in pieces for block in (raw_block(target, _MARK), *piece)]
+    blocks = [block for piece in pieces for block in (raw_block(raw or target, _MARK), *piece)]
     text = str(
         pypandoc.convert_text(
             json.dumps(document(blocks)), target, format="json", extra_args=[*_OPTIONS, *options], verify_format=False

@@ -1,0 +1,146 @@
+"""A handout as a source that can be edited: a Word document, LaTeX with its figures beside it, or Typst in one file."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+import pypandoc
+import typst
+
+import replicate
+from replicate.errors import TemplateError
+from replicate.handout import pandoc
+from replicate.handout.edition import Document
+from replicate.handout.printout import FORM, TEMPLATE, form_code, markup, quoted
+from replicate.handout.tree import (
+    Blocks,
+    Element,
+    attribute,
+    classes,
+    plain,
+    string,
+    transform,
+)
+from replicate.resources import templates_dir
+
+_DATE = "315532800"  # 1 January 1980, the first that a zip file can tell: a document tells no time
+_TEXT_WIDTH = 15.5  # cm, of a figure as wide as the text
+
+
+def docx(document: Document) -> bytes:
+    """Return a Word document; its formulas are equations of Word.
+
+    Raises
+    ------
+    TemplateError
+        If pandoc cannot write it.
+    """
+    pictures = {f"{name}.png": drawing.png for name, drawing in document.drawings.items()}
+    return _pandoc(document, "docx", pictures)
+
+
+def tex(document: Document) -> dict[str, bytes]:
+    """Return a LaTeX document and its figures as PDF, by the names under which the document asks for them.
+
+    Raises
+    ------
+    TemplateError
+        If pandoc cannot write it.
+    """
+    figures = {f"{document.paper.id}-{name}.pdf": figure_pdf(one.svg) for name, one in document.drawings.items()}
+    made = _pandoc(document, "latex", figures, "--standalone", "-V", "geometry:margin=25mm", "-V", "papersize:a4")
+    return {".tex": made, **figures}
+
+
+def typ(document: Document) -> bytes:
+    """Return a Typst document in one file: the template and the figures are in it."""
+    template = (templates_dir() / TEMPLATE).read_text(encoding="utf-8")
+    images = {f"{name}.svg": drawing.svg for name, drawing in document.drawings.items()}
+    if document.form:
+        images[FORM] = form_code(document.form).decode()
+    _, _, body = markup(document).partition("\n")  # the first line imports the template
+    text = f"{template}\n// ------------------------------------------------------------------ the text\n\n{body}"
+    for name, svg in images.items():
+        embedded = f"bytes({quoted(svg)})"
+        text = text.replace(f'#drawing("{name}"', f"#drawing({embedded}").replace(
+            f'image("{name}"', f"image({embedded}"
+        )
+    return text.encode()
+
+
+def figure_pdf(svg: str) -> bytes:
+    """Return a drawing as a PDF of its own size."""
+    source = (
+        f"#set document(date: none)\n#set page(width: auto, height: auto, margin: 0pt)\n#image(bytes({quoted(svg)}))\n"
+    )
+    made = typst.compile(source.encode(), format="pdf", ignore_system_fonts=True)
+    assert isinstance(made, bytes)  # noqa: S101  -- for the type checker: one PDF, not a list of pages
+    return made
+
+
+def _pandoc(document: Document, target: str, files: Mapping[str, bytes], *options: str) -> bytes:
+    tree = pandoc.document(_prepared(document, dict(zip(document.drawings, files, strict=True))))
+    tree["meta"] = {
+        "title": _inline(document.title),
+        "lang": _inline(document.language.code),
+        "keywords": {"t": "MetaList", "c": [_inline(f"replicate {replicate.__version__}")]},
+    } | ({"date": _inline(document.sheet.date)} if document.sheet.date else {})
+    with tempfile.TemporaryDirectory() as folder:
+        root = Path(folder)
+        for name, content in files.items():
+            (root / name).write_bytes(content)
+        done = subprocess.run(  # noqa: S603  -- pandoc on a tree in which nothing is raw
+            [
+                pypandoc.get_pandoc_path(),
+                "--from=json",
+                f"--to={target}",
+                "--output=made",
+                "--fail-if-warnings",
+                *options,
+            ],
+            input=json.dumps(tree).encode(),
+            cwd=root,
+            env={**os.environ, "SOURCE_DATE_EPOCH": _DATE},
+            capture_output=True,
+            check=False,
+        )
+        if done.returncode:
+            msg = f"{document.paper.id}: pandoc cannot write {target}: {' '.join(done.stderr.decode().split())}"
+            raise TemplateError(msg)
+        return (root / "made").read_bytes()
+
+
+def _prepared(document: Document, files: Mapping[str, str]) -> Blocks:
+    """Return the text with its figures as images, and words where a colour or a place says something."""
+
+    def changed(element: Element) -> list[Element] | None:
+        found = classes(element)
+        if element["t"] == "Div" and "drawing" in found:
+            drawing = document.drawings[attribute(element, "name")]
+            width = [["width", f"{_TEXT_WIDTH * drawing.width:.1f}cm"]]
+            image = {"t": "Image", "c": [["", [], width], [string(drawing.alt)], [files[drawing.name], ""]]}
+            return [{"t": "Para", "c": [image]}, *element["c"][1]]
+        if element["t"] == "Div" and "solution" in found:
+            label = plain([{"t": "Strong", "c": [string(document.sheet.language["solution"])]}])
+            return [{"t": "BlockQuote", "c": [label, *element["c"][1]]}]
+        if element["t"] == "Span" and found and found[0] == "tool":
+            return [{"t": "Emph", "c": [string("("), *element["c"][1], string(")")]}]
+        if element["t"] == "Span":
+            return list(element["c"][1])
+        if element["t"] == "Div":
+            return [*element["c"][1]]
+        return None
+
+    blocks: Blocks = transform(document.blocks, changed)
+    source = {"t": "Para", "c": [string(f"{document.sheet.language['paper']}: {document.paper.citation}")]}
+    form = f"{document.sheet.language['form']} {document.form}"
+    return [source, *([{"t": "Para", "c": [string(form)]}] if document.form else []), *blocks]
+
+
+def _inline(text: str) -> Element:
+    return {"t": "MetaInlines", "c": [string(text)]}
