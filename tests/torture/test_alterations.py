@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import json
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
@@ -65,6 +66,7 @@ def test_a_value_of_a_table(attack: Attack) -> None:
         cell = dict(before[key])
         try:
             number = float(cell["computed"])
+            number = number if math.isfinite(number) else 1.0
             cell["computed"] = f"{number + 1e-5 * max(abs(number), 0.1):.12g}"  # zeros may be 1e-15, too
         except ValueError:  # a word, or nothing
             cell["computed"] = "altered"
