@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -99,21 +99,28 @@ explanation = "The last digit is wrong: {{ value('table-1', '3', 'log', 'decimal
 @contextmanager
 def installed(site: Path) -> Iterator[Path]:
     """Write the distribution into a folder and make it importable; yield the paper's own folder."""
-    for name, text in FILES.items():
+    with importable(site, "lab_paper", FILES) as folder:
+        yield folder
+
+
+@contextmanager
+def importable(site: Path, package: str, files: Mapping[str, str]) -> Iterator[Path]:
+    """Write files into a folder from which a package can be imported; yield the package's folder."""
+    for name, text in files.items():
         path = site / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
-    _forget()
+    _forget(package)
     sys.path.insert(0, str(site))
     try:
-        yield site / "lab_paper"
+        yield site / package
     finally:
         sys.path.remove(str(site))
-        _forget()
+        _forget(package)
 
 
-def _forget() -> None:
-    for name in [name for name in sys.modules if name.split(".")[0] == "lab_paper"]:
+def _forget(package: str) -> None:
+    for name in [name for name in sys.modules if name.split(".")[0] == package]:
         del sys.modules[name]
 
 

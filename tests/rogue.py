@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+
+import installed_paper
 
 _INIT = """
 from replicate.exhibits import Paper
@@ -102,19 +103,5 @@ def installed(site: Path, readings: Mapping[str, str], more: str = "", init: str
         "rogue_paper-1.0.dist-info/METADATA": "Metadata-Version: 2.1\nName: rogue-paper\nVersion: 1.0\n",
         "rogue_paper-1.0.dist-info/entry_points.txt": "[replicate.papers]\nrogue = rogue_paper:paper\n",
     }
-    for name, text in files.items():
-        path = site / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text, encoding="utf-8")
-    _forget()
-    sys.path.insert(0, str(site))
-    try:
-        yield site / "rogue_paper"
-    finally:
-        sys.path.remove(str(site))
-        _forget()
-
-
-def _forget() -> None:
-    for name in [name for name in sys.modules if name.partition(".")[0] == "rogue_paper"]:
-        del sys.modules[name]
+    with installed_paper.importable(site, "rogue_paper", files) as folder:
+        yield folder
