@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from replicate.loops import chebyshev, checks
 from replicate.loops.errors import LoopError, NotSettledError, UnstableLoopError
+from replicate.loops.peaks import Peak
 from replicate.loops.piecewise import MARGIN, SAMPLES, Piecewise
 from replicate.loops.signal_views import SignalViews
 
 Array = NDArray[np.float64]
 
+APPROACH = 1e-12  # of the final value: a response that never exceeds it by more only approaches it
+ARRIVAL = 1e-3  # of the final value: no mode decays from there to rounding within one piece
 ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
 
 
@@ -37,6 +40,23 @@ class Signal(SignalViews, Piecewise):
     Times count from the step, dead time included. Overshoot is a fraction of the final value. Where the final value is
     zero (load responses) bands are absolute, as fractions of the unit step.
     """
+
+    def peak(self) -> Peak:
+        """Return the largest value on [0, horizon]; its ``.time`` is where it is reached.
+
+        The time is ``inf`` where the response only approaches its final value from below: rounding alone would say
+        when it is closest.
+        """
+        highest = super().peak()
+        if np.isfinite(self.final) and abs(highest - self.final) <= APPROACH * abs(self.final) and not self._arrives():
+            return Peak(highest.value, float("inf"))
+        return highest
+
+    def _arrives(self) -> bool:
+        """Whether the response reaches its final value at a certain time, and does not only approach it."""
+        error = np.max(np.abs(self._samples - self.final), axis=1)
+        at_rest = np.nonzero(error <= APPROACH * abs(self.final))[0]
+        return bool(at_rest.size and (at_rest[0] == 0 or error[at_rest[0] - 1] > ARRIVAL * abs(self.final)))
 
     # ---- step metrics ---------------------------------------------------------------------------------------------
 

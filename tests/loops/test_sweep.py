@@ -104,6 +104,70 @@ def test_every_value_is_that_of_the_single_loop(until: float | None) -> None:
     assert not result["stable"][-2:].any()
 
 
+#: Plants under controllers of one form each, gains varied: what a sweep computes as blocks.
+PLANTS_OF_BLOCKS = {
+    "first order": FOPTD,
+    "slow": Plant.foptd(2.0, 20.0, 0.5),
+    "fast": Plant.foptd(1.0, 0.1, 1.0),
+    "integrating": Plant([0.5], [1.0, 0.0], 1.0),
+    "fourth order": Plant([1.0], np.poly([-1.0] * 4), 0.5),
+    "unstable": Plant([2.0], [1.0, -1.0], 0.2),
+    "resonant": Plant([1.0], [1.0, 0.4, 1.0], 0.7),
+    "zero to the right": Plant([-1.0, 2.0], [1.0, 3.0, 2.0], 0.4),
+    "jumps": Plant([1.0, 2.0], [3.0, 1.0], 0.4),
+}
+FORMS_OF_BLOCKS: dict[str, dict[str, Any]] = {
+    "P": {"ki": 0.0},
+    "PI": {},
+    "I": {"k": 0.0},
+    "PID": {"kd": 1.0, "derivative_filter": 0.1},
+    "weighted and filtered": {"b": 0.0, "measurement_filter": 0.2, "setpoint_filter": 1.5},
+}
+
+
+@pytest.mark.parametrize(
+    ("plant", "form"),
+    [
+        ("first order", "PI"), ("first order", "weighted and filtered"), ("slow", "PID"), ("fast", "P"), ("fast", "I"),
+        ("integrating", "PI"), ("fourth order", "PID"), ("unstable", "PI"), ("resonant", "I"),
+        ("zero to the right", "weighted and filtered"), ("jumps", "PI"),
+    ],
+)  # fmt: skip
+def test_a_block_has_the_values_of_the_single_loops(plant: str, form: str) -> None:
+    random = np.random.default_rng(2018)
+    given = PLANTS_OF_BLOCKS[plant]
+    controllers = []
+    for _ in range(4):  # fewer go one by one
+        k, ki, kd = 10.0 ** random.uniform([-1.0, -1.5, -2.0], [0.5, 0.2, -0.3])
+        own = FORMS_OF_BLOCKS[form]
+        controllers.append(PID(**{"k": k, "ki": ki, **own, **({"kd": kd} if "kd" in own else {})}))
+    names = [name for name in NAMES if name != "rightmost_pole"]
+    result = sweep(given, controllers, metrics=names)
+    for i, controller in enumerate(controllers):
+        loop = Loop(given, controller)
+        assert result["stable"][0, i] == loop.is_stable()
+        for name, expected in single(loop, None).items():
+            if name not in names:
+                continue
+            # the time of a peak is known to the square root of how far it rises above its surroundings
+            rtol = 1e-7 if name.endswith("peak_time") else 1e-9
+            value = result[name][0, i]
+            np.testing.assert_allclose(value, expected, rtol=rtol, atol=1e-11, err_msg=f"{name} of {loop}")
+            assert not np.isnan(value) or result.reason[0, i]
+
+
+@pytest.mark.parametrize("until", [2.5, 7.0])
+def test_a_block_with_a_horizon_has_the_values_of_the_single_loops(until: float) -> None:
+    gains = np.array([[0.5, 0.4], [0.7, 0.05], [1.2, 0.9], [0.2, 0.1], [0.4, 0.6]])
+    names = [*OF_A_SIGNAL, *(f"load_{name}" for name in OF_A_SIGNAL)]
+    result = sweep(FOPTD, gains, metrics=names, until=until)
+    for i, row in enumerate(gains):
+        expected = single(Loop(FOPTD, PI(*row)), until)
+        for name in names:
+            np.testing.assert_allclose(result[name][0, i], expected[name], rtol=1e-9, atol=1e-12, err_msg=name)
+            assert not np.isnan(expected[name]) or name in result.reason[0, i]
+
+
 def test_a_first_order_loop_has_the_values_of_its_closed_form() -> None:
     # 1/s under k: y = 1 - exp(-kt)
     k = np.array([0.5, 2.0])

@@ -6,11 +6,12 @@ take the memory of a million rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, Generic, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from replicate.loops import checks
 from replicate.loops.controller import PID
@@ -18,7 +19,11 @@ from replicate.loops.errors import LoopError
 from replicate.loops.notation import parse_controller, parse_plant
 from replicate.loops.plant import Plant
 
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 T = TypeVar("T", Plant, PID)
+
+NUMBERS = (float, int, np.float64)
 
 PLANT_COLUMNS = (("gain", "time_constant", "dead_time"), ("num", "den", "dead_time"), ("plant",))
 CONTROLLER_COLUMNS = tuple(field.name for field in fields(PID))
@@ -42,12 +47,18 @@ class Axis(Generic[T]):
         Makes a member from its place.
     single
         Whether one object was given, not a list of one.
+    numbers
+        The members as rows of numbers where they were given so, shape (n, numbers).
+    valid
+        Says of rows of numbers which are certainly members; the others are made to see.
     """
 
     name: str
     labels: Sequence[Any]
     make: Callable[[int], T]
     single: bool = False
+    numbers: Array | None = None
+    valid: Callable[[Array], Flags] | None = None
 
     def __len__(self) -> int:
         return len(self.labels)
@@ -65,7 +76,10 @@ class Axis(Generic[T]):
         if not len(self):
             msg = f"the sweep has no {self.name}s: give at least one"
             raise LoopError(msg)
-        for place in range(len(self)):
+        doubtful: Iterable[int] = range(len(self))
+        if self.numbers is not None and self.valid is not None:
+            doubtful = np.nonzero(~self.valid(self.numbers))[0].tolist()
+        for place in doubtful:
             self[place]
         return self
 
@@ -78,23 +92,34 @@ def plant_axis(given: Any) -> Axis[Plant]:
     LoopError
         If there are none, or one is no plant.
     """
-    return _axis("plant", given, Plant, _plant, _plant_of_row, PLANT_ROWS).checked()
+    return _axis("plant", given, Plant, _plant, _plant_of_row, PLANT_ROWS, PLANT_COLUMNS[0], _is_foptd).checked()
 
 
 def controller_axis(given: Any) -> Axis[PID]:
     """Return the controllers of a sweep; LoopError if there are none, or one is no controller."""
-    return _axis("controller", given, PID, _controller, _controller_of_row, CONTROLLER_ROWS).checked()
+    return _axis(
+        "controller", given, PID, _controller, _controller_of_row, CONTROLLER_ROWS, ("k", "ki", "kd", "b"), _is_pid
+    ).checked()  # fmt: skip
 
 
 def _axis(
-    name: str, given: Any, kind: type[T], member: Callable[[Any], T], of_row: Callable[[dict[str, Any]], T], rows: str
+    name: str,
+    given: Any,
+    kind: type[T],
+    member: Callable[[Any], T],
+    of_row: Callable[[dict[str, Any]], T],
+    rows: str,
+    numbers: tuple[str, ...],
+    valid: Callable[[Array], Flags],
 ) -> Axis[T]:
     if isinstance(given, kind | str):
         return Axis(name, (0,), lambda _: member(given), single=True)
     if hasattr(given, "columns") and hasattr(given, "itertuples"):
         columns, values = [str(c) for c in given.columns], [given[c].to_numpy() for c in given.columns]
+        plain = columns == list(numbers[: len(columns)]) and len(columns) > 1
         return Axis(
-            name, list(given.index), lambda i: of_row(dict(zip(columns, (v[i] for v in values), strict=True)))
+            name, list(given.index), lambda i: of_row(dict(zip(columns, (v[i] for v in values), strict=True))),
+            numbers=_numbers(given.to_numpy(), len(numbers)) if plain else None, valid=valid,
         )  # fmt: skip
     if isinstance(given, Mapping):
         msg = f"the {name}s of a sweep must be {rows}, not a {type(given).__name__}"
@@ -110,7 +135,33 @@ def _axis(
         except TypeError:
             msg = f"the {name}s of a sweep must be {rows}, not {checks.shown(given)}"
             raise LoopError(msg) from None
-    return Axis(name, range(len(members)), lambda i: member(members[i]))
+    return Axis(
+        name, range(len(members)), lambda i: member(members[i]), numbers=_numbers(members, len(numbers)), valid=valid
+    )  # fmt: skip
+
+
+def _numbers(members: Any, most: int) -> Array | None:
+    """Return rows of plain numbers as one array, or None if they are anything else."""
+    if not isinstance(members, np.ndarray):
+        if not all(isinstance(row, tuple | list) and all(type(x) in NUMBERS for x in row) for row in members):
+            return None
+        try:
+            members = np.array(members)
+        except ValueError:  # rows of different lengths
+            return None
+    if members.dtype.kind not in "fiu" or members.ndim != 2 or not 2 <= members.shape[1] <= most:
+        return None
+    return np.asarray(members, dtype=float)
+
+
+def _is_pid(rows: Array) -> Flags:
+    return np.asarray(np.isfinite(rows).all(axis=1))
+
+
+def _is_foptd(rows: Array) -> Flags:
+    if rows.shape[1] != len(PLANT_COLUMNS[0]):
+        return np.zeros(len(rows), dtype=bool)
+    return np.asarray(np.isfinite(rows).all(axis=1) & (rows[:, 0] != 0.0) & (rows[:, 1] != 0.0) & (rows[:, 2] >= 0.0))
 
 
 def _plant(given: Any) -> Plant:

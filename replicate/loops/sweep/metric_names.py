@@ -14,6 +14,7 @@ from replicate.loops.total_variation import total_variation
 
 LOAD = "load_"
 
+
 #: Metrics of a response, given the half-width of the settling band.
 OF_A_RESPONSE: dict[str, Callable[[Response, float], float]] = {
     "overshoot": lambda response, _: response.output.overshoot(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,10 @@ from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
 from replicate.loops.sweep.axes import Axis, controller_axis, plant_axis
+from replicate.loops.sweep.block_metrics import answered, block_metrics, is_batched
+from replicate.loops.sweep.blocks import Block, grid_blocks, pair_blocks
+from replicate.loops.sweep.controller_table import ControllerTable
+from replicate.loops.sweep.loop_columns import LoopColumns
 from replicate.loops.sweep.metric_names import POLE, STABLE, checked_metrics
 from replicate.loops.sweep.one_loop import LoopMetrics, loop_metrics
 from replicate.loops.sweep.sweep_result import GRID, PAIRWISE, SweepResult
@@ -89,8 +93,11 @@ def sweep(
     columns = tuple(dict.fromkeys([*names, STABLE]))
     values = {name: _empty(name, shape) for name in columns}
     reason = np.full(shape, "", dtype=object)
-    for place, (plant, controller) in _loops(plant_side, controller_side, pairing, shape):
-        _keep(loop_metrics(plant, controller, names, until, band), place, values, reason)
+    table = ControllerTable.of(controller_side)
+    blocks = grid_blocks(plant_side, table) if pairing == GRID else pair_blocks(plant_side, table, shape[0])
+    flat = {name: array.reshape(-1) for name, array in values.items()}
+    for block in blocks:
+        _compute(block, controller_side, table, names, until, band, flat, reason.reshape(-1))
     return SweepResult(
         pairing, _labels(plant_side, pairing, shape), _labels(controller_side, pairing, shape), names, values, reason
     )
@@ -115,24 +122,41 @@ def _empty(name: str, shape: tuple[int, ...]) -> NDArray[Any]:
     return np.full(shape, complex("nan+nanj") if name == POLE else float("nan"))
 
 
-def _loops(
-    plants: Axis[Plant], controllers: Axis[PID], pairing: str, shape: tuple[int, ...]
-) -> Iterator[tuple[tuple[int, ...], tuple[Plant, PID]]]:
-    """Yield the place of each loop in the result, and its plant and controller."""
-    if pairing == PAIRWISE:
-        for i in range(shape[0]):
-            yield (i,), (plants[0 if plants.single else i], controllers[0 if controllers.single else i])
-        return
-    for i in range(len(plants)):
-        plant = plants[i]
-        for j in range(len(controllers)):
-            yield (i, j), (plant, controllers[j])
-
-
-def _keep(
-    found: LoopMetrics, place: tuple[int, ...], values: dict[str, NDArray[Any]], reason: NDArray[np.object_]
+def _compute(
+    block: Block,
+    controllers: Axis[PID],
+    table: ControllerTable,
+    names: tuple[str, ...],
+    until: float | None,
+    band: float,
+    values: dict[str, NDArray[Any]],
+    reason: NDArray[np.object_],
 ) -> None:
+    """Enter the metrics of a block into the flat arrays of the result."""
+    places, rows = block.places, block.rows
+    alone = np.ones(places.size, dtype=bool)
+    together = answered(names) if is_batched(block.plant, block.form, places.size) else ()
+    if together:
+        loops = LoopColumns.of(
+            block.plant, block.form, *(array[rows] for array in (table.k, table.ki, table.kd, table.b))
+        )  # fmt: skip
+        found = block_metrics(loops, together, until, band)
+        alone = found.alone
+        values[STABLE][places] = found.stable
+        for name, array in found.values.items():
+            values[name][places] = array
+        for flags, why in found.reasons:
+            for place in places[flags & ~alone]:
+                reason[place] = f"{reason[place]}; {why}" if reason[place] else why
+    rest = tuple(name for name in names if name not in together)
+    for i in np.arange(places.size) if rest else np.nonzero(alone)[0]:
+        asked = names if alone[i] else rest
+        place = places[i]
+        _keep(loop_metrics(block.plant, controllers[int(rows[i])], asked, until, band), place, values, reason)
+
+
+def _keep(found: LoopMetrics, place: int, values: dict[str, NDArray[Any]], reason: NDArray[np.object_]) -> None:
     values[STABLE][place] = found.stable
     for name, value in found.values.items():
         values[name][place] = value
-    reason[place] = found.reason
+    reason[place] = "; ".join(dict.fromkeys(part for part in (reason[place], found.reason) if part))

@@ -1,0 +1,110 @@
+"""The metrics of a block of loops, all at once, and which loops or questions are left to the single loop."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.controller import PID
+from replicate.loops.plant import Plant
+from replicate.loops.sweep.loop_columns import LoopColumns
+from replicate.loops.sweep.marching import march
+from replicate.loops.sweep.metric_names import LOAD, STABLE
+from replicate.loops.sweep.one_loop import UNSTABLE
+from replicate.loops.sweep.response_metrics import ResponseMetrics
+from replicate.loops.sweep.stability_counts import STABLE as IS_STABLE
+from replicate.loops.sweep.stability_counts import UNDECIDED, stability
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+FEWEST = 4  # loops below which a block costs more than they do one by one
+OF_A_STEP = ("overshoot", "rise_time", "delay_time")  # relative to the final value
+OF_THE_SIZE = ("overshoot", "peak")  # no unit of time in them
+OF_A_RESPONSE = (*OF_A_STEP, "peak", "peak_time", "settling_time", "iae", "ise", "ie")
+
+
+@dataclass(frozen=True)
+class BlockMetrics:
+    """What the loops of a block answered.
+
+    Attributes
+    ----------
+    stable
+        Shape (n,).
+    values
+        By name, shape (n,); ``nan`` where a value does not exist.
+    reasons
+        Pairs of flags and the reason why the flagged loops lack values.
+    alone
+        Loops to be asked one by one, whatever else is here.
+    """
+
+    stable: Flags
+    values: dict[str, NDArray[Any]]
+    reasons: list[tuple[Flags, str]]
+    alone: Flags
+
+
+def answered(metrics: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the metrics that blocks can answer."""
+    known = {STABLE, *OF_A_RESPONSE, *(LOAD + name for name in OF_A_RESPONSE if name not in OF_A_STEP)}
+    return tuple(name for name in metrics if name in known)
+
+
+def is_batched(plant: Plant, form: PID, count: int) -> bool:
+    """Whether loops of a plant and a form of controller can be computed as a block."""
+    return (
+        count >= FEWEST
+        and type(plant) is Plant
+        and plant.dead_time > 0.0
+        and bool(plant.num[-1] != 0.0)
+        and bool(form.k or form.ki or form.kd)
+    )
+
+
+def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | None, band: float) -> BlockMetrics:
+    """Return the metrics, which `answered` must contain, of loops for which `is_batched`."""
+    decided, _ = stability(loops)
+    stable, alone = decided == IS_STABLE, decided == UNDECIDED
+    values = {name: np.full(len(loops), np.nan) for name in metrics if name != STABLE}
+    reasons = [(~stable & ~alone, UNSTABLE)] if values else []
+    chosen = np.nonzero(stable)[0]
+    for load in (False, True):
+        asked = [name for name in values if name.startswith(LOAD) == load]
+        if not asked or chosen.size == 0:
+            continue
+        part = loops.take(chosen)
+        end = None if until is None else until / loops.time
+        responses = march(part, 0.0 if load else 1.0, loops.gain if load else 0.0, end, band)
+        found = ResponseMetrics(responses)
+        for name in asked:
+            value, missing, why = _answer(found, name.removeprefix(LOAD), band, loops.time)
+            values[name][chosen] = np.where(missing, np.nan, value)
+            if missing.any():
+                flags = np.zeros(len(loops), dtype=bool)
+                flags[chosen] = missing
+                reasons.append((flags, f"{name}: {why}"))
+        alone[chosen] |= found.doubtful
+    return BlockMetrics(stable, values, reasons, alone)
+
+
+def _answer(found: ResponseMetrics, name: str, band: float, time: float) -> tuple[Array, Flags, str]:
+    """Return the values of a metric in the user's unit of time, where they are missing, and why."""
+    missing, why = np.zeros(found.count, dtype=bool), ""
+    by = f"by t = {found.end * time:g}"
+    if name == "settling_time":
+        value, missing = found.settling_time(band)
+        why = f"the response has not settled within {band:g} of its final value {by}"
+    elif name == "delay_time":
+        value, missing = found.first_reach(0.5)
+        why = f"the response does not reach 0.5 of its final value {by}"
+    elif name == "rise_time":
+        (low, _), (high, missing) = found.first_reach(0.1), found.first_reach(0.9)
+        value, why = high - low, f"the response does not reach 0.9 of its final value {by}"
+    else:
+        value = getattr(found, name)()
+    return value * (1.0 if name in OF_THE_SIZE else time), missing, why

@@ -1,0 +1,174 @@
+r"""The last mode of a response: when all others have decayed to rounding, the rest is known in closed form.
+
+After some dead times a response is :math:`e(t) = \mathrm{Re}\, c\, e^{s (t - t_0)}` with one real pole or one pair s.
+It shows in three dead times of the response, as :math:`e_j = p e_{j-1} + q e_{j-2}`: p and q say where s is, Newton's
+method on the characteristic function makes it exact, and the fit of c over the last two dead times proves it, because
+the output over two dead times is the whole state of the loop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops import chebyshev
+from replicate.loops.method_of_steps import DEGREE
+from replicate.loops.sweep.loop_columns import LoopColumns, Places
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+Flags = NDArray[np.bool_]
+
+SUSPECTED = 1e-10  # residual of the recurrence, of the largest deviation, with which a pole is looked for
+PROVEN = 1e-12  # residual of the fit with which it is the last one
+
+
+@dataclass
+class LastModes:
+    """For each loop the pole, the coefficient and the time from which on the rest is this mode alone.
+
+    Attributes
+    ----------
+    found
+        Whether there is one.
+    pole, coefficient : array, shape (n,)
+        s and c; a real pole has a real coefficient.
+    start : array, shape (n,)
+        The time t_0.
+    """
+
+    found: Flags
+    pole: ComplexArray
+    coefficient: ComplexArray
+    start: Array
+
+    @classmethod
+    def none(cls, count: int) -> LastModes:
+        """Return the record of loops without one."""
+        return cls(
+            np.zeros(count, dtype=bool), np.full(count, -1.0 + 0.0j), np.zeros(count, dtype=complex), np.zeros(count)
+        )  # fmt: skip
+
+    def put(self, places: Places, modes: LastModes, start: float) -> None:
+        """Enter those that were found."""
+        at = places[modes.found]
+        self.found[at], self.start[at] = True, start
+        self.pole[at], self.coefficient[at] = modes.pole[modes.found], modes.coefficient[modes.found]
+
+    def integral(self) -> Array:
+        """Return the integrals of the modes from their start on."""
+        return np.asarray(np.real(-self.coefficient / self.pole))
+
+    def absolute_integral(self) -> Array:
+        """Return the integrals of the absolute values."""
+        pole, c = self.pole, self.coefficient
+        real = np.abs(c / pole)
+        frequency = np.where(pole.imag > 0.0, pole.imag, 1.0)
+        # the next zero, where the phase arg c + w t is an odd multiple of a right angle
+        turn = np.mod(0.5 * np.pi - np.angle(c), np.pi)
+        first = c * np.exp(pole * (turn / frequency))
+        before = np.abs(np.real((first - c) / pole))
+        decay = np.exp(pole * (np.pi / frequency))
+        after = np.abs(np.real(first * (decay - 1.0) / pole))
+        return np.where(pole.imag > 0.0, before + after / (1.0 - np.abs(decay)), real)
+
+    def square_integral(self) -> Array:
+        """Return the integrals of the squares."""
+        c, pole = self.coefficient, self.pole
+        mean = np.abs(c) ** 2 / (-4.0 * pole.real)
+        return np.where(pole.imag > 0.0, mean - np.real(c**2 / (4.0 * pole)), 2.0 * mean)
+
+    def first_at(self, level: Array) -> Array:
+        """Return when real modes that approach zero from below a level reach it; ``nan`` for the others."""
+        with np.errstate(all="ignore"):
+            later = np.log(self.coefficient.real / level) / -self.pole.real
+        reaches = self.found & (self.pole.imag == 0.0) & (self.coefficient.real < level) & (level < 0.0)
+        return np.where(reaches, self.start + later, np.nan)
+
+    def last_outside(self, width: Array) -> Array:
+        """Return the last times at which real modes exceed a width; the start for the others."""
+        with np.errstate(all="ignore"):
+            later = np.log(np.abs(self.coefficient) / width) / -self.pole.real
+        return self.start + np.where((self.pole.imag == 0.0) & (later > 0.0), later, 0.0)
+
+
+def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: Array, high: Array) -> LastModes:
+    """Return the last modes of loops where there is one.
+
+    Parameters
+    ----------
+    recent
+        Deviations at the nodes of the pieces of the last three dead times, each of shape (points, n).
+    size
+        The largest deviation so far.
+    band, high
+        What an oscillation must not exceed any more: the settling band, and the highest deviation so far.
+    """
+    count, found = len(loops), LastModes.none(len(loops))
+    splits = len(recent) // 3
+    if count == 0:
+        return found
+    if len(recent) < 3:
+        return found
+    oldest, middle, newest = (np.concatenate(recent[i * splits : (i + 1) * splits]) for i in range(3))
+    start, oscillates = _starts(oldest, middle, newest, size)
+    chosen = np.nonzero(np.isfinite(start))[0]
+    if chosen.size == 0:
+        return found
+    s = start[chosen]
+    part = loops.take(chosen)
+    with np.errstate(all="ignore"):
+        for _ in range(4):
+            s = s - part.newton_step(s)
+    s = np.where(oscillates[chosen], s, s.real)
+    nodes = np.concatenate([(i + 0.5 * (chebyshev.nodes(DEGREE) + 1.0)) / splits for i in range(splits)])
+    with np.errstate(all="ignore"):
+        c, residual = _fit(s, nodes, middle[:, chosen], newest[:, chosen], oscillates[chosen])
+        envelope = np.abs(c)
+        proven = (residual <= PROVEN * size[chosen]) & (s.real < 0.0)
+        over = oscillates[chosen] & ((envelope > 0.99 * band[chosen]) | (envelope > high[chosen]))
+        proven &= ~over & (~oscillates[chosen] | (s.imag > 0.0))
+    at = chosen[proven]
+    found.found[at], found.pole[at], found.coefficient[at] = True, s[proven], c[proven]
+    return found
+
+
+def _starts(oldest: Array, middle: Array, newest: Array, size: Array) -> tuple[ComplexArray, Flags]:
+    """Return approximate poles, ``nan`` where no last mode is in sight, and whether each is one of a pair."""
+    limit = SUSPECTED * size
+    aa, ac = _dot(middle, middle), _dot(middle, newest)
+    with np.errstate(all="ignore"):
+        ratio = ac / aa
+        lone = (np.max(np.abs(newest - ratio * middle), axis=0) <= limit) & (ratio > 0.0) & (ratio < 1.0)
+        bb, ab, bc = _dot(oldest, oldest), _dot(middle, oldest), _dot(oldest, newest)
+        determinant = aa * bb - ab**2
+        p, q = (bb * ac - ab * bc) / determinant, (aa * bc - ab * ac) / determinant
+        pair = ~lone & (np.max(np.abs(newest - p * middle - q * oldest), axis=0) <= limit)
+        discriminant = p**2 + 4.0 * q
+        pair &= discriminant < 0.0
+        factor = np.where(lone, ratio, 0.5 * (p + 1j * np.sqrt(np.maximum(-discriminant, 0.0))))
+        start = np.where(lone | pair, np.log(factor), np.nan)
+    return start, pair
+
+
+def _fit(s: ComplexArray, nodes: Array, middle: Array, newest: Array, oscillates: Flags) -> tuple[ComplexArray, Array]:
+    """Return the coefficients at the end of the newest dead time, and the largest residual over the last two."""
+    mode = np.exp(np.outer(nodes - 1.0, s))
+    cosine, sine = mode.real, -mode.imag
+    cc, cs, ss = _dot(cosine, cosine), _dot(cosine, sine), _dot(sine, sine)
+    ce, se = _dot(cosine, newest), _dot(sine, newest)
+    determinant = cc * ss - cs**2
+    a = np.where(oscillates, (ss * ce - cs * se) / determinant, ce / cc)
+    b = np.where(oscillates, (cc * se - cs * ce) / determinant, 0.0)
+    c = a + 1j * b
+    residual = np.max(np.abs(newest - a * cosine - b * sine), axis=0)
+    earlier = c * np.exp(-s)
+    before = np.max(np.abs(middle - earlier.real * cosine - earlier.imag * sine), axis=0)
+    return c, np.maximum(residual, before)
+
+
+def _dot(left: Array, right: Array) -> Array:
+    return np.asarray(np.einsum("pk,pk->k", left, right))

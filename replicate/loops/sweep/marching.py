@@ -1,0 +1,273 @@
+"""The method of steps for many loops of one plant at once: one matrix product for each piece of all responses.
+
+The map of a piece (`replicate.loops.method_of_steps`) does not contain the gains, so that it is the same for all loops;
+the control law acts column by column. A loop leaves the block when its response has come to rest, or when what is left
+is one mode (`replicate.loops.sweep.last_mode`), whose rest is known in closed form.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops import chebyshev
+from replicate.loops.chain import Chain, build_chain
+from replicate.loops.method_of_steps import DEGREE, STIFFNESS, piece_map
+from replicate.loops.sweep.last_mode import LastModes, last_modes
+from replicate.loops.sweep.loop_columns import LoopColumns, Places
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+POINTS = DEGREE + 1
+WEIGHTS = chebyshev.integration(DEGREE)[-1]
+LAST_ROWS = chebyshev.values_to_coefficients(DEGREE)[-2:]
+AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
+RESOLVED = 1e-12  # size of the last coefficients of a control signal, relative to its largest value
+MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
+FIRST_LOOK, LOOKS = 6, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
+WORTH = 0.1  # share of loops that must have left before the others move together
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One piece of the loops that were still moving: which they are, and their deviations from the final value.
+
+    Attributes
+    ----------
+    columns
+        The loops, ascending.
+    values
+        Deviations at the nodes, shape (points, loops).
+    low, high, area
+        Smallest and largest of the values, and the integral over [-1, 1].
+    """
+
+    columns: Places
+    values: Array
+    low: Array
+    high: Array
+    area: Array
+
+    @classmethod
+    def of(cls, columns: Places, values: Array) -> Piece:
+        """Return the record of a piece."""
+        return cls(columns, values, values.min(axis=0), values.max(axis=0), WEIGHTS @ values)
+
+
+@dataclass
+class Responses:
+    """Deviations from the final value, piece by piece.
+
+    Attributes
+    ----------
+    length
+        Length of a piece; the last one may be cut to a ``share``.
+    final
+        Final values.
+    pieces
+        The pieces.
+    ends
+        Number of pieces of each loop.
+    modes
+        What follows after the last piece.
+    failed
+        Loops whose response is not resolved or has not come to rest: theirs is not to be used.
+    settles
+        Whether each is followed until it has settled.
+    """
+
+    length: float
+    final: Array
+    share: float
+    pieces: list[Piece]
+    ends: NDArray[np.intp]
+    modes: LastModes
+    failed: Flags
+    settles: bool
+
+
+def march(loops: LoopColumns, setpoint: float, load: float, until: float | None, band: float) -> Responses:
+    """Return the responses of stable loops to steps of set-point and load.
+
+    Parameters
+    ----------
+    until
+        Horizon in the unit of the columns; by default each loop is followed until it is at rest.
+    band
+        Half-width of the settling band: a response is followed at least until it is inside for good.
+    """
+    chain = build_chain(loops.plant, loops.form, integral=bool(loops.ki.any()), derivative=bool(loops.kd.any()))
+    chain = chain.balanced(np.max(np.abs(loops.gains), axis=1))
+    radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
+    march = _March(loops, chain, setpoint, load, until, band)
+    return march.run(max(1, int(np.ceil(radius / STIFFNESS))))
+
+
+class _March:
+    def __init__(
+        self, loops: LoopColumns, chain: Chain, setpoint: float, load: float, until: float | None, band: float
+    ) -> None:
+        self.loops, self.chain, self.setpoint, self.load, self.until = loops, chain, setpoint, load, until
+        self.final, self.final_control = loops.final(setpoint, load)
+        self.band = band * np.where(self.final == 0.0, 1.0, np.abs(self.final))
+
+    def run(self, splits: int) -> Responses:
+        """Step through the pieces, of which ``splits`` make a dead time."""
+        count, most, share = len(self.loops), MOST_PIECES, 1.0
+        failed = ~(np.isfinite(self.final_control) & (self.final >= 0.0)) | (
+            (self.final == 0.0) & (self.setpoint != 0.0)
+        )
+        if self.until is not None:
+            most = max(int(np.ceil(self.until * splits * (1.0 - 1e-14))), 1)
+            share = min(1.0, self.until * splits - (most - 1))
+            if most > MOST_PIECES:
+                failed[:] = True
+        found = Responses(
+            1.0 / splits, self.final, share, [], np.zeros(count, dtype=np.intp), LastModes.none(count), failed,
+            self.until is None,
+        )  # fmt: skip
+        state = _Moving(self, splits, np.nonzero(~failed)[0])
+        look = FIRST_LOOK
+        for index in range(most):
+            if state.columns.size == 0:
+                break
+            found.pieces.append(state.advance(index))
+            if self.until is not None or (index + 1) % splits or index < 3 * splits:
+                continue
+            leaving = state.at_rest()
+            if (index + 1) // splits >= look:
+                look = int(np.ceil(look * LOOKS))
+                modes = state.last_modes()
+                modes.found &= ~(leaving | state.left)
+                found.modes.put(state.columns, modes, (index + 1) / splits)
+                leaving |= modes.found
+            gone = state.leave(leaving, found, index + 1)
+            if gone.sum() > WORTH * gone.size:
+                state.keep(np.nonzero(~gone)[0], found)
+        if self.until is not None:
+            found.ends[state.columns] = most
+            state.left[:] = True
+        state.keep(np.zeros(0, dtype=np.intp), found)
+        if share < 1.0 and found.pieces:
+            last = found.pieces[-1]
+            found.pieces[-1] = Piece.of(last.columns, _restriction(share) @ last.values)
+        return found
+
+
+class _Moving:
+    """The loops that still move: all that the next piece needs, each array with a column for each loop."""
+
+    def __init__(self, march: _March, splits: int, columns: Places) -> None:
+        chain = march.chain
+        self.march, self.splits, self.columns = march, splits, columns
+        self.loops = march.loops.take(columns)
+        self.law = _Law.of(self.loops, chain, 1.0 / splits, march.setpoint)
+        self.final, self.band = march.final[columns], march.band[columns]
+        self.history = deque(np.zeros((POINTS, columns.size)) for _ in range(splits))
+        self.recent: deque[Array] = deque(maxlen=3 * splits)
+        self.inputs = np.zeros((POINTS + chain.e.size + 1, columns.size))
+        self.inputs[POINTS:-1], self.inputs[-1] = chain.start[:, None] * march.setpoint, march.setpoint
+        self.impulse = self.law.gains[3] * chain.setpoint_impulse * march.setpoint
+        self.size, self.high, self.control_size, self.tail = (np.zeros(columns.size) for _ in range(4))
+        self.left = np.zeros(columns.size, dtype=bool)
+
+    def advance(self, index: int) -> Piece:
+        """Compute the next piece."""
+        march, chain, inputs = self.march, self.march.chain, self.inputs
+        inputs[:POINTS] = self.history.popleft()
+        if index >= self.splits:
+            if march.load:
+                inputs[:POINTS] += march.load
+            if index % self.splits == 0 and self.impulse.any():
+                inputs[POINTS:-1] += chain.b * self.impulse
+                self.impulse = self.impulse * self.law.gains[3] * chain.wv[3, 0]
+        y, u, inputs[POINTS:-1] = self.law.apply(inputs)
+        piece = Piece.of(self.columns, y - self.final)
+        self.history.append(u)
+        self.recent.append(piece.values)
+        np.maximum(self.high, piece.high, out=self.high)
+        np.maximum(self.size, np.maximum(piece.high, -piece.low), out=self.size)
+        np.maximum(self.control_size, np.maximum(u.max(axis=0), -u.min(axis=0)), out=self.control_size)
+        np.maximum(self.tail, np.abs(LAST_ROWS @ u).max(axis=0), out=self.tail)
+        return piece
+
+    def at_rest(self) -> Flags:
+        """Return which loops deviate no more, as seen over the last dead time, in output and in control signal."""
+        resting = np.abs(self.recent[-1][-1]) <= AT_REST * self.size
+        places = np.nonzero(resting)[0]
+        if places.size:
+            final = self.march.final_control[self.columns[places]]
+            quiet = np.ones(places.size, dtype=bool)
+            for values in list(self.recent)[-self.splits :]:
+                quiet &= np.abs(values[:, places]).max(axis=0) <= AT_REST * self.size[places]
+            for u in self.history:
+                quiet &= np.abs(u[:, places] - final).max(axis=0) <= AT_REST * self.control_size[places]
+            resting[places] = quiet
+        return np.asarray(resting)
+
+    def last_modes(self) -> LastModes:
+        return last_modes(self.loops, list(self.recent), self.size, self.band, self.high)
+
+    def leave(self, leaving: Flags, found: Responses, end: int) -> Flags:
+        """Note which loops leave after ``end`` pieces; return all that have left but still move along."""
+        newly = leaving & ~self.left
+        found.ends[self.columns[newly]] = end
+        self.left |= newly
+        return self.left
+
+    def keep(self, stay: Places, found: Responses) -> None:
+        """Drop all loops but some; those dropped that never left, or are not resolved, have failed."""
+        with np.errstate(invalid="ignore"):
+            unusable = ~self.left | ~(self.tail <= RESOLVED * self.control_size)
+        unusable[stay] = False
+        found.failed[self.columns[unusable]] = True
+        self.columns, self.loops, self.law = self.columns[stay], self.loops.take(stay), self.law.take(stay)
+        for name in ("final", "band", "impulse", "size", "high", "control_size", "tail", "left"):
+            setattr(self, name, getattr(self, name)[stay])
+        self.inputs = self.inputs.take(stay, axis=1)
+        self.history = deque(u.take(stay, axis=1) for u in self.history)
+        self.recent = deque((values.take(stay, axis=1) for values in self.recent), maxlen=3 * self.splits)
+
+
+@dataclass
+class _Law:
+    """The fixed map of a piece and the control law of each column."""
+
+    blocks: Array  # rows: output, the building blocks of the control signal that are not the output, end state
+    rows: tuple[int, ...]  # which building blocks these are
+    measures_output: bool  # whether the filtered output is the output itself
+    gains: Array  # shape (4, n)
+    constant: Array  # what the set-point adds to the control signal by itself
+
+    @classmethod
+    def of(cls, loops: LoopColumns, chain: Chain, length: float, setpoint: float) -> _Law:
+        fixed = piece_map(chain, length)
+        gains = loops.gains
+        plain = bool(np.array_equal(chain.wx[1], chain.c) and np.array_equal(chain.wv[1], chain.d))
+        direct = not chain.wx[0].any()  # no set-point filter: the filtered set-point is the set-point
+        rows = [w for w in range(4) if gains[w].any() and not (w == 1 and plain) and not (w == 0 and direct)]
+        blocks = np.concatenate([fixed.output, *(fixed.basis[w] for w in rows), fixed.state])
+        constant = gains[0] * (setpoint * chain.wr[0]) if direct else np.zeros(len(loops))
+        return cls(blocks, tuple(rows), plain, gains, constant)
+
+    def take(self, columns: Places) -> _Law:
+        return _Law(self.blocks, self.rows, self.measures_output, self.gains[:, columns], self.constant[columns])
+
+    def apply(self, inputs: Array) -> tuple[Array, Array, Array]:
+        result = self.blocks @ inputs
+        y = result[:POINTS]
+        control = np.multiply(y, self.gains[1]) if self.measures_output else np.zeros_like(y)
+        control += self.constant
+        for place, row in enumerate(self.rows):
+            control += result[(place + 1) * POINTS : (place + 2) * POINTS] * self.gains[row]
+        return y, control, result[(len(self.rows) + 1) * POINTS :]
+
+
+def _restriction(share: float) -> Array:
+    """Return the matrix from the values of a piece to those of its first part, at the nodes of the part."""
+    x = -1.0 + share * (chebyshev.nodes(DEGREE) + 1.0)
+    return np.asarray(chebyshev.basis(x, DEGREE).T @ chebyshev.values_to_coefficients(DEGREE))

@@ -1,0 +1,291 @@
+"""Metrics of many responses at once, read from their polynomials as `replicate.loops.signal` does from one.
+
+Samples only say which piece to look at and between which points; roots and extrema are polished on the polynomial.
+A response in which an extremum nearly touches the level that counts is left to the single loop (``doubtful``).
+"""
+
+from __future__ import annotations
+
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops import chebyshev
+from replicate.loops.method_of_steps import DEGREE
+from replicate.loops.signal import APPROACH, ARRIVAL, ROUNDING
+from replicate.loops.sweep import batch_roots
+from replicate.loops.sweep.marching import Responses
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Places = NDArray[np.intp]
+
+MARGIN = 0.02  # of the range in a piece: more than an extremum exceeds the values at the nodes
+TOUCHING = 5e-3  # of the range in a piece: an extremum so close to a level may cross it between samples
+NEGLIGIBLE = 1e-14  # share of an integral below which a piece needs no care, thousands of them neither
+
+
+class ResponseMetrics:
+    """The metrics of the responses of a block, in the block's unit of time.
+
+    Attributes
+    ----------
+    doubtful : array, shape (n,)
+        Which loops must be asked one by one; grows with the questions.
+    """
+
+    def __init__(self, responses: Responses) -> None:
+        self.responses = responses
+        self.pieces, self.final = responses.pieces, responses.final
+        self.count = responses.final.size
+        self.doubtful = responses.failed.copy()
+
+    @property
+    def end(self) -> float:
+        """The end of the longest response."""
+        return float(self._lengths().sum())
+
+    # ---- what each piece says --------------------------------------------------------------------------------------
+
+    @cached_property
+    def _ranges(self) -> tuple[Array, Array]:
+        """Lowest and highest deviation at the nodes, shape (pieces, n); zero where a loop has no such piece."""
+        low, high = (np.zeros((len(self.pieces), self.count)) for _ in range(2))
+        for index, piece in enumerate(self.pieces):
+            low[index, piece.columns], high[index, piece.columns] = piece.low, piece.high
+        return low, high
+
+    @cached_property
+    def _exists(self) -> Flags:
+        pieces = len(self.pieces)
+        exists = np.arange(pieces)[:, None] < self.responses.ends
+        return np.asarray(exists & ~self.doubtful)
+
+    def _gathered(self, piece: Places, column: Places) -> Array:
+        """Return node values of some pieces of some loops, in the order given; shape (points, many)."""
+        values = np.empty((DEGREE + 1, piece.size))
+        order = np.argsort(piece, kind="stable")
+        edges = np.searchsorted(piece[order], np.arange(len(self.pieces) + 1))
+        for p in np.unique(piece):
+            chosen = order[edges[p] : edges[p + 1]]
+            place = np.searchsorted(self.pieces[p].columns, column[chosen])
+            values[:, chosen] = self.pieces[p].values[:, place]
+        return values
+
+    def _time(self, piece: Places, x: Array) -> Array:
+        length = np.where(piece == len(self.pieces) - 1, self.responses.share, 1.0)
+        return np.asarray(self.responses.length * (piece + 0.5 * (x + 1.0) * length))
+
+    def _lengths(self) -> Array:
+        lengths = np.full(len(self.pieces), self.responses.length)
+        lengths[-1] *= self.responses.share
+        return lengths
+
+    # ---- peak ------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _summit(self) -> tuple[Array, Array]:
+        """The largest deviation from the final value and its time."""
+        low, high = self._ranges
+        low, high = np.where(self._exists, low, -np.inf), np.where(self._exists, high, -np.inf)
+        best = high.max(axis=0)
+        with np.errstate(invalid="ignore"):
+            piece, column = np.nonzero(self._exists & (high + MARGIN * (high - low) >= best))
+        values = self._gathered(piece, column)
+        top = np.argmax(values, axis=0)
+        nodes = chebyshev.nodes(DEGREE)
+        series = batch_roots.series(values)
+        x = batch_roots.maxima(series, nodes[np.maximum(top - 1, 0)], nodes[np.minimum(top + 1, DEGREE)])
+        reached, at_node = batch_roots.evaluate(series, x), values[top, np.arange(top.size)]
+        # at rounding level the polynomial and its node differ by nothing
+        inner = reached > at_node
+        reached, x = np.where(inner, reached, at_node), np.where(inner, x, nodes[top])
+        # a second summit in the same piece that may be the higher one
+        moves = np.diff(values, axis=0)
+        summit = (moves[:-1] > 0.0) & (moves[1:] <= 0.0)
+        rivals = summit & (values[1:-1] + MARGIN * np.ptp(values, axis=0) >= reached)
+        self.doubtful[column[np.sum(rivals, axis=0) > 1]] = True
+        value, time = np.full(self.count, -np.inf), np.full(self.count, np.nan)
+        order = np.lexsort((-piece, reached))  # the highest last, of equal ones the first
+        value[column[order]], time[column[order]] = reached[order], self._time(piece, x)[order]
+        return np.where(self.responses.modes.found, np.maximum(value, 0.0), value), time
+
+    def peak(self) -> Array:
+        """Return the largest values."""
+        return np.asarray(self.final + self._summit[0])
+
+    def peak_time(self) -> Array:
+        """Return when the peak is reached; ``inf`` where a response only approaches its final value from below."""
+        value, time = self._summit
+        level = APPROACH * np.abs(self.final)
+        approaches = value <= level if self.responses.settles else np.abs(value) <= level
+        low, high = self._ranges
+        error = np.where(self._exists, np.maximum(-low, high), 0.0)
+        arrives = np.any((error[:-1] > ARRIVAL * np.abs(self.final)) & (error[1:] <= level), axis=0)
+        self.doubtful |= approaches & arrives & ~self.responses.modes.found
+        return np.where(approaches, np.inf, time)
+
+    def overshoot(self) -> Array:
+        """Return the largest excess over the final value, as a fraction of it."""
+        with np.errstate(all="ignore"):
+            excess = self._summit[0] / self.final
+        return np.where(excess > ROUNDING, excess, 0.0)
+
+    # ---- settling --------------------------------------------------------------------------------------------------
+
+    def settling_time(self, band: float) -> tuple[Array, Flags]:
+        """Return the last times outside the band, and which responses are outside at their end."""
+        width = band * np.where(self.final == 0.0, 1.0, np.abs(self.final))
+        low, high = self._ranges
+        reach = np.maximum(-low, high) + MARGIN * (high - low)
+        outside = self._exists & (reach > width)
+        time = np.zeros(self.count)
+        unsettled = np.zeros(self.count, dtype=bool)
+        column = np.nonzero(outside.any(axis=0))[0]
+        last = outside.shape[0] - 1
+        while column.size:
+            piece = last - np.argmax(outside[::-1, column], axis=0)
+            series = batch_roots.series(self._gathered(piece, column))
+            dense = batch_roots.samples(series)
+            size, sign = np.abs(dense), np.sign(dense)
+            touching = (np.abs(size - width[column]) < TOUCHING * np.ptp(dense, axis=0)) & _summits(size)
+            nodes, dense = batch_roots.sharpened(series, dense, touching, sign)
+            beyond = np.abs(dense) > width[column]
+            some = beyond.any(axis=0)
+            at = batch_roots.DENSE - 1 - np.argmax(beyond[::-1], axis=0)
+            at_end = some & (at == batch_roots.DENSE - 1)
+            time[column[at_end]] = self._time(piece[at_end], np.ones(int(at_end.sum())))
+            ended = at_end & (piece == self.responses.ends[column] - 1)
+            unsettled[column[ended]] = True
+            inside = np.nonzero(some & ~at_end)[0]
+            if inside.size:
+                before, sides = at[inside], sign[at[inside], inside]
+                part = series[:, inside] * sides
+                part[0] -= width[column[inside]]
+                x = batch_roots.roots(
+                    part, nodes[before, inside], nodes[before + 1, inside],
+                    sides * dense[before, inside] - width[column[inside]],
+                    sides * dense[before + 1, inside] - width[column[inside]],
+                )  # fmt: skip
+                time[column[inside]] = self._time(piece[inside], x)
+            outside[piece[~some], column[~some]] = False
+            column = column[~some & outside[:, column].any(axis=0)]
+        modes = self.responses.modes
+        lasting = modes.found & (modes.pole.imag == 0.0) & (np.abs(modes.coefficient) > width)
+        time = np.where(lasting, modes.last_outside(width), time)
+        return time, unsettled & ~modes.found
+
+    # ---- reaching a level ------------------------------------------------------------------------------------------
+
+    def first_reach(self, fraction: float) -> tuple[Array, Flags]:
+        """Return the first times at a fraction of the final value, and which responses do not reach it."""
+        level = (fraction - 1.0) * self.final  # as a deviation
+        low, high = self._ranges
+        reaching = self._exists & (high + MARGIN * (high - low) >= level)
+        time = np.full(self.count, np.nan)
+        column = np.nonzero(reaching.any(axis=0))[0]
+        while column.size:
+            piece = np.argmax(reaching[:, column], axis=0)
+            series = batch_roots.series(self._gathered(piece, column))
+            dense = batch_roots.samples(series)
+            touching = (np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0)) & _summits(dense)
+            nodes, dense = batch_roots.sharpened(series, dense, touching, np.ones(dense.shape))
+            beyond = dense >= level[column]
+            some, at = beyond.any(axis=0), np.argmax(beyond, axis=0)
+            at_start = some & (at == 0)
+            time[column[at_start]] = self._time(piece[at_start], -np.ones(int(at_start.sum())))
+            inside = np.nonzero(some & ~at_start)[0]
+            if inside.size:
+                chosen, before = column[inside], at[inside] - 1
+                part = series[:, inside].copy()
+                part[0] -= level[chosen]
+                x = batch_roots.roots(
+                    part, nodes[before, inside], nodes[before + 1, inside],
+                    dense[before, inside] - level[chosen], dense[before + 1, inside] - level[chosen],
+                )  # fmt: skip
+                time[chosen] = self._time(piece[inside], x)
+            reaching[piece[~some], column[~some]] = False
+            column = column[~some & reaching[:, column].any(axis=0)]
+        missing = np.isnan(time)
+        later = self.responses.modes.first_at(level)
+        time = np.where(missing, later, time)
+        # an oscillation reaches the level before it becomes the last mode, or it is left to the single loop
+        self.doubtful |= missing & self.responses.modes.found & np.isnan(later)
+        return time, missing & ~self.responses.modes.found
+
+    # ---- integrals -------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def _areas(self) -> Array:
+        """Integrals of the deviation over the pieces, shape (pieces, n)."""
+        areas = np.zeros((len(self.pieces), self.count))
+        for index, piece in enumerate(self.pieces):
+            areas[index, piece.columns] = piece.area
+        return np.asarray(np.where(self._exists, areas, 0.0) * (0.5 * self._lengths())[:, None])
+
+    def ie(self) -> Array:
+        """Return the integrated error, for a load response the integrated deviation."""
+        total = self._areas.sum(axis=0) + self.responses.modes.integral()
+        return np.asarray(np.where(self.final == 0.0, total, -total))
+
+    def ise(self) -> Array:
+        """Return the integrated squared error."""
+        points, weights = chebyshev.gauss_legendre(DEGREE + 2)
+        matrix = chebyshev.basis(points, DEGREE).T @ chebyshev.values_to_coefficients(DEGREE)
+        squares = np.zeros((len(self.pieces), self.count))
+        for index, piece in enumerate(self.pieces):
+            squares[index, piece.columns] = weights @ (matrix @ piece.values) ** 2
+        squares = np.where(self._exists, squares, 0.0) * (0.5 * self._lengths())[:, None]
+        return np.asarray(squares.sum(axis=0) + self.responses.modes.square_integral())
+
+    def iae(self) -> Array:
+        """Return the integrated absolute error."""
+        low, high = self._ranges
+        total = np.abs(self._areas)
+        span = high - low
+        near = self._exists & (low - MARGIN * span < 0.0) & (high + MARGIN * span > 0.0) & (span > 0.0)
+        near &= span * self._lengths()[:, None] > NEGLIGIBLE * total.sum(axis=0)
+        piece, column = np.nonzero(near)
+        if piece.size:
+            values = self._gathered(piece, column)
+            total[piece, column] = self._absolute(values) * (0.5 * self._lengths()[piece])
+        return np.asarray(total.sum(axis=0) + self.responses.modes.absolute_integral())
+
+    def _absolute(self, values: Array) -> Array:
+        """Return the integrals of |e| over [-1, 1] of polynomials in columns."""
+        series = batch_roots.series(values)
+        dense = batch_roots.samples(series)
+        size, sign = np.abs(dense), np.sign(dense)
+        # two zeros may hide next to an extremum that nearly touches zero
+        touching = _summits(-size) & (size < TOUCHING * np.ptp(dense, axis=0))
+        turned = sign[1:] != sign[:-1]  # there is a zero already
+        touching[1:] &= ~turned
+        touching[:-1] &= ~turned
+        nodes, dense = batch_roots.sharpened(series, dense, touching, -sign)
+        negative = dense < 0.0
+        place, before = np.nonzero((negative[1:] != negative[:-1]).T)
+        running = _antiderivative() @ series  # zero at -1
+        x = batch_roots.roots(
+            series[:, place],
+            nodes[before, place],
+            nodes[before + 1, place],
+            dense[before, place],
+            dense[before + 1, place],
+        )
+        at_root = batch_roots.evaluate(running[:, place], x)
+        sides = np.where(negative[before, place], -2.0, 2.0)
+        total = np.where(negative[-1], -1.0, 1.0) * running.sum(axis=0)
+        return np.asarray(total + np.bincount(place, weights=sides * at_root, minlength=total.size))
+
+
+def _summits(values: Array) -> Flags:
+    """Return which samples are no lower than their neighbours, ends included."""
+    padded = np.concatenate([np.full((1, values.shape[1]), -np.inf), values, np.full((1, values.shape[1]), -np.inf)])
+    return np.asarray((values >= padded[:-2]) & (values >= padded[2:]))
+
+
+@cache
+def _antiderivative() -> Array:
+    """Return the matrix from coefficients to those of the antiderivative that is zero at -1."""
+    return np.asarray(np.polynomial.chebyshev.chebint(np.eye(DEGREE + 1), lbnd=-1.0, axis=0))
