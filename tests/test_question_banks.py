@@ -20,7 +20,7 @@ STUDENTS = ["Ada", "山田", "Bob"]
 
 @pytest.fixture
 def toy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> ClassSet:
-    return toy_class.class_set(tmp_path, monkeypatch)
+    return toy_class.class_set(tmp_path, monkeypatch, file_format="moodle")
 
 
 def parsed(content: bytes) -> ET.Element:
@@ -28,7 +28,7 @@ def parsed(content: bytes) -> ET.Element:
 
 
 def moodle(toy: ClassSet) -> ET.Element:
-    ((name, content),) = toy.bank(STUDENTS, "1", "moodle")
+    *_, (name, content) = toy.files(STUDENTS, "1", "moodle")
     assert name == "toy-moodle.xml"
     return parsed(content)
 
@@ -122,7 +122,7 @@ def test_an_essay_has_its_figure_inside_and_the_solution_for_those_who_grade(toy
 def test_points_are_grades(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, points: tuple[float, ...], weights: list[int], grades: list[str]
 ) -> None:
-    quiz = moodle(toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(points=points)))
+    quiz = moodle(toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(points=points), file_format="moodle"))
     (cloze, *_), (numerical, *_), (essay,) = (questions(quiz, kind) for kind in ("cloze", "numerical", "essay"))
     assert [weight for weight, _ in cloze_parts(text(cloze, "questiontext/text"))] == weights
     assert [text(question, "defaultgrade") for question in (numerical, essay)] == grades
@@ -137,7 +137,7 @@ def test_a_handout_that_all_share_has_its_questions_too(toy: ClassSet, tmp_path:
 
 
 def test_the_same_class_has_the_same_bytes(toy: ClassSet) -> None:
-    assert list(toy.bank(STUDENTS, "1", "moodle")) == list(toy.bank(STUDENTS[::-1], "1", "moodle"))
+    assert list(toy.files(STUDENTS, "1", "moodle"))[-1] == list(toy.files(STUDENTS[::-1], "1", "moodle"))[-1]
 
 
 # --------------------------------------------------------------------------------------------------------------- QTI
@@ -148,7 +148,7 @@ M = "{http://www.w3.org/1998/Math/MathML}"
 
 
 def package(toy: ClassSet) -> zipfile.ZipFile:
-    ((name, content),) = toy.bank(STUDENTS, "1", "qti")
+    *_, (name, content) = toy.files(STUDENTS, "1", "qti")
     assert name == "toy-qti.zip"
     return zipfile.ZipFile(io.BytesIO(content))
 
@@ -253,4 +253,4 @@ def formulas(item: ET.Element) -> list[float]:
 
 
 def test_the_same_class_has_the_same_package(toy: ClassSet) -> None:
-    assert list(toy.bank(STUDENTS, "1", "qti")) == list(toy.bank(STUDENTS[::-1], "1", "qti"))
+    assert list(toy.files(STUDENTS, "1", "qti"))[-1] == list(toy.files(STUDENTS[::-1], "1", "qti"))[-1]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import chain
 from pathlib import Path
 from typing import Annotated
 
@@ -100,11 +99,8 @@ def handout(
         verdicts = outcome.judgement.verdicts
         if kinds:
             class_set = ClassSet(outcome.papers[0], outcome.results, verdicts, bool(solutions), sheet, file_format)
-            if again:
-                made = class_set.again(again)
-            else:
-                bank = file_format if file_format in BANKS else "moodle"  # what a platform can import is in every set
-                made = chain(class_set.files(students, seed), class_set.bank(students, seed, bank))
+            bank = file_format if file_format in BANKS else "moodle"  # what a platform can import is in every set
+            made = class_set.again(again) if again else class_set.files(students, seed, bank)
             written = [_written(fresh / "handouts" / name, content) for name, content in made]
         else:
             written = build_handouts(

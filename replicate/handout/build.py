@@ -64,7 +64,7 @@ def build_handouts(
         for with_solutions in solutions:
             document = edition(paper, results, verdicts, solutions=with_solutions, sheet=sheet)
             name = f"{paper.id}{'-solutions' if with_solutions else ''}"
-            made |= named(EDITIONS[file_format](document), name)
+            made |= named(next(iter(EDITIONS[file_format]([document]))), name)
     folder.mkdir(parents=True, exist_ok=True)
     for name, content in made.items():
         (folder / name).write_bytes(content)

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 from typing import Any
 
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import Results
-from replicate.handout.edition import Document, edition, without_solutions
+from replicate.handout.edition import AT_ONCE, Document, editions, without_solutions
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, EDITIONS, named
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
 from replicate.handout.placing import exercises_of
-from replicate.handout.questions import questions_of
+from replicate.handout.questions import Question, questions_of
 from replicate.handout.roster import file_stem
 from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
@@ -45,84 +46,82 @@ class ClassSet:
     file_format: str = "pdf"
     _shared: dict[str, Any] = field(default_factory=dict, repr=False)
 
-    def files(self, students: Sequence[str], seed: str) -> Iterator[tuple[str, bytes]]:
-        """Yield the name and content of the key's files, then of each student's sheet.
+    def files(self, students: Sequence[str], seed: str, bank: str = "") -> Iterator[tuple[str, bytes]]:
+        """Yield the name and content of the key's files, of each student's sheet, and of the file of questions.
 
         The same paper, seed and student give the same bytes, whoever else is in the class.
+
+        Parameters
+        ----------
+        bank
+            Format of the file of questions: each exercise with the numbers of each student. Empty for none.
 
         Raises
         ------
         PaperDefinitionError
-            If no draw satisfies what an exercise requires.
+            If no draw satisfies what an exercise requires, or an answer does not exist.
         TemplateError
             If a sheet cannot be set.
         """
         exercises = varying(self.paper)
-        forms = self._forms(students, seed)
-        rows = [row for student, form in forms.items() for row in self._key(exercises, student, form)]
-        yield f"{self.paper.id}-key.csv", key_csv(rows)
-        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed)
+        forms = {student: Form.of(self.paper.id, seed, student, self.sheet.select) for student in students}
+        yield from self._key(exercises, forms, seed)
+        questions: list[Question] = []
+        stems = [file_stem(student) for student in students]
         if self.file_format in EDITIONS:
-            for student, form in forms.items():
-                yield from self._sheet(file_stem(student), form)
-
-    def bank(self, students: Sequence[str], seed: str, file_format: str) -> Iterator[tuple[str, bytes]]:
-        """Yield the name and content of the file of questions: each exercise with the numbers of each student.
-
-        Raises
-        ------
-        PaperDefinitionError
-            If an answer does not exist.
-        TemplateError
-            If a text cannot be converted.
-        """
-        exercises = varying(self.paper)
-        questions = [
-            question
-            for form in self._forms(students, seed).values()
-            for question in questions_of(self._document(form), exercises, form)
-        ]
-        yield from named(BANKS[file_format](questions), self.paper.id).items()
+            yield from self._sheets(stems, self._documents(forms.values(), exercises, questions if bank else None))
+        else:
+            for _ in self._documents(forms.values(), exercises, questions):
+                pass
+        if bank:
+            yield from named(BANKS[bank](questions), self.paper.id).items()
 
     def again(self, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the name and content of one sheet, made again from its id."""
-        varying(self.paper)
-        yield from self._sheet(form.key, form)
+        yield from self._sheets([form.key], self._documents([form], varying(self.paper), None))
 
-    def _forms(self, students: Sequence[str], seed: str) -> dict[str, Form]:
-        return {student: Form.of(self.paper.id, seed, student, self.sheet.select) for student in students}
-
-    def _key(self, exercises: Exercises, student: str, form: Form) -> list[KeyRow]:
+    def _key(self, exercises: Exercises, forms: Mapping[str, Form], seed: str) -> Iterator[tuple[str, bytes]]:
         chosen = exercises.variations
-        if self.sheet.select:
-            on_sheet = {question.exercise for question in questions_of(self._document(form), exercises, form)}
+        if self.sheet.select and forms:
+            (some,) = self._batch([next(iter(forms.values()))])
+            on_sheet = {question.exercise for question in questions_of(some, exercises, None)}
             chosen = {name: variation for name, variation in chosen.items() if name in on_sheet}
-        try:
-            return key_rows(chosen, student, form)
-        except PaperDefinitionError as error:
-            msg = f"{self.paper.id}, seed '{form.seed}', student '{student}': {error}"
-            raise PaperDefinitionError(msg) from error
+        rows: list[KeyRow] = []
+        for student, form in forms.items():
+            try:
+                rows += key_rows(chosen, student, form)
+            except PaperDefinitionError as error:
+                msg = f"{self.paper.id}, seed '{form.seed}', student '{student}': {error}"
+                raise PaperDefinitionError(msg) from error
+        yield f"{self.paper.id}-key.csv", key_csv(rows)
+        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed)
 
-    def _sheet(self, stem: str, form: Form) -> Iterator[tuple[str, bytes]]:
-        document = self._document(form)
-        made = EDITIONS[self.file_format](document if self.solutions else without_solutions(document))
-        yield from named(made, f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}").items()
+    def _documents(
+        self, forms: Iterable[Form], exercises: Exercises, questions: list[Question] | None
+    ) -> Iterator[Document]:
+        """Yield sheets with their solutions, made in batches; their questions go to the list if there is one."""
+        waiting = iter(forms)
+        while some := list(islice(waiting, AT_ONCE)):
+            for form, document in zip(some, self._batch(some), strict=True):
+                if questions is not None:
+                    questions += questions_of(document, exercises, form)
+                yield document
 
-    def _document(self, form: Form) -> Document:
-        """Return a sheet with its solutions; it is made once."""
-        key = f"document {form}"
-        if key not in self._shared:
-            self._shared[key] = edition(
-                self.paper,
-                self.results,
-                self.verdicts,
-                solutions=True,
-                form=form,
-                sheet=self.sheet,
-                shared=self._shared,
-            )
-        document: Document = self._shared[key]
-        return document
+    def _batch(self, forms: Sequence[Form]) -> list[Document]:
+        return editions(
+            self.paper,
+            self.results,
+            self.verdicts,
+            solutions=True,
+            forms=forms,
+            sheet=self.sheet,
+            shared=self._shared,
+        )
+
+    def _sheets(self, stems: Sequence[str], documents: Iterable[Document]) -> Iterator[tuple[str, bytes]]:
+        shown = (document if self.solutions else without_solutions(document) for document in documents)
+        for stem, made in zip(stems, EDITIONS[self.file_format](shown), strict=True):
+            yield from named(made, f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}").items()
 
 
 def varying(paper: Paper) -> Exercises:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
-
-import pypandoc
 
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
@@ -19,28 +16,18 @@ from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
 from replicate.handout.exercise_heads import selected, with_heads
 from replicate.handout.form import Form
-from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, line_of, located
+from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, located
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
+from replicate.handout.reading import read
 from replicate.handout.sheet import Language, Sheet, language
 from replicate.handout.tree import Blocks, Element, attribute, classes, div, elements, plain, string, text_of, transform
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import VerdictRow
 
 FILE = "handout.md"
+AT_ONCE = 25  # documents in one call of pandoc
 
-# "(5) and (6) give ..." is a sentence about equations, not item 5 of a list, and "<" is a less-than sign.
-# What is raw is read as such, so that it can be refused with its line: the text says what, not how in one format.
-_FORMAT = (
-    "markdown-auto_identifiers-implicit_figures-yaml_metadata_block-fancy_lists-example_lists-citations"
-    "+raw_html+raw_tex+raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
-)
-_OPTIONS = ["--sandbox", "--fail-if-warnings", "--columns=10000"]
-_FOREIGN = {
-    "RawInline": "raw text for one format",
-    "RawBlock": "raw text for one format",
-    "Image": "an image from a file",
-}
 _MARK = re.compile(f"{OPEN}(\\d+){CLOSE}")
 
 
@@ -109,43 +96,75 @@ def edition(
     ReplicateError
         If what is set for the sheet does not go with the text.
     """
+    (made,) = editions(
+        paper,
+        results,
+        verdicts,
+        solutions=solutions,
+        forms=[form],
+        sheet=sheet,
+        shared={} if shared is None else shared,
+    )
+    return made
+
+
+def editions(
+    paper: Paper,
+    results: Results,
+    verdicts: Sequence[VerdictRow],
+    *,
+    solutions: bool,
+    forms: Sequence[Form | None],
+    sheet: Sheet | None,
+    shared: dict[str, Any],
+) -> list[Document]:
+    """Make one edition for each of several forms, in few calls of pandoc; `edition` says more."""
     sheet = sheet or Sheet()
     file, text_language = _file(paper, sheet.language)
     source = display_name(file)
     if not file.is_file():
         msg = f"{source}: the paper has no handout"
         raise TemplateError(msg)
-    shared = {} if shared is None else shared
-    placing = Placing(paper, results, verdicts, form.draw if form else "", shared)
-    prose = Prose(paper, results, verdicts, placing.functions())
-    lines = prose.render_lines(read_text(file, source, TemplateError), source)
-    blocks = _read(lines, source)
-    if not solutions:
-        blocks = transform(blocks, lambda element: [] if "solution" in classes(element) else None)
-    title, blocks = _title(blocks, source)
-    blocks = with_heads(blocks, source, placing.exercises, sheet)
-    blocks = selected(run_programs(_placed(blocks, placing), lines, source, shared), sheet)
+    text = read_text(file, source, TemplateError)
+    placings = [Placing(paper, results, verdicts, form.draw if form else "", shared) for form in forms]
+    filled = [Prose(paper, results, verdicts, one.functions()).render_lines(text, source) for one in placings]
+    found: list[tuple[str, Blocks]] = []
+    for blocks, placing, lines in zip(read(filled, source), placings, filled, strict=True):
+        title, kept = _title(blocks if solutions else _unsolved(blocks), source)
+        kept = with_heads(kept, source, placing.exercises, sheet)
+        found.append((title, selected(run_programs(_placed(kept, placing), lines, source, shared), sheet)))
+    formulas = [formulas_in(blocks) for _, blocks in found]
     try:
-        formulas = convert(formulas_in(blocks), shared.setdefault("formulas", {}))
+        known = convert([one for some in formulas for one in some], shared.setdefault("formulas", {}))
     except FormulaError as error:
+        lines = next(
+            lines for lines, some in zip(filled, formulas, strict=True) if error.tex in {tex for _, tex in some}
+        )
         raise located(error, lines, source) from error
-    drawings = {thing.name: thing for thing in placing.things if isinstance(thing, Drawing)}
-    return Document(
-        paper,
-        solutions,
-        sheet.title or title,
-        blocks,
-        formulas,
-        drawings,
-        str(form) if form else "",
-        sheet,
-        text_language,
-    )
+    return [
+        Document(
+            paper,
+            solutions,
+            sheet.title or title,
+            blocks,
+            {formula: known[formula] for formula in some},
+            {thing.name: thing for thing in placing.things if isinstance(thing, Drawing)},
+            str(form) if form else "",
+            sheet,
+            text_language,
+        )
+        for form, placing, (title, blocks), some in zip(forms, placings, found, formulas, strict=True)
+    ]
+
+
+def _unsolved(blocks: Blocks) -> Blocks:
+    out: Blocks = transform(blocks, lambda element: [] if "solution" in classes(element) else None)
+    return out
 
 
 def without_solutions(document: Document) -> Document:
     """Return the edition for those who are to solve the exercises."""
-    blocks: Blocks = transform(document.blocks, lambda element: [] if "solution" in classes(element) else None)
+    blocks = _unsolved(document.blocks)
     kept = {formula: document.formulas[formula] for formula in formulas_in(blocks)}
     shown = {attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)}
     drawings = {name: drawing for name, drawing in document.drawings.items() if name in shown}
@@ -156,34 +175,6 @@ def _file(paper: Paper, wanted: Language) -> tuple[Traversable, Language]:
     """Return the text in the language wanted if there is one, otherwise the English one."""
     translated = paper.folder() / f"{Path(FILE).stem}.{wanted.tag}.md"
     return (translated, wanted) if translated.is_file() else (paper.folder() / FILE, language("en"))
-
-
-def _read(lines: Sequence[tuple[str, int]], source: str) -> Blocks:
-    """Read Markdown into pandoc's tree."""
-    text = "\n".join(line for line, _ in lines)
-    try:
-        tree = json.loads(pypandoc.convert_text(text, "json", format=_FORMAT, extra_args=_OPTIONS))
-    except RuntimeError as error:
-        words = " ".join(str(error).split())
-        found = re.search(r"\[WARNING\] (.*?)(?: Failing because|$)", words)
-        at = re.search(r"line (\d+)", words)
-        line = lines[min(int(at[1]), len(lines)) - 1][1] if at else 1
-        msg = f"{source}:{line}: pandoc cannot read the text: {found[1] if found else words}"
-        raise TemplateError(msg) from error
-    blocks: Blocks = tree["blocks"]
-    for element in elements(blocks):
-        if element["t"] in _FOREIGN:
-            raise _refused(element, lines, source)
-    return blocks
-
-
-def _refused(element: Element, lines: Sequence[tuple[str, int]], source: str) -> TemplateError:
-    """Return an error about something that a handout must not hold: it could read files, or differ by format."""
-    text = element["c"][2][0] if element["t"] == "Image" else element["c"][1]
-    shown = " ".join(text.split())[:60]
-    instead = "figures are placed with figure(...)" if element["t"] == "Image" else r"write \< or \\ for the sign"
-    msg = f"{source}:{line_of(text, lines)}: {_FOREIGN[element['t']]} is not allowed: {shown}; {instead}"
-    return TemplateError(msg)
 
 
 def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from replicate.errors import ReplicateError
@@ -16,40 +16,41 @@ if TYPE_CHECKING:
 Files = dict[str, bytes]
 
 
-def _pdf(document: Document) -> Files:
-    from replicate.handout.printout import pdf
+def _pdf(documents: Iterable[Document]) -> Iterator[Files]:
+    from replicate.handout.edition import AT_ONCE
+    from replicate.handout.printout import pdfs
 
-    return {".pdf": pdf(document)}
+    return ({".pdf": made} for made in pdfs(documents, AT_ONCE))
 
 
-def _html(document: Document) -> Files:
+def _html(documents: Iterable[Document]) -> Iterator[Files]:
     from replicate.handout.webpage import webpage
 
-    return {".html": webpage(document).encode()}
+    return ({".html": webpage(document).encode()} for document in documents)
 
 
-def _ipynb(document: Document) -> Files:
+def _ipynb(documents: Iterable[Document]) -> Iterator[Files]:
     from replicate.handout.notebook import notebook
 
-    return {".ipynb": notebook(document)}
+    return ({".ipynb": notebook(document)} for document in documents)
 
 
-def _docx(document: Document) -> Files:
+def _docx(documents: Iterable[Document]) -> Iterator[Files]:
     from replicate.handout.editable import docx
 
-    return {".docx": docx(document)}
+    return ({".docx": docx(document)} for document in documents)
 
 
-def _tex(document: Document) -> Files:
+def _tex(documents: Iterable[Document]) -> Iterator[Files]:
     from replicate.handout.editable import tex
 
-    return tex(document)
+    return map(tex, documents)
 
 
-def _typ(document: Document) -> Files:
+def _typ(documents: Iterable[Document]) -> Iterator[Files]:
     from replicate.handout.editable import typ
 
-    return {".typ": typ(document)}
+    return ({".typ": typ(document)} for document in documents)
 
 
 def _moodle(questions: Sequence[Question]) -> Files:
@@ -64,8 +65,8 @@ def _qti(questions: Sequence[Question]) -> Files:
     return {"-qti.zip": qti_package(questions)}
 
 
-#: One edition of a handout each.
-EDITIONS: dict[str, Callable[[Document], Files]] = {
+#: Each writes editions of a handout, one after the other.
+EDITIONS: dict[str, Callable[[Iterable[Document]], Iterator[Files]]] = {
     "pdf": _pdf,
     "html": _html,
     "ipynb": _ipynb,

@@ -49,9 +49,10 @@ def check_letters(text: str, document: Document, name: str) -> None:
     TemplateError
         With the line of the file in which the first such letter stands, if it is from there.
     """
-    missing = next((letter for letter in text if _is_shown(letter) and ord(letter) not in _letters()), None)
-    if missing is None:
+    unknown = {letter for letter in set(text) if _is_shown(letter) and ord(letter) not in _letters()}
+    if not unknown:
         return
+    missing = next(letter for letter in text if letter in unknown)
     source = read_text(document.paper.folder() / "handout.md", name, TemplateError)
     place = f"{name}:{source.count(chr(10), 0, source.index(missing)) + 1}" if missing in source else name
     words = f"U+{ord(missing):04X} {unicodedata.name(missing, '')}".strip()

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -104,6 +104,14 @@ class Placing:
         """The answers and figures of the handout."""
         return exercises_of(self.paper)
 
+    def __post_init__(self) -> None:
+        """Compute the answers of a form before its text is filled in, which traces each call of a function."""
+        if not self.form:
+            return
+        for name in self.exercises.variations:
+            with suppress(Exception):  # the text that asks for it says where
+                self.answer(name)
+
     def answer(self, name: str) -> Values:
         """Return the answer of that name; it is computed once."""
         variation = self.exercises.variations.get(name)
@@ -150,7 +158,14 @@ class Placing:
         digits: int = 0,
         transposed: bool = False,
     ) -> str:
-        """Place a table of the paper."""
+        """Place a table of the paper; it is the same on all sheets."""
+        choice = Choice(columns, rows, readings, labels, printed, digits, transposed)
+        key = f"table {exhibit} {choice}"
+        if key not in self.shared:
+            self.shared[key] = self._table(exhibit, choice)
+        return self._mark(self.shared[key])
+
+    def _table(self, exhibit: str, choice: Choice) -> Placed:
         found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
         if not isinstance(found, Table) or not isinstance(result, TableResult):
             known = [id for id, other in self.paper.exhibits.items() if isinstance(other, Table)]
@@ -161,14 +176,13 @@ class Placing:
             msg = f"table('{exhibit}'): the reading '{reading}' failed: {why}"
             raise TemplateError(msg)
         verdicts = [row for row in self.verdicts if row.paper == self.paper.id and row.exhibit == exhibit]
-        choice = Choice(columns, rows, readings, labels, printed, digits, transposed)
         try:
             placed = key_table(found, result, verdicts, choice)
         except TemplateError as error:
             msg = f"table('{exhibit}'): {error}"
             raise TemplateError(msg) from error
-        signs = legend(table_view(found, result, verdicts), choice) if printed else []
-        return self._mark(Placed(placed, signs))
+        signs = legend(table_view(found, result, verdicts), choice) if choice.printed else []
+        return Placed(placed, signs)
 
     def figure(self, name: str, width: float = 1.0, size: tuple[float, float] | None = None) -> str:
         """Place a figure of the handout's own, or else one of the paper."""

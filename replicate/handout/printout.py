@@ -8,8 +8,14 @@ Only fonts inside the typst package are used, and nothing tells the time: the sa
 from __future__ import annotations
 
 import io
+import os
 import re
 import tempfile
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import cache, partial
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -40,6 +46,7 @@ FORM = "form.svg"  # its id, for a camera
 # Functions of the template, by the class of a Div or Span.
 _BLOCKS = {"lead", "key", "exercise", "solution"}
 _SPANS = {"number", "tool", "printed", "computed", "over-badge", "over-sign"}
+_MOST_THREADS = 4
 _LONG = 15  # rows; a table with more of them may break across pages, and repeats its head
 _SIGNS = {"badge", "sign"}  # these also say which verdict or match they stand for
 
@@ -52,7 +59,44 @@ def pdf(document: Document) -> bytes:
     TemplateError
         If Typst cannot set the document, or sets it with a warning.
     """
+    return next(pdfs([document]))
+
+
+def pdfs(documents: Iterable[Document], at_once: int = 1) -> Iterator[bytes]:
+    """Yield the PDFs of documents in their order; while Typst sets some, pandoc writes the next ones.
+
+    Parameters
+    ----------
+    at_once
+        How many documents pandoc writes in one call.
+
+    Raises
+    ------
+    TemplateError
+        If Typst cannot set one of them, or sets it with a warning.
+    """
+    threads = min(os.cpu_count() or 1, _MOST_THREADS)  # Typst lets go of the interpreter
+    with ThreadPoolExecutor(threads) as pool:
+        under_way: deque[Future[bytes]] = deque()
+        for some in _batches(documents, at_once):
+            for document, text in zip(some, markups(some), strict=True):
+                under_way.append(pool.submit(_set, document, text))
+            while len(under_way) > at_once:
+                yield under_way.popleft().result()
+        while under_way:
+            yield under_way.popleft().result()
+
+
+def _batches(documents: Iterable[Document], size: int) -> Iterator[list[Document]]:
+    waiting = iter(documents)
+    while some := list(islice(waiting, size)):
+        yield some
+
+
+def _set(document: Document, text: str) -> bytes:
+    """Return the PDF of a document from its Typst source."""
     name = f"{document.paper.id}/{FILE}"
+    check_letters(text, document, name)
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         template = (templates_dir() / TEMPLATE).read_text(encoding="utf-8")
@@ -62,18 +106,10 @@ def pdf(document: Document) -> bytes:
         for drawing in document.drawings.values():
             (root / f"{drawing.name}.svg").write_text(drawing.svg, encoding="utf-8")
         main = root / "main.typ"
-        text = markup(document)
-        check_letters(text, document, name)
         main.write_text(text, encoding="utf-8")
         try:
-            made, warnings = typst.compile_with_warnings(
-                str(main),
-                root=str(root),
-                ignore_system_fonts=True,
-                font_paths=[str(fonts_dir())],
-                format="pdf",
-                pdf_standards=["ua-1"],
-            )
+            compiler = typst.Compiler(str(main), root=str(root), font_paths=_fonts())
+            made, warnings = compiler.compile_with_warnings(format="pdf", pdf_standards=["ua-1"])
         except typst.TypstError as error:
             raise _failed(name, error, text) from error
     if warnings:
@@ -87,11 +123,21 @@ def pdf(document: Document) -> bytes:
         raise TemplateError(msg) from error
 
 
+@cache
+def _fonts() -> typst.Fonts:
+    """Return the fonts of the typst package and of matplotlib, and none of the system."""
+    return typst.Fonts(include_system_fonts=False, include_embedded_fonts=True, font_paths=[str(fonts_dir())])
+
+
 def markup(document: Document) -> str:
     """Return the Typst source of a handout."""
-    blocks = transform(document.blocks, lambda element: _for_typst(element, document))
-    (body,) = written([blocks], "typst")
-    return head(document) + body
+    return markups([document])[0]
+
+
+def markups(documents: Sequence[Document]) -> list[str]:
+    """Return the Typst sources of handouts, written by one call of pandoc."""
+    pieces = [transform(one.blocks, partial(_for_typst, document=one)) for one in documents]
+    return [head(one) + body for one, body in zip(documents, written(pieces, "typst"), strict=True)]
 
 
 def head(document: Document) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answers
@@ -31,7 +31,7 @@ class Question:
     points
         For the whole exercise, if it has any.
     document
-        What the exercise is from: the formulas and drawings in its text.
+        What the exercise is from, with the formulas and drawings in its text but without the text.
     """
 
     exercise: str
@@ -58,6 +58,7 @@ def questions_of(document: Document, exercises: Exercises, form: Form | None) ->
     PaperDefinitionError
         If an answer does not exist.
     """
+    about = replace(document, blocks=[])
     for block in elements(document.blocks):
         if "exercise" not in classes(block):
             continue
@@ -77,7 +78,7 @@ def questions_of(document: Document, exercises: Exercises, form: Form | None) ->
             solution=[part for inner in content if "solution" in classes(inner) for part in inner["c"][1]],
             answers=answers,
             points=float(points) if points else None,
-            document=document,
+            document=about,
         )
 
 

@@ -12,6 +12,9 @@ Element = dict[str, Any]
 Blocks = list[Element]
 
 
+_WORDS = {"Str", "Space", "SoftBreak", "LineBreak"}  # nine of ten elements
+
+
 def elements(node: object) -> Iterator[Element]:
     """Yield every element below a node, in the order of the text."""
     if isinstance(node, list):
@@ -30,12 +33,15 @@ def transform(node: Any, change: Callable[[Element], list[Element] | None]) -> A
     ----------
     change
         Gets an element whose children are changed already; returns what takes its place, or ``None`` to keep
-        it.
+        it. Words and the spaces between them stay what they are.
     """
     if isinstance(node, list):
         out: list[Any] = []
         for child in node:
             if isinstance(child, dict) and "t" in child:
+                if child["t"] in _WORDS:
+                    out.append(child)
+                    continue
                 kept = {**child, "c": transform(child["c"], change)} if "c" in child else child
                 replaced = change(kept)
                 out += [kept] if replaced is None else replaced

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from functools import lru_cache
 from types import FrameType
 from typing import Any
 
 import jinja2
-from jinja2 import nodes
+from jinja2 import Template, nodes
 from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from jinja2.utils import Namespace
@@ -99,7 +100,7 @@ class SafeEnvironment(ImmutableSandboxedEnvironment):
         LimitError
             If it takes too many steps, or becomes too long.
         """
-        template = self.from_string(self.parsed(text))
+        template = _compiled(self, text)
         pieces, size = [], 0
         watched = _Watched()
         try:
@@ -112,6 +113,12 @@ class SafeEnvironment(ImmutableSandboxedEnvironment):
             error.line = template.get_corresponding_lineno(watched.line)
             raise
         return "".join(pieces)
+
+
+@lru_cache(maxsize=16)
+def _compiled(environment: SafeEnvironment, text: str) -> Template:
+    """Return a template; the sheets of a class fill in the same one again and again."""
+    return environment.from_string(environment.parsed(text))
 
 
 def _demand(holds: bool) -> None:

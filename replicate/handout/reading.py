@@ -1,0 +1,101 @@
+"""Read the Markdown of handouts into pandoc's tree, many texts in one call; what could read files is refused."""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+from collections.abc import Sequence
+from pathlib import Path
+
+import pypandoc
+
+from replicate.errors import TemplateError
+from replicate.handout.formulas import line_of
+from replicate.handout.tree import Blocks, Element, elements
+
+Lines = Sequence[tuple[str, int]]  # of a text, each with the line of the source that it stems from
+
+# "(5) and (6) give ..." is a sentence about equations, not item 5 of a list, and "<" is a less-than sign.
+# What is raw is read as such, so that it can be refused with its line: the text says what, not how in one format.
+_FORMAT = (
+    "markdown-auto_identifiers-implicit_figures-yaml_metadata_block-fancy_lists-example_lists-citations"
+    "+raw_html+raw_tex+raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
+)
+_OPTIONS = ["--sandbox", "--fail-if-warnings", "--columns=10000"]
+_FOREIGN = {
+    "RawInline": "raw text for one format",
+    "RawBlock": "raw text for one format",
+    "Image": "an image from a file",
+}
+_MARK = "\ue007"  # between two texts
+
+
+def read(texts: Sequence[Lines], source: str) -> list[Blocks]:
+    """Read texts, each as if it were alone.
+
+    Parameters
+    ----------
+    source
+        What messages call the file that all of them stem from.
+
+    Raises
+    ------
+    TemplateError
+        If pandoc cannot read one, or it holds what no handout may; with its line.
+    """
+    if len(texts) == 1:
+        return [_read(texts[0], source)]
+    with tempfile.TemporaryDirectory() as folder:
+        files = []
+        for number, lines in enumerate(texts):
+            files.append(str(Path(folder) / f"{number:05}.md"))
+            content = "\n".join([_MARK, "", *(line for line, _ in lines)])
+            Path(files[-1]).write_text(content, encoding="utf-8", newline="\n")
+        try:
+            tree = pypandoc.convert_file(
+                files, "json", format=_FORMAT, extra_args=[*_OPTIONS, "--file-scope"], verify_format=False
+            )
+        except RuntimeError:
+            return [_read(lines, source) for lines in texts]  # one of them says where
+    found: list[Blocks] = []
+    for block in json.loads(tree)["blocks"]:
+        if block["t"] == "Para" and block["c"] == [{"t": "Str", "c": _MARK}]:
+            found.append([])
+        else:
+            found[-1].append(block)
+    for blocks, lines in zip(found, texts, strict=True):
+        _check(blocks, lines, source)
+    return found
+
+
+def _read(lines: Lines, source: str) -> Blocks:
+    """Read Markdown into pandoc's tree."""
+    text = "\n".join(line for line, _ in lines)
+    try:
+        tree = json.loads(pypandoc.convert_text(text, "json", format=_FORMAT, extra_args=_OPTIONS, verify_format=False))
+    except RuntimeError as error:
+        words = " ".join(str(error).split())
+        found = re.search(r"\[WARNING\] (.*?)(?: Failing because|$)", words)
+        at = re.search(r"line (\d+)", words)
+        line = lines[min(int(at[1]), len(lines)) - 1][1] if at else 1
+        msg = f"{source}:{line}: pandoc cannot read the text: {found[1] if found else words}"
+        raise TemplateError(msg) from error
+    blocks: Blocks = tree["blocks"]
+    _check(blocks, lines, source)
+    return blocks
+
+
+def _check(blocks: Blocks, lines: Lines, source: str) -> None:
+    for element in elements(blocks):
+        if element["t"] in _FOREIGN:
+            raise _refused(element, lines, source)
+
+
+def _refused(element: Element, lines: Lines, source: str) -> TemplateError:
+    """Return an error about something that a handout must not hold: it could read files, or differ by format."""
+    text = element["c"][2][0] if element["t"] == "Image" else element["c"][1]
+    shown = " ".join(text.split())[:60]
+    instead = "figures are placed with figure(...)" if element["t"] == "Image" else r"write \< or \\ for the sign"
+    msg = f"{source}:{line_of(text, lines)}: {_FOREIGN[element['t']]} is not allowed: {shown}; {instead}"
+    return TemplateError(msg)
