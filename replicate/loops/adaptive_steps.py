@@ -17,32 +17,24 @@ Reference: Bellman and Cooke, "Differential-Difference Equations" (1963), chapte
 from __future__ import annotations
 
 import heapq
-from bisect import bisect_right
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
 from replicate.loops.chain import Chain, build_chain, gains
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
+from replicate.loops.piece_flow import DEGREE, SAME, Row, delayed_values, integrations, nominal, piece_flow
 from replicate.loops.plant import Plant
+from replicate.loops.resolution import START, Resolution, as_good_as_it_gets, coefficients
 
 Array = NDArray[np.float64]
 
-DEGREE = 18
-RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at which a piece counts as resolved
-SMOOTH = 1e-14  # size of the upper third of the coefficients at which the next piece may be twice as long
 STARTING = 3.5  # first piece, in units of the fastest time constant
 SMOOTHEST = 12  # order of a derivative whose jump no longer has to fall on the end of a piece
 SMALLEST_JUMP = 1e-17
-START = 1e-4  # of the set-point step: an output below this is resolved as if it were this large
-SAME = 1e-12  # relative distance of two times that are one
-CLOCK = 4.0 * float(np.finfo(float).eps)
 MOST_PIECES = 200_000
-LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 
 
 def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, load: float) -> tuple[Array, Array, Array]:
@@ -62,11 +54,18 @@ def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, loa
     """
     g = gains(controller)
     chain = build_chain(plant, controller, integral=bool(g[2]), derivative=bool(g[3])).balanced(g)
-    march = _March(chain, g, np.array([part.dead_time for part in plant.parts]), setpoint, load)
+    delays = np.array([part.dead_time for part in plant.parts])
+    return march(chain, g, delays, until, setpoint=setpoint, loads=np.full(delays.size, load))
+
+
+def march(
+    chain: Chain, g: Array, delays: Array, until: float, *, setpoint: float, loads: Array
+) -> tuple[Array, Array, Array]:
+    """Return the response of a chain closed by the gains ``g`` as `respond` does; each input has a load of its own."""
+    steps = _March(chain, g, delays, setpoint, loads)
     with np.errstate(over="ignore", invalid="ignore"):
-        march.run(until)
-    to_coefficients = chebyshev.values_to_coefficients(DEGREE).T
-    return np.array(march.breaks), np.array(march.output) @ to_coefficients, np.array(march.control)
+        steps.run(until)
+    return np.array(steps.breaks), coefficients(np.array(steps.output)), np.array(steps.control)
 
 
 @dataclass
@@ -77,7 +76,7 @@ class _March:
     g: Array
     delays: Array
     setpoint: float
-    load: float
+    loads: Array
     breaks: list[float] = field(default_factory=lambda: [0.0])
     output: list[Array] = field(default_factory=list)  # node values of y
     control: list[Array] = field(default_factory=list)  # coefficients of u
@@ -85,11 +84,10 @@ class _March:
     maps: dict[float, Array] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.ux, self.uv, self.ur = self.g @ self.chain.wx, self.g @ self.chain.wv, float(self.g @ self.chain.wr)
+        self.row = Row(self.g @ self.chain.wx, self.g @ self.chain.wv, float(self.g @ self.chain.wr))
         self.x = self.chain.start * self.setpoint
-        # what the output is compared with before it has moved
-        self.size_y, self.size_u = START * abs(self.setpoint), 0.0
-        self.algebraic = 1.0 - (float(self.uv[0]) if self.delays[0] == 0.0 else 0.0)
+        self.resolution = Resolution(START * abs(self.setpoint))
+        self.algebraic = 1.0 - (float(self.row.v[0]) if self.delays[0] == 0.0 else 0.0)
         if abs(self.algebraic) < SAME:
             msg = "the loop without dead time is not well posed: its algebraic feedback equals one"
             raise ImproperLoopError(msg)
@@ -109,8 +107,8 @@ class _March:
             h = rest / pieces if pieces <= 2.0 else length
             self._receive(start)
             y, u, v, end = self._piece(start, h)
-            remaining, smooth = self._check(h, y, u, v)
-            if remaining > RESOLVED and not (remaining < 1e-9 and remaining > 0.25 * previous):
+            remaining, smooth = self.resolution.check(start, h, coefficients(y), u, v)
+            if not as_good_as_it_gets(remaining, previous):
                 previous, length = remaining, 0.5 * h
                 if start + length == start:
                     msg = f"the response is not resolved at t = {start:g}"
@@ -130,7 +128,7 @@ class _March:
     def _first_length(self) -> float:
         a = self.chain.a
         if self.delays[0] == 0.0:
-            a = a + np.outer(self.chain.b[:, 0], self.ux) / self.algebraic
+            a = a + np.outer(self.chain.b[:, 0], self.row.x) / self.algebraic
         radius = float(np.max(np.abs(np.linalg.eigvals(a)), initial=0.0))
         return STARTING / radius if radius else np.inf
 
@@ -138,7 +136,7 @@ class _March:
 
     def _jumps(self, until: float) -> list[float]:
         """Return the times at which a derivative that matters can jump: sums of dead times, ascending."""
-        around = [self._integrations(i) for i in range(self.delays.size)]
+        around = [integrations(self.chain, self.row, i, most=SMOOTHEST) for i in range(self.delays.size)]
         pending, found = [(0.0, 0, 1.0)], []
         known: dict[float, tuple[int, float]] = {}
         while pending:
@@ -149,7 +147,7 @@ class _March:
             if time:
                 found.append(time)
             for i, delay in enumerate(self.delays):
-                weight = size * abs(float(self.uv[i])) if around[i] == 0 else size
+                weight = size * abs(float(self.row.v[i])) if around[i] == 0 else size
                 if delay and order + around[i] < SMOOTHEST and weight > SMALLEST_JUMP and time + delay < until:
                     heapq.heappush(pending, (time + float(delay), order + around[i], weight))
             known[time] = (order, size)
@@ -157,17 +155,6 @@ class _March:
                 msg = f"the response jumps more than {MOST_PIECES} times up to t = {until:g}: choose a shorter horizon"
                 raise LoopError(msg)
         return found
-
-    def _integrations(self, i: int) -> int:
-        """Return how many times an input is integrated before it shows in the control signal."""
-        if self.uv[i]:
-            return 0
-        reached, size = self.chain.b[:, i], np.abs(self.chain.b[:, i])
-        for order in range(1, self.x.size + 1):
-            if abs(float(self.ux @ reached)) > SAME * float(np.abs(self.ux) @ size):
-                return order
-            reached, size = self.chain.a @ reached, np.abs(self.chain.a) @ size
-        return SMOOTHEST
 
     def _send(self, time: float, weight: float) -> None:
         """Note an impulse of the control signal: it arrives after each dead time."""
@@ -179,119 +166,29 @@ class _March:
         while self.impulses and self.impulses[0][0] <= start * (1.0 + SAME):
             time, i, weight = heapq.heappop(self.impulses)
             self.x = self.x + self.chain.b[:, i] * weight
-            if self.delays[i] and self.uv[i]:
-                self._send(time, float(self.uv[i]) * weight / self.algebraic)
+            if self.delays[i] and self.row.v[i]:
+                self._send(time, float(self.row.v[i]) * weight / self.algebraic)
 
     # ---- one piece -------------------------------------------------------------------------------------------------
 
     def _piece(self, start: float, h: float) -> tuple[Array, Array, Array, Array]:
         """Return node values of y, coefficients of u and of the delayed inputs, and the state at the end."""
         points, n = DEGREE + 1, self.x.size
-        known = np.array([self._history(start, h, float(delay)) for delay in self.delays])
-        flow = self._map(h)
-        result = flow @ np.concatenate([known.ravel(), self.x, [self.setpoint]])
+        known = np.array([self._history(start, h, i) for i in range(self.delays.size)])
+        result = self._map(h) @ np.concatenate([known.ravel(), self.x, [self.setpoint]])
         u, y, v = result[:points], result[points : 2 * points], result[2 * points : -n or None]
-        transform = chebyshev.values_to_coefficients(DEGREE)
-        delayed = v[: points * self.delays.size].reshape(-1, points) @ transform.T
-        return y, transform @ u, delayed, result[result.size - n :]
+        return y, coefficients(u), coefficients(v.reshape(-1, points)), result[result.size - n :]
 
-    def _history(self, start: float, h: float, delay: float) -> Array:
+    def _history(self, start: float, h: float, i: int) -> Array:
         """Return the part of a delayed input that earlier pieces and the load make, on the nodes of a piece."""
-        nodes = start + 0.5 * h * (chebyshev.nodes(DEGREE) + 1.0)
-        loaded = self.load if start >= delay * (1.0 - SAME) else 0.0
-        values = np.full(nodes.size, loaded)
-        earlier = ~_later(_nominal(h), delay)
-        times = nodes[earlier] - delay
-        if times.size == 0 or not self.control:
-            return values
-        middle = 0.5 * (times[0] + times[-1]) if times.size > 1 else times[0] + 0.25 * min(h, delay)
-        first, last = (min(bisect_right(self.breaks, t) - 1, len(self.control) - 1) for t in (times[0], times[-1]))
-        central = min(bisect_right(self.breaks, middle) - 1, len(self.control) - 1)
-        if central < 0:
-            return values
-        slack = SAME * start
-        if times[0] >= self.breaks[central] - slack and times[-1] <= self.breaks[central + 1] + slack:
-            pieces = np.full(times.size, central)
-        else:
-            pieces = np.clip(np.searchsorted(self.breaks, times, side="right") - 1, max(first, 0), max(last, 0))
-        for piece in np.unique(pieces):
-            here = pieces == piece
-            left, right = self.breaks[piece], self.breaks[piece + 1]
-            x = np.clip(2.0 * (times[here] - left) / (right - left) - 1.0, -1.0, 1.0)
-            where = np.nonzero(earlier)[0][here]
-            values[where] += np.where(times[here] >= -slack, cheb.chebval(x, self.control[piece]), 0.0)
-        return values
+        delay = float(self.delays[i])
+        values, _ = delayed_values(self.breaks, self.control, start, h, delay)
+        return values + (float(self.loads[i]) if start >= delay * (1.0 - SAME) else 0.0)
 
     def _map(self, h: float) -> Array:
         """Return the map of a piece from (known inputs, start state, set-point) to (u, y, inputs, end state)."""
-        h = _nominal(h)
-        if h in self.maps:
-            return self.maps[h]
-        points, n, m = DEGREE + 1, self.x.size, self.delays.size
-        half_s = 0.5 * h * chebyshev.integration(DEGREE)
-        own = [_own_part(h, float(delay)) for delay in self.delays]
-        enter = [np.kron(half_s, self.chain.b[:, [i]]) for i in range(m)]
-        # the state from (known inputs, start state, set-point, own control signal), then the control signal itself
-        right = np.zeros((points * n, (m + 1) * points + n + 1))
-        for i in range(m):
-            right[:, i * points : (i + 1) * points] = enter[i]
-            right[:, -points:] += enter[i] @ own[i]
-        right[:, m * points : m * points + n] = np.kron(np.ones((points, 1)), np.eye(n))
-        right[:, m * points + n] = np.kron(half_s.sum(axis=1), self.chain.e)
-        states = np.linalg.solve(np.eye(points * n) - np.kron(half_s, self.chain.a), right) if n else right
-        through = np.kron(np.eye(points), self.ux) @ states
-        for i in range(m):
-            through[:, i * points : (i + 1) * points] += self.uv[i] * np.eye(points)
-            through[:, -points:] += self.uv[i] * own[i]
-        through[:, m * points + n] += self.ur
-        fed_back = np.eye(points) - through[:, -points:]
-        u = np.linalg.solve(fed_back, through[:, :-points]) if any(part.any() for part in own) else through[:, :-points]
-        x = (states[:, :-points] + states[:, -points:] @ u).reshape(points, n, -1)
-        v = []
-        for i in range(m):
-            part = own[i] @ u
-            part[:, i * points : (i + 1) * points] += np.eye(points)
-            v.append(part)
-        y = np.einsum("i,pic->pc", self.chain.c, x) + sum(d * part for d, part in zip(self.chain.d, v, strict=True))
-        flow = np.concatenate([u, y, *v, x[-1]])
-        self.maps[h] = flow
-        return flow
-
-    def _check(self, h: float, y: Array, u: Array, v: Array) -> tuple[float, bool]:
-        """Return the size of what is not resolved, and whether a longer piece would be resolved, too."""
-        series = chebyshev.values_to_coefficients(DEGREE) @ y
-        size_y = max(self.size_y, float(np.max(np.abs(series))))
-        size_u = max(self.size_u, float(np.max(np.abs(u))))
-        size_v = max(size_u, float(np.max(np.abs(v))))
-        if not (size_y < LARGEST and size_u < LARGEST):
-            msg = f"the response grows beyond {LARGEST:g} by t = {self.breaks[-1]:g}: choose a shorter horizon"
-            raise LoopError(msg)
-        # times are known to rounding only: what changes fast carries that error
-        blur = CLOCK * self.breaks[-1] * 2.0 / h
-        order = np.arange(DEGREE + 1) ** 2
-        remaining = upper = 0.0
-        for row, size in [(series, size_y), (u, size_u), *((row, size_v) for row in v)]:
-            if size:
-                tail, floor = np.abs(row), blur * float(np.max(order * np.abs(row)))
-                remaining = max(remaining, (float(np.max(tail[-2:])) - floor) / size)
-                upper = max(upper, (float(np.max(tail[2 * DEGREE // 3 :])) - floor) / size)
-        if remaining <= RESOLVED:
-            self.size_y, self.size_u = size_y, size_u
-        return remaining, upper <= SMOOTH
-
-
-def _own_part(h: float, delay: float) -> Array:
-    """Return the matrix that reads a piece's own polynomial one dead time ago, zero where that is before the piece."""
-    x = chebyshev.nodes(DEGREE) - 2.0 * delay / h
-    matrix = chebyshev.basis(np.maximum(x, -1.0), DEGREE).T @ chebyshev.values_to_coefficients(DEGREE)
-    return np.where(_later(h, delay)[:, None], matrix, 0.0)
-
-
-def _later(h: float, delay: float) -> NDArray[np.bool_]:
-    """Return which nodes of a piece come more than a dead time after its start."""
-    return np.asarray(0.5 * h * (chebyshev.nodes(DEGREE) + 1.0) > delay * (1.0 + SAME))
-
-
-def _nominal(h: float) -> float:
-    """Return a length without its rounding error: lengths that differ by no more share a map."""
-    return float(f"{h:.13e}")
+        h = nominal(h)
+        if h not in self.maps:
+            flow = piece_flow(self.chain, self.row, self.delays, h)
+            self.maps[h] = np.concatenate([flow.u, flow.y, *flow.v, flow.x[-1]])
+        return self.maps[h]
