@@ -20,6 +20,7 @@ from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
 from replicate.loops.responses import responses
 from replicate.loops.signal import Signal
+from replicate.loops.steady_state import steady_state
 from replicate.loops.units import Units
 
 ComplexArray = NDArray[np.complex128]
@@ -269,24 +270,7 @@ class Loop(LoopViews):
         setpoint, load
             Heights of the two steps.
         """
-        gain = self.plant.gain
-        (num, den), (filter_num, filter_den) = (
-            self.controller.setpoint_filter_polynomials(),
-            self.controller.measurement_filter_polynomials(),
-        )
-        reference, measured = setpoint * float(num[-1] / den[-1]), float(filter_num[-1] / filter_den[-1])
-        blocked = self.plant.num[-1] == 0.0 if self.plant.is_rational else gain == 0.0
-        nan = float("nan")
-        if self.controller.ki:
-            if blocked or not measured:
-                return nan, nan
-            output = reference / measured
-            return output, (output / gain if gain else nan) - load
-        k = self.controller.k
-        if np.isinf(gain):  # the integrator's input vanishes: u = -load
-            return ((self.controller.b * reference + load / k) / measured if k and measured else nan), -load
-        output = gain * (k * self.controller.b * reference + load) / (1.0 + gain * k * measured)
-        return output, k * (self.controller.b * reference - measured * output)
+        return steady_state(self.plant, self.controller, setpoint, load)
 
     def _by_inversion(
         self, setpoint: float, load: float, end: float

@@ -147,7 +147,9 @@ def _own_part(h: float, delay: float) -> Array:
 
 
 def later(h: float, delay: float) -> NDArray[np.bool_]:
-    """Return which nodes of a piece come more than a dead time after its start."""
+    """Return which nodes of a piece come more than a dead time after its start; without dead time, all do."""
+    if delay == 0.0:
+        return np.ones(DEGREE + 1, dtype=bool)
     return np.asarray(0.5 * h * (chebyshev.nodes(DEGREE) + 1.0) > delay * (1.0 + SAME))
 
 
