@@ -149,7 +149,7 @@ def test_filter_of_the_drying_section() -> None:
 
 
 @pytest.mark.parametrize("gains", [None, (5.2, 1.6, 5.4)])
-def test_filter_from_the_peak_on_the_default_grid(gains: tuple[float, float, float] | None) -> None:
+def test_filter_from_the_peak_on_the_coarse_grid(gains: tuple[float, float, float] | None) -> None:
     """|F G_sp| = 1 at the point of Matlab's 50-point grid with the largest |T|, with G_sp written out."""
     k, ki, kd = gains or (5.21, 5.21 / 3.16, 5.21 * 1.02)
     s = 1j * 10.0 ** (-2.0 + 4.0 * np.arange(50) / 49.0)
@@ -158,7 +158,7 @@ def test_filter_from_the_peak_on_the_default_grid(gains: tuple[float, float, flo
     top = np.abs(loop / (1.0 + loop)).argmax()
     response = abs(plant[top] * (k + ki / s[top]) / (1.0 + loop[top]))
     expected = np.sqrt(response**2 - 1.0) / abs(s[top])
-    assert industrial.setpoint_filters(gains).default_grid == pytest.approx(expected, rel=1e-12)
+    assert industrial.setpoint_filters(gains).coarse_grid == pytest.approx(expected, rel=1e-12)
     w = abs(s[top])
     if gains is None:
         assert industrial.beside_the_peak(w)[1] == pytest.approx(expected, rel=1e-12)

@@ -54,7 +54,8 @@ def minimum_distance() -> Finding:
     return Finding(
         "holds" if ratio[worst] < 1.01 else "fails",
         ratio[worst],
-        "Not even in the design loop (3): with the printed $T_i$ its $|S|$ only approaches $1/(1 - "
+        "The paper itself says that the true $M_s$ is larger, because of the dead time. But not even the design loop "
+        "(3) keeps the distance: with the printed $T_i$ its $|S|$ only approaches $1/(1 - "
         f"\\sqrt{{\\theta/2T}})$ as $\\omega \\to \\infty$, which equals $M_s^*$ in {len(met)} of {len(TABLE_1)} rows, "
         "the one with $q = 0$. The cause is the sign of $q$: with $q < 0$ the design loop meets $M_s^*$ in "
         f"{len(touching)} of {len(TABLE_1)} rows. With the exact dead time and the controller (2) the true $M_s$ is "
@@ -169,7 +170,7 @@ def delay_approximation() -> Finding:
         "holds-partly" if peaks["series"] > 1.1 * peaks["unfiltered"] else "holds",
         peaks["unfiltered"] / smallest_sensitivity(x),
         f"For $\\theta/T = 0.9$: specified {float(specified_sensitivity(x))}; the design loop with the 1/1 "
-        f"Padé delay has {number(smallest_sensitivity(x))} (the wrong sign of $q$), the exact dead time "
+        f"Padé delay has {number(smallest_sensitivity(x))} (with $q > 0$), the exact dead time "
         f"raises it to {number(peaks['unfiltered'])}, and the neglected derivative filter to "
         f"{number(peaks['series'])} in the form (2) and {number(peaks['d_filter'])} with the "
         "filter on D only. Neglecting the filter matters as well.",

@@ -10,12 +10,12 @@ from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from replicate.exhibits import ClaimVerdict, Finding
+from replicate.exhibits.extrema import largest
 from replicate.exhibits.matching import meets
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.bryant import gain_for_damping
 from replicate.papers.khan.claims import claims
-from replicate.papers.khan.extrema import largest
 from replicate.papers.khan.fits import rise_time_fit
 from replicate.papers.khan.processes import NAMES, PRINTED, RESTORED, gains, loop, plant, settling_after_load
 from replicate.papers.khan.robustness import smallest

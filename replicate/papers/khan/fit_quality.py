@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.exhibits import Table
+from replicate.exhibits.extrema import largest
 from replicate.papers.khan import paper
-from replicate.papers.khan.extrema import largest
 from replicate.papers.khan.fits import (
     CASES,
     cases_of,

@@ -7,8 +7,8 @@ from functools import cache
 
 import numpy as np
 
+from replicate.exhibits.extrema import largest
 from replicate.loops import Loop
-from replicate.papers.khan.extrema import largest
 from replicate.papers.khan.processes import loop
 
 

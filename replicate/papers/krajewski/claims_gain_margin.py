@@ -4,12 +4,13 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from replicate.exhibits import Finding
+from replicate.exhibits.extrema import largest, smallest
 from replicate.papers.krajewski.claims import claims
 from replicate.papers.krajewski.loci import constant_phase_margin, corners, upper_end
-from replicate.papers.krajewski.normalised_loop import frequency_response, gain_ratio, phase_margin
+from replicate.papers.krajewski.normalised_loop import frequency_response, gain_ratio, lag, phase_margin
 from replicate.papers.krajewski.points import TAU, margins_at, metrics_at, named_points, text_point
 
 MARGIN, RATIO = 60.0, 0.3
@@ -79,20 +80,30 @@ def fig_8_corners() -> Finding:
     where="section 7",
 )
 def fig_8_nyquist() -> Finding:
-    curves = []
-    for a, b in _exact_corners():
-        w = np.geomspace(1e-3, 60.0, 60_001)
-        response = frequency_response(a, b, TAU, w)
-        radius, angle = np.abs(response), -np.unwrap(np.angle(response))
-        # As a function of the angle, which rises along the arc of both, the graduation drops out.
-        curves.append((angle, radius))
     start, end = np.pi - np.radians(MARGIN), np.pi  # from the unit circle to the real axis
-    grid = np.linspace(start, end, 2001)
-    first, second = (np.interp(grid, angle, radius) for angle, radius in curves)
-    one, other = (radius * np.exp(-1j * grid) for radius in (first, second))
-    inside = float(np.max(np.min(np.abs(one[::10, None] - other), axis=1)))
-    before = np.linspace(0.52 * np.pi, start, 501)
-    outside = float(np.max(np.abs(np.interp(before, *curves[0]) / np.interp(before, *curves[1]) - 1.0)))
+
+    def frequency(at: tuple[float, float], angle: float) -> float:
+        """Return the frequency at which the lag, which rises along the arc, has a value."""
+        a, b = at
+        return float(brentq(lambda w: np.pi / 2 - np.arctan2(b * w, a) + lag(TAU, w) - angle, 1e-6, 6.0, xtol=1e-14))
+
+    def response(at: tuple[float, float], w: float) -> complex:
+        return complex(frequency_response(*at, TAU, w))
+
+    lower, upper = _exact_corners()
+    ends = {at: np.linspace(frequency(at, start), frequency(at, end), 101) for at in (lower, upper)}
+
+    def distance(w: float) -> float:
+        """Return how far a point of one arc is from the other."""
+        return smallest(lambda v: abs(response(lower, w) - response(upper, v)), ends[upper])[1]
+
+    def ratio(angle: float) -> float:
+        """Return the difference of the magnitudes at the same lag: the graduation in ω drops out."""
+        sizes = [abs(response(at, frequency(at, angle))) for at in (lower, upper)]
+        return abs(sizes[0] / sizes[1] - 1.0)
+
+    _, inside = largest(distance, ends[lower])
+    _, outside = largest(ratio, np.linspace(0.52 * np.pi, start, 101))
     return Finding(
         "holds" if inside < 0.03 else "fails",
         inside,

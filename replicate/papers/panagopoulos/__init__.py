@@ -5,9 +5,9 @@ modules and its numbered exhibits; ids carry the part (``I-table-1``, ``IIs-tabl
 """
 
 from replicate.exhibits import Paper
-from replicate.papers.panagopoulos import part_1, part_2, parts_3_to_6
+from replicate.papers.panagopoulos import introduction, part_1, part_2, parts_3_to_6
 
-_PARTS = (part_1, part_2, parts_3_to_6)
+_PARTS = (introduction, part_1, part_2, parts_3_to_6)
 
 paper = Paper(
     id="panagopoulos",

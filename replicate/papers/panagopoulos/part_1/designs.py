@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from replicate.exhibits.extrema import largest
 from replicate.loops import PI, FrequencyPeak, Loop, PIDesign, Signal, design_pi, setpoint_weight
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
@@ -65,10 +66,13 @@ def load_response(plant: str, ms: float) -> Signal:
     return loop(plant, ms).load_step()
 
 
-def setpoint_gain(plant: str, ms: float, b: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return frequencies and |G_sp| (5) of a design with any set-point weight."""
+def setpoint_peak(plant: str, ms: float, b: float) -> float:
+    """Return M_sp (6), the largest |G_sp| (5) of a design with any set-point weight; at rest |G_sp| is 1."""
     found = design(plant, ms)
-    w = found.frequency * np.geomspace(1e-2, 10.0, 4001)
-    value = loop(plant, ms)(1j * w)
-    prefilter = (found.ki + 1j * w * b * found.k) / (found.ki + 1j * w * found.k)
-    return w, np.abs(prefilter * value / (1.0 + value))
+
+    def gain(log_w: float) -> float:
+        s = 1j * np.exp(log_w)
+        value = complex(loop(plant, ms)(s))
+        return float(abs((found.ki + s * b * found.k) / (found.ki + s * found.k) * value / (1.0 + value)))
+
+    return max(1.0, largest(gain, np.log(found.frequency) + np.log(np.geomspace(1e-2, 10.0, 301)))[1])

@@ -31,6 +31,7 @@ example_8 = paper.table(
     kind="example",
     rows=(
         *(f"{part}_Gf_m{m}" for m in RECOMMENDED for part in ("abs", "arg")),
+        "zeta",
         *(f"Tf_m{m}" for m in FINITE),
         *(f"sigma_S_m{m}" for m in FINITE),
         *(f"excess_m{m}" for m in FINITE),
@@ -45,6 +46,7 @@ example_8 = paper.table(
         **{f"Tf_m{m}": f"$T_f$, $m = {m}$" for m in FINITE},
         **{f"sigma_S_m{m}": f"$\\sigma$ with $|S|$, $m = {m}$" for m in FINITE},
         **{f"excess_m{m}": f"overestimated, $m = {m}$" for m in FINITE},
+        "zeta": "$\\zeta$",
         "value": "Value",
     },
 )
@@ -88,4 +90,4 @@ def as_written() -> pd.DataFrame:
             f"sigma_S_m{name}": sigma,
             f"excess_m{name}": case.sigma / sigma,
         }
-    return example_8.frame(values)
+    return example_8.frame({"zeta": math.nan, **values})

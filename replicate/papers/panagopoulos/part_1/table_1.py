@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from replicate.loops import PI, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import (
     BOUNDS,
@@ -95,3 +97,23 @@ def authors() -> pd.DataFrame:
         {row: weight_on_grid(*key) for row, key in ROWS.items()},
         {row: one_sided(load_response(*key), PLANTS[key[0]].dead_time) for row, key in ROWS.items()},
     )
+
+
+@table_1.reading(
+    "printed-gains",
+    "With the printed gain and integral time",
+    note="What follows from the printed $k$ and $T_i$, by the rules of the reading before.",
+    inputs=("k", "Ti"),
+)
+def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Compute what a printed controller does."""
+    plant, _ = ROWS[row]
+    pi = PI.from_integral_time(given["k"], given["Ti"])
+    loop = Loop(PLANTS[plant], pi)
+    load = loop.load_step()
+    return {
+        "IE": 1.0 / pi.ki,
+        "IE/IAE": 1.0 / pi.ki / load.iae(),
+        "ts": one_sided(load, PLANTS[plant].dead_time),
+        "Mp": loop.complementary_peak().value,
+    }

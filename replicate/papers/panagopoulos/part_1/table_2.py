@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from replicate.loops import PI, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
+from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
 
 if TYPE_CHECKING:
@@ -52,3 +55,16 @@ def as_written() -> pd.DataFrame:
 def authors() -> pd.DataFrame:
     """Compute the table with the set-point weight's other frequency."""
     return _table("w_0")
+
+
+@table_2.reading(
+    "printed-gains",
+    "With the printed gains",
+    note="$\\omega_0$ and $M_p$ of the loop with the printed $k$ and $k_i$.",
+    inputs=("k", "ki"),
+)
+def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Compute the two peaks of a printed controller."""
+    plant, _ = ROWS[row]
+    loop = Loop(PLANTS[plant], PI(given["k"], given["ki"]))
+    return {"w0": loop.sensitivity_peak().frequency, "Mp": loop.complementary_peak().value}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal
@@ -38,12 +39,17 @@ class Filtered:
 
     @property
     def sigma(self) -> float:
-        """Standard deviation of the control signal by the paper's formula, |S| replaced by Ms; inf without filter."""
-        a, tf, k, ki = NOISE_CORNER, self.filter_time, self.found.k, self.found.ki
-        if tf == 0.0:
-            return math.inf
-        variance = MS**2 * NOISE_DENSITY * (a * k**2 + ki**2 * tf) / (2.0 * a * tf * (1.0 + a * tf))
-        return math.sqrt(variance)
+        """Standard deviation of the control signal."""
+        return deviation(self.found.k, self.found.ki, self.filter_time)
+
+
+def deviation(k: float, ki: float, filter_time: float) -> float:
+    """Return the control signal's standard deviation by the paper's formula, |S| replaced by Ms; inf without filter."""
+    a, tf = NOISE_CORNER, filter_time
+    if tf == 0.0:
+        return math.inf
+    variance = MS**2 * NOISE_DENSITY * (a * k**2 + ki**2 * tf) / (2.0 * a * tf * (1.0 + a * tf))
+    return math.sqrt(variance)
 
 
 @cache
@@ -101,3 +107,17 @@ def as_written() -> pd.DataFrame:
 def authors() -> pd.DataFrame:
     """Compute the table with the last column's other filter."""
     return _table("new")
+
+
+@table_4.reading(
+    "printed-gains",
+    "With the printed gains",
+    note="IE is $1/k_i$ of the printed $k_i$, and $\\sigma$ follows from the printed gains and the exact filter.",
+    inputs=("k", "ki"),
+)
+def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Compute what follows from the printed gains of a row."""
+    found = {"IE": 1.0 / given["ki"]}
+    if filter_time := filtered(FACTORS[row]).filter_time:
+        found["sigma"] = deviation(given["k"], given["ki"], filter_time)
+    return found

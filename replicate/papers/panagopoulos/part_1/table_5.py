@@ -143,17 +143,15 @@ def authors() -> pd.DataFrame:
 
 @table_5.reading(
     "printed-gains",
-    "Lambda tuning with its printed gains",
-    note="What follows from the printed $k$ and $k_i$ of lambda tuning, which the text does not lead to, by the rules "
-    "of the reading before.",
+    "With the printed gains",
+    note="What follows from the printed $k$ and $k_i$, by the rules of the reading before; the new design has the "
+    "set-point weight of that reading, the others have $b = 1$.",
     inputs=("k", "ki"),
 )
-def lambda_from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
-    """Compute the rows of lambda tuning from their printed gains."""
+def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Compute what a printed controller does."""
     plant, method = ROWS[row]
-    if method != "Lambda":
-        return {}
-    pi = PI(given["k"], given["ki"])
+    pi = PI(given["k"], given["ki"], authors_controller(plant, method).b)
     loop = Loop(PLANTS[plant], pi)
     step, load = loop.step(), loop.load_step()
     return {

@@ -15,6 +15,7 @@ MODULES: tuple[str, ...] = (
     "settling",
     "two_peaks",
     "claims",
+    "robustness_claims",
     "parameter_claims",
     "supplement_claims",
     "setpoint_claims",

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from replicate.loops import Loop
+from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
 from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS, pole_numbers
@@ -24,11 +25,14 @@ example = paper.table(
     "Two controllers for four equal lags",
     kind="example",
     rows=tuple(CONTROLLERS),
-    columns=("IAE", "p", "zeta1", "omega1", "zeta2", "omega2"),
+    columns=("k", "ki", "kd", "IAE", "p", "zeta1", "omega1", "zeta2", "omega2"),
     caption=r"$G = 1/(s+1)^4$ with $(k, k_i, k_d) = (1.00, 0.50, 1.00)$ and $(1.00, 0.98, 3.00)$: integrated absolute "
     "error after a unit load step, the real closed-loop pole, and relative damping and frequency of the two pairs.",
     shared_labels=ROW_LABELS,
     labels={
+        "k": "$k$",
+        "ki": "$k_i$",
+        "kd": "$k_d$",
         "p": "real pole",
         "zeta1": r"$\zeta_1$",
         "omega1": r"$\omega_1$",
@@ -39,14 +43,16 @@ example = paper.table(
 example.trials = lambda: {row: (G4.notation(), controller.notation()) for row, controller in CONTROLLERS.items()}
 
 
-@example.reading("as-written", "Exact", "The error over the whole response, the poles as roots.")
-def numbers() -> pd.DataFrame:
-    """Return errors and poles."""
-    rows = {
-        key: {"IAE": Loop(G4, controller).load_step().iae()} | pole_numbers(controller)
-        for key, controller in CONTROLLERS.items()
-    }
-    return example.frame(rows)
+@example.reading(
+    "as-written",
+    "Exact, with the printed gains",
+    "The error over the whole response, the poles as roots. The gains are read off Figure 3.",
+    inputs=("k", "ki", "kd"),
+)
+def numbers(_: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Return error and poles for printed gains."""
+    controller = PID(given["k"], given["ki"], given["kd"])
+    return {"IAE": Loop(G4, controller).load_step().iae()} | pole_numbers(controller)
 
 
 def bottom_maximum(kd: float) -> float:

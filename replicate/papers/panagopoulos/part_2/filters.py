@@ -23,7 +23,7 @@ UNFILTERED = "none"
 HEADED = {"n1_N2": (1, 2), "n1_N5": (1, 5), "n1_N10": (1, 10), "n2_N2": (2, 2), "n2_N5": (2, 5), "n2_N10": (2, 10)}
 COLUMNS = (*HEADED, UNFILTERED)
 ROWS = ("argFy", "K", "Ti", "Td", "w0", "IAE", "Mn")
-CUT = 100.0  # rad/s, the last frequency of Matlab's default grid logspace(-2, 2)
+CUT = 100.0  # rad/s, the last frequency of logspace(-2, 2)
 PREVIOUS = {"n2_N2": "n1_N10", "n2_N5": "n2_N2", "n2_N10": "n2_N5"}
 
 

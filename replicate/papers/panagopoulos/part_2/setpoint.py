@@ -18,7 +18,7 @@ import numpy as np
 from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos.part_2.processes import PLANTS
 
-DEFAULT_GRID = np.logspace(-2.0, 2.0, 50)  # of Matlab, when the frequencies are left to it, rad/s
+COARSE_GRID = np.logspace(-2.0, 2.0, 50)  # rad/s; 50 points is what Matlab's logspace(-2, 2) makes
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class Resonance:
         return cls(peak.frequency, peak.value)
 
     @classmethod
-    def on_default_grid(cls, plant: Plant, controller: PID) -> Resonance:
-        """Return the largest |T| on `DEFAULT_GRID`."""
-        value = Loop(plant, controller)(1j * DEFAULT_GRID)
+    def on_coarse_grid(cls, plant: Plant, controller: PID) -> Resonance:
+        """Return the largest |T| on `COARSE_GRID`."""
+        value = Loop(plant, controller)(1j * COARSE_GRID)
         size = np.abs(value / (1.0 + value))
         i = int(np.argmax(size))
-        return cls(float(DEFAULT_GRID[i]), float(size[i]))
+        return cls(float(COARSE_GRID[i]), float(size[i]))
 
     @property
     def at_rest(self) -> bool:

@@ -3,11 +3,16 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import numpy as np
+from scipy.optimize import brentq
 
 from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number, share
-from replicate.loops import Loop
+from replicate.exhibits.extrema import smallest
+from replicate.exhibits.matching import meets
+from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos.part_2 import feasible, filters
 from replicate.papers.panagopoulos.part_2.claims import claims
 from replicate.papers.panagopoulos.part_2.example import bottom_maximum
@@ -16,7 +21,8 @@ from replicate.papers.panagopoulos.part_2.noise_figures import NOISE_FREQUENCY, 
 from replicate.papers.panagopoulos.part_2.processes import G4
 from replicate.papers.panagopoulos.part_2.shape import largest_over
 
-W = np.geomspace(0.01, 100.0, 4001)
+LOG_W = np.log(np.geomspace(0.01, 100.0, 401))
+STEP = LOG_W[1] - LOG_W[0]
 
 
 @claims.claim(
@@ -69,14 +75,26 @@ def envelope() -> Finding:
     "The two controllers of the example satisfy $M_s = 1.4$.",
     where="IIs, section 1",
     printed="1.4",
-    consequence="safety",
 )
 def example_ms() -> Finding:
     found = {key: float(Loop(G4, c).sensitivity_peak()) for key, c in CONTROLLERS.items()}
+    half = 0.005  # of the last printed digit of all gains
+    least = {
+        key: min(
+            float(Loop(G4, PID(c.k + half * i, c.ki + half * j, c.kd + half * m)).sensitivity_peak())
+            for i, j, m in product((-1, 1), repeat=3)
+        )
+        for key, c in CONTROLLERS.items()
+    }
+    inside = all(value <= 1.4 for value in least.values())
+    rounded = all(meets("1.4", value) for value in found.values())
     return Finding(
-        "fails" if min(found.values()) > 1.405 else "holds-partly",
+        "holds" if inside else "holds-partly" if rounded else "fails",
         max(found.values()),
-        f"$M_s$ is {listed(found, 4)}: both points lie outside the region they are read from.",
+        f"To the printed digits. $M_s$ is {listed(found, 4)}, and at the corners of the box of gains that round to "
+        "the printed ones at least "
+        f"{listed(least, 4)}: both points lie a little outside the region they are read from, which the loci of the "
+        "vertices only approximate.",
     )
 
 
@@ -98,9 +116,9 @@ def faster_less_damped() -> Finding:
     one, three = (pole_numbers(c) for c in CONTROLLERS.values())
     damped = [three[key] < one[key] for key in ("zeta1", "zeta2")]
     faster = [abs(three[key]) > abs(one[key]) for key in ("p", "omega1", "omega2")]
-    verdict, kept, total = share([*damped, *faster])
+    _, kept, total = share([*damped, *faster])
     return Finding(
-        verdict,
+        "holds" if all(damped) and sum(faster) > len(faster) / 2 else "holds-partly",
         three["omega2"],
         f"{kept} of {total} comparisons agree: both pairs lose damping ({number(one['zeta1'], 3)} to "
         f"{number(three['zeta1'], 3)}, {number(one['zeta2'], 3)} to {number(three['zeta2'], 3)}), but the slow pair, "
@@ -114,17 +132,24 @@ def faster_less_damped() -> Finding:
     where="IIs, section 1, Fig. 5",
 )
 def gain_greater() -> Finding:
-    one, three = (np.abs(Loop(G4, c)(1j * W)) for c in CONTROLLERS.values())
-    ratio = three / one
-    lowest = int(np.argmin(ratio))
-    below = W[ratio < 1.0]
+    one, three = (Loop(G4, c) for c in CONTROLLERS.values())
+
+    def ratio(log_w: float) -> float:
+        s = 1j * np.exp(log_w)
+        return float(abs(three(s)) / abs(one(s)))
+
+    at, least = smallest(ratio, LOG_W)
+    below = [x for x in LOG_W if ratio(x) < 1.0]
+    ends = [
+        float(np.exp(brentq(lambda x: ratio(x) - 1.0, *bracket)))
+        for bracket in ((min(below) - STEP, at), (at, max(below) + STEP))
+    ]
     return Finding(
-        "holds" if ratio.min() >= 1.0 else "holds-partly",
-        float(ratio.min()),
-        f"Except between {number(below.min(), 3)} and {number(below.max(), 3)} rad/s, where it falls to "
-        f"{number(float(ratio.min()), 3)} of it (at {number(float(W[lowest]), 3)} rad/s)."
-        if below.size
-        else "At all frequencies.",
+        "holds" if least >= 1.0 else "holds-partly",
+        least,
+        f"Except between {number(ends[0], 3)} and {number(ends[1], 3)} rad/s, where it falls to {number(least, 3)} of "
+        "it "
+        f"(at {number(float(np.exp(at)), 3)} rad/s).",
     )
 
 
@@ -144,15 +169,20 @@ def lag_and_lead() -> Finding:
 @claims.claim("cusp", "The Nyquist curve for $k_d = 3$ has a cusp.", where="IIs, section 1, Fig. 6")
 def cusp() -> Finding:
     c = CONTROLLERS["kd=3"]
-    w = np.geomspace(0.1, 5.0, 20001)
-    value = Loop(G4, c)(1j * w)
-    speed = np.abs(np.gradient(value, np.log(w)))
+    loop = Loop(G4, c)
+
+    def speed(log_w: float) -> float:
+        s = 1j * np.exp(log_w)
+        turn = s * G4.log_derivative(s) + s * (c.kd - c.ki / s**2) / (c.k + c.ki / s + c.kd * s)
+        return float(abs(complex(loop(s) * turn)))
+
+    _, slowest = smallest(speed, np.log(np.geomspace(0.1, 5.0, 401)))
     curvature = largest_over("curvature", G4, c, (0.1, 5.0))
     return Finding(
         "holds-partly",
         curvature,
         "Not in the strict sense: the curve never stands still ($|dL/d\\ln\\omega| \\geq "
-        f"{number(float(speed.min()), 3)}$). It turns back in a narrow loop, clockwise throughout (largest curvature "
+        f"{number(slowest, 3)}$). It turns back in a narrow loop, clockwise throughout (largest curvature "
         f"{number(curvature, 2)}): of the two constraints added to prevent it, only the one on the phase does.",
     )
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.exhibits.extrema import largest
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import printed
@@ -31,8 +32,13 @@ peaks = paper.table(
 def two_peaks() -> pd.DataFrame:
     """Return the local maxima of the sensitivity."""
     loop = Loop(PLANTS[split(TWO_PEAKS)[0]], printed(SUPERSEDED, TWO_PEAKS))
-    w = np.geomspace(0.1, 5.0, 40001)
-    size = np.abs(1.0 / (1.0 + loop(1j * w)))
+    log_w = np.log(np.geomspace(0.1, 5.0, 1001))
+
+    def sensitivity(x: float) -> float:
+        return float(abs(1.0 / (1.0 + loop(1j * np.exp(x)))))
+
+    size = np.array([sensitivity(float(x)) for x in log_w])
     at = np.nonzero((size[1:-1] > size[:-2]) & (size[1:-1] > size[2:]))[0] + 1
-    at = np.sort(at[np.argsort(-size[at])][:2])
-    return peaks.frame({row: (float(w[i]), float(size[i])) for row, i in zip(peaks.rows, at, strict=True)})
+    found = [largest(sensitivity, log_w[i - 1 : i + 2]) for i in at]
+    highest = sorted(sorted(found, key=lambda one: -one[1])[:2])
+    return peaks.frame({row: (float(np.exp(x)), top) for row, (x, top) in zip(peaks.rows, highest, strict=True)})

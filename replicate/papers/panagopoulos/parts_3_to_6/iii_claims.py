@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number
+from replicate.exhibits.extrema import largest, smallest
 from replicate.loops import PI, PID, Loop, Plant, Weight, chordal_distance, gamma_norm
 from replicate.loops.gamma_norm import singular_value
 from replicate.papers.panagopoulos import paper
@@ -48,8 +49,7 @@ def eq_5() -> Finding:
     where="section 2, below (1); section 4",
 )
 def sign_of_t() -> Finding:
-    loop = PROCESS(1j * FREQUENCIES) * PRINTED.feedback(1j * FREQUENCIES)
-    off = float(np.max(np.abs(1.0 / (1.0 + loop) - loop / (1.0 + loop) - 1.0)))
+    off = 2.0 * Loop(PROCESS, PRINTED).complementary_peak().value  # with the minus sign S + T - 1 = -2L/(1 + L)
     return Finding(
         "holds-partly",
         off,
@@ -159,8 +159,16 @@ def insensitive_to_ki() -> Finding:
 @claims.claim("ranges", "$b_{G,G_c}$ and $\\delta_\\nu$ lie between 0 and 1.", where="section 4, Classification")
 def ranges() -> Finding:
     weights = (None, favourable_weight())
-    least = min(float(np.min(singular_value(PROCESS, PRINTED, FREQUENCIES, weight))) for weight in weights)
-    gap = max(float(np.max(chordal_distance(PROCESS, TRUE_PROCESS, FREQUENCIES, weight))) for weight in weights)
+    log_w = np.log(FREQUENCIES[::10])
+
+    def size(x: float, weight: Weight | None) -> float:
+        return float(singular_value(PROCESS, PRINTED, np.array([np.exp(x)]), weight)[0])
+
+    def distance(x: float, weight: Weight | None) -> float:
+        return float(chordal_distance(PROCESS, TRUE_PROCESS, np.array([np.exp(x)]), weight)[0])
+
+    least = min(smallest(lambda x, w=weight: size(x, w), log_w)[1] for weight in weights)  # type: ignore[misc]
+    gap = max(largest(lambda x, w=weight: distance(x, w), log_w)[1] for weight in weights)  # type: ignore[misc]
     return Finding(
         "holds" if least > 1.0 - ROUNDING and gap < 1.0 else "fails",
         round(least, 12),

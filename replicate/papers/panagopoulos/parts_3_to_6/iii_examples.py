@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
+from replicate.exhibits.extrema import smallest
 from replicate.loops import (
     PI,
     Loop,
@@ -121,15 +121,9 @@ def robustness(weighting: str) -> Robustness:
         margin = 1.0 / singular_value(PROCESS, PRINTED, w, weight)
         return margin - chordal_distance(PROCESS, TRUE_PROCESS, w, weight)
 
-    grid = np.log(np.geomspace(1e-4, 1e4, 4001))
-    lowest = int(np.argmin(differences(np.exp(grid))))
-    polished = minimize_scalar(
-        lambda x: float(differences(np.array([np.exp(x)]))[0]),
-        bounds=(grid[max(lowest - 1, 0)], grid[min(lowest + 1, grid.size - 1)]),
-        method="bounded",
-        options={"xatol": 1e-10},
-    )
-    return Robustness(stability_margin(PROCESS, PRINTED, weight), gap.value, gap.frequency, float(polished.fun))
+    grid = np.log(np.geomspace(1e-4, 1e4, 401))
+    _, least = smallest(lambda x: float(differences(np.array([np.exp(x)]))[0]), grid)
+    return Robustness(stability_margin(PROCESS, PRINTED, weight), gap.value, gap.frequency, least)
 
 
 def weights() -> dict[str, Weight | None]:

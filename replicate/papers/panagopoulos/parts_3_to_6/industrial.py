@@ -7,8 +7,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar, root
+from scipy.optimize import brentq, root
 
+from replicate.exhibits.extrema import largest
 from replicate.loops import PI, PID, Loop, PIDDesign, Plant, design_pi, design_pid, search_range
 from replicate.loops.circles import Circle
 from replicate.loops.nyquist_constraints import LoopJet
@@ -77,15 +78,7 @@ def shape(gains: tuple[float, float, float], kind: Literal["curvature", "phase"]
         jet = LoopJet.of(STARCH, np.array([np.exp(log_w)]))
         return -float(jet.values(kind, Circle.of(ms=STARCH_MS), np.array(gains))[0][0])
 
-    grid = np.linspace(np.log(low), np.log(high), 200)
-    values = np.array([value(x) for x in grid])
-    top = int(np.argmax(values))
-    if top in (0, grid.size - 1):
-        return float(values[top])
-    found = minimize_scalar(
-        lambda x: -value(x), bounds=(grid[top - 1], grid[top + 1]), method="bounded", options={"xatol": 1e-9}
-    )
-    return max(float(-found.fun), float(values[top]))
+    return largest(value, np.linspace(np.log(low), np.log(high), 200))[1]
 
 
 def on_both_limits(gain: float) -> dict[str, float]:
@@ -111,15 +104,15 @@ class SetpointFilter(NamedTuple):
 
     printed_formula: float
     corrected: float
-    default_grid: float
+    coarse_grid: float
     eq_16: float
     eq_16_mended: float
     never_above_one: float
 
 
-def default_grid_peak(gains: tuple[float, float, float] | None = None) -> setpoint.Resonance:
+def coarse_grid_peak(gains: tuple[float, float, float] | None = None) -> setpoint.Resonance:
     """Return the peak of |T| as paper II's tables found it: the largest of the 50 values on ``logspace(-2, 2)``."""
-    return setpoint.Resonance.on_default_grid(DRYING, _controller(gains))
+    return setpoint.Resonance.on_coarse_grid(DRYING, _controller(gains))
 
 
 def _controller(gains: tuple[float, float, float] | None) -> PID:
@@ -133,7 +126,7 @@ def setpoint_filters(gains: tuple[float, float, float] | None = None) -> Setpoin
     return SetpointFilter(
         printed_formula=setpoint.full_weight_filter_as_printed(controller, peak),
         corrected=setpoint.full_weight_filter_corrected(controller, peak),
-        default_grid=setpoint.full_weight_filter_corrected(controller, default_grid_peak(gains)),
+        coarse_grid=setpoint.full_weight_filter_corrected(controller, coarse_grid_peak(gains)),
         eq_16=setpoint.filter_as_printed(controller, peak),
         eq_16_mended=setpoint.filter_corrected(controller, peak),
         never_above_one=_never_above_one(controller.k, controller.ki, controller.kd),
@@ -155,8 +148,7 @@ def _never_above_one(k: float, ki: float, kd: float) -> float:
 
     # the plant's velocity gain is P0(0) = Kp, so 1/G_sp = 1 + s^2 (kd + 1/Kp)/ki + O(s^3): the limit at zero frequency
     at_rest = float(np.sqrt(2.0 * (kd + DRYING.den[-2] / DRYING.num[-1]) / ki))
-    grid = np.linspace(np.log(1e-3), np.log(3.0), 800)
-    return max(at_rest, *(needed(x) for x in grid))
+    return max(at_rest, largest(needed, np.linspace(np.log(1e-3), np.log(3.0), 800))[1])
 
 
 def beside_the_peak(w: float) -> tuple[float, float]:

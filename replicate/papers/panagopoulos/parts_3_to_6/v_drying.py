@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
-from replicate.papers.panagopoulos.part_2.setpoint import DEFAULT_GRID
+from replicate.papers.panagopoulos.part_2.setpoint import COARSE_GRID
 from replicate.papers.panagopoulos.parts_3_to_6.industrial import (
     DRYING,
     DRYING_PI,
     FILTER,
     beside_the_peak,
-    default_grid_peak,
+    coarse_grid_peak,
     drying_design,
     drying_pid,
     frequency_for_filter,
@@ -101,7 +101,7 @@ def _frame(setpoint_filter: float) -> pd.DataFrame:
     "as-written",
     "The method, and its filter formula as printed",
     note="The plant integrates, so the supplement to paper II omits the curvature constraint. Its formula for "
-    "the filter with $b = 1$ has a wrong sign, which makes the filter zero here.",
+    "the filter with $b = 1$ has a wrong sign in our copy, which makes the filter zero here.",
 )
 def as_written() -> pd.DataFrame:
     """Design, and evaluate the filter formula as printed."""
@@ -110,7 +110,7 @@ def as_written() -> pd.DataFrame:
 
 @drying.reading(
     "filter-corrected",
-    "The filter formula with its misprints corrected",
+    "The filter formula put right",
     note="$T_{sp} = \\sqrt{(k_i^2 + k^2\\omega_{mp}^2)M_p^2 - A}\\,/(\\omega_{mp}\\sqrt A)$ follows from the "
     "condition that the formula is to satisfy, $|F_{sp}G_{sp}| = 1$ at $\\omega_{mp}$.",
 )
@@ -120,27 +120,27 @@ def corrected() -> pd.DataFrame:
 
 
 @drying.reading(
-    "filter-default-grid",
-    "The same, with the peak of $|T|$ from Matlab's default grid",
+    "filter-coarse-grid",
+    "The same, with the peak of $|T|$ read off 50 frequencies",
     note="$M_p$ is the largest of the 50 values on `logspace(-2,2)`, the reading that also explains filters of paper "
     "II. The grid has only a dozen points in each decade, and the peak is flat: the largest value is nearly $M_p$, but "
     "its frequency is well beside $\\omega_{mp}$.",
 )
-def default_grid() -> pd.DataFrame:
+def coarse_grid() -> pd.DataFrame:
     """Design, and evaluate the mended formula at the peak on the coarse grid."""
-    return _frame(setpoint_filters().default_grid)
+    return _frame(setpoint_filters().coarse_grid)
 
 
 filters = paper.table(
     "V-drying-filter",
     "Drying section: what the filter time constant could be",
     printed=False,
-    rows=("printed_formula", "corrected", "default_grid", "eq_16", "eq_16_mended", "never_above_one"),
+    rows=("printed_formula", "corrected", "coarse_grid", "eq_16", "eq_16_mended", "never_above_one"),
     columns=("printed_settings", "optimum"),
     labels={
         "printed_formula": "formula for $b = 1$, as printed",
         "corrected": "the same, mended",
-        "default_grid": "corrected, peak from Matlab's default grid",
+        "coarse_grid": "corrected, peak read off 50 frequencies",
         "eq_16": "(16), for $b = 0$, as printed",
         "eq_16_mended": "(16) with $\\omega_{mp}$, not its square",
         "never_above_one": "$|G_{sp}| \\le 1$ at all frequencies",
@@ -191,8 +191,8 @@ near_peak = paper.table(
 @near_peak.reading("as-written", "Corrected formula at each frequency")
 def peak_frequency() -> pd.DataFrame:
     """Evaluate the mended formula at the true peak, at the grid's points, and solve it for the frequency."""
-    found = default_grid_peak()
-    step = DEFAULT_GRID[1] / DEFAULT_GRID[0]
+    found = coarse_grid_peak()
+    step = COARSE_GRID[1] / COARSE_GRID[0]
     frequencies = {
         "below": found.frequency / step,
         "grid_peak": found.frequency,

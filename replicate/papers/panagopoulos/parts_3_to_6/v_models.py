@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 models = paper.table(
     "V-models",
     "What the paper gives: the fitted models and the earlier settings",
-    rows=("K_p", "dead_time", "T_1", "T_2", "K_PI", "Ti_PI", "level", "outer_T"),
+    rows=("K_p", "dead_time", "T_1", "T_2", "K_PI", "Ti_PI", "level", "temperature", "N", "scan", "band", "outer_T"),
     columns=("starch", "drying"),
     labels={
         "K_p": "gain",
@@ -22,6 +22,10 @@ models = paper.table(
         "K_PI": "$K$ of the earlier PI",
         "Ti_PI": "$T_i$ of the earlier PI (s)",
         "level": "operating point (% of range)",
+        "temperature": "operating point (°C)",
+        "N": "filter factor of the derivative",
+        "scan": "time between two set points $r_2$ (s)",
+        "band": "band of the settling time (%)",
         "outer_T": "time constant from $r_2$ to $y_1$ (s)",
         "starch": "starch boiler",
         "drying": "drying section",

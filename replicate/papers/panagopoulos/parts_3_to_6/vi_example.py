@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.exhibits.extrema import largest
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
     EXAMPLE,
@@ -17,6 +18,7 @@ from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
     Shaft,
     k_b_from,
 )
+from replicate.papers.panagopoulos.parts_3_to_6.damping_batch import impulse_iae
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,6 +30,7 @@ example = paper.table(
     rows=(
         "omega_b", "P_max", "P_min", "omega_a", "k_b", "K_b", "K_b_eq_6", "K_b_printed_kb", "omega_min", "P_peak",
         "omega_peak", "P_0", "ratio", "gain", "omega_p_squared", "kb_limit",
+        "zeta_p", "omega_p", "omega_f", "zeta_a", "zeta_b", "K_PI", "Ti_PI",
     ),
     columns=("value",),
     labels={
@@ -44,7 +47,14 @@ example = paper.table(
         "omega_peak": "its frequency",
         "P_0": "$P(0)$",
         "ratio": "$P_{max}/P_{min}$",
-        "gain": "numerator of $P$",
+        "gain": "numerator $\\kappa$ of $P$",
+        "zeta_p": "$\\zeta_p$",
+        "omega_p": "$\\omega_p$",
+        "omega_f": "$\\omega_f$",
+        "zeta_a": "$\\zeta_a$",
+        "zeta_b": "$\\zeta_b$",
+        "K_PI": "$K$ of the PI controller",
+        "Ti_PI": "$T_i$ of the PI controller",
         "omega_p_squared": "$\\omega_p^2$",
         "kb_limit": "inner loop stable up to $k_b$",
     },
@@ -53,8 +63,11 @@ example = paper.table(
 )  # fmt: skip
 
 
-def _frame(shaft: Shaft, ratio: float) -> pd.DataFrame:
+INPUTS = ("zeta_p", "omega_p", "omega_f", "zeta_a", "zeta_b", "K_PI", "Ti_PI")
 
+
+def _frame(shaft: Shaft, ratio: float, *, given: bool = False) -> pd.DataFrame:
+    """Return the table for a plant; what the example gives is an input and is not compared."""
     smallest, peak = shaft.extrema()
     k_b = k_b_from(ratio)
     values = {
@@ -71,11 +84,11 @@ def _frame(shaft: Shaft, ratio: float) -> pd.DataFrame:
         "omega_peak": peak.frequency,
         "P_0": shaft.plant.gain,
         "ratio": ratio,
-        "gain": shaft.gain,
+        "gain": np.nan if given else shaft.gain,
         "omega_p_squared": shaft.omega_p**2,
         "kb_limit": shaft.largest_stable_gain(),
     }
-    return example.frame(values)
+    return example.frame({**dict.fromkeys(INPUTS, np.nan), **values})
 
 
 @example.reading(
@@ -85,7 +98,7 @@ def _frame(shaft: Shaft, ratio: float) -> pd.DataFrame:
 )
 def exact() -> pd.DataFrame:
     """Evaluate the example as stated."""
-    return _frame(EXAMPLE, EXAMPLE.ratio)
+    return _frame(EXAMPLE, EXAMPLE.ratio, given=True)
 
 
 @example.reading(
@@ -134,7 +147,7 @@ def coefficient_interval() -> pd.DataFrame:
     return pd.DataFrame({"value": values}, index=list(interval.rows))
 
 
-CASES = {"kb_1": 1.0, "kb_eq_10": k_b_from(EXAMPLE.ratio), "kb_printed": K_B}
+CASES = {"without": 0.0, "kb_1": 1.0, "kb_eq_10": k_b_from(EXAMPLE.ratio), "kb_printed": K_B}
 
 reduction = paper.table(
     "VI-eq-8",
@@ -142,8 +155,9 @@ reduction = paper.table(
     kind="formula",
     printed=False,
     rows=tuple(CASES),
-    columns=("k_b", "loop_gain", "gain", "reduction", "bound", "largest"),
+    columns=("k_b", "loop_gain", "gain", "reduction", "bound", "largest", "iae"),
     labels={
+        "without": "without active control",
         "kb_1": "$K_b$ by (6)",
         "kb_eq_10": "$K_b$ by (9), (10)",
         "kb_printed": "$k_b$ as printed",
@@ -153,10 +167,11 @@ reduction = paper.table(
         "reduction": "relative to $P_{max}$",
         "bound": "(8)",
         "largest": "largest above $\\omega_{min}$",
+        "iae": "IAE",
     },
     caption="By construction $PF = k_b$ at $\\omega_p$, real and positive, so the gain falls to $1/(1+k_b)$ "
-    "of $P_{max}$. The last column is the largest $|P/(1+PF)|$ at frequencies above that of $P_{min}$, "
-    "relative to $P_{max}$.",
+    "of $P_{max}$. Then the largest $|P/(1+PF)|$ at frequencies above that of $P_{min}$, relative to "
+    "$P_{max}$, and the integrated absolute error of the response to a load impulse.",
 )
 
 
@@ -165,12 +180,20 @@ def gain_reduction() -> pd.DataFrame:
     """Evaluate (7) for the three gains."""
     rows = {}
     s = 1j * EXAMPLE.omega_p
-    w = np.geomspace(EXAMPLE.extrema()[0].frequency, 100.0 * EXAMPLE.omega_p, 20_001)
+    grid = np.log(np.geomspace(EXAMPLE.extrema()[0].frequency, 100.0 * EXAMPLE.omega_p, 2001))
     for name, k_b in CASES.items():
         num, den = EXAMPLE.filter(k_b)
         loop_gain = complex(EXAMPLE.plant(s)) * np.polyval(num, s) / np.polyval(den, s)
         damped = EXAMPLE.damped(k_b)
         gain = float(abs(damped(s)))
-        largest = float(np.max(np.abs(damped(1j * w))))
-        rows[name] = [k_b, float(loop_gain.real), gain, gain / EXAMPLE.p_max, 0.5, largest / EXAMPLE.p_max]
+        _, highest = largest(lambda x, plant=damped: float(abs(plant(1j * np.exp(x)))), grid)  # type: ignore[misc]
+        rows[name] = [
+            k_b,
+            float(loop_gain.real),
+            gain,
+            gain / EXAMPLE.p_max,
+            0.5 if k_b else np.nan,
+            highest / EXAMPLE.p_max,
+            impulse_iae(EXAMPLE, k_b),
+        ]
     return reduction.frame(rows)

@@ -1,4 +1,4 @@
-"""The largest value of a function of one variable: bracketed on a grid, then found by optimisation."""
+"""The extreme values of a function of one variable: bracketed on a grid, then found by optimisation."""
 
 from __future__ import annotations
 
@@ -35,3 +35,21 @@ def largest(f: Callable[[float], float], grid: Array, values: Array | None = Non
     inside = (float(grid[max(best - 1, 0)]), float(grid[min(best + 1, grid.size - 1)]))
     found = minimize_scalar(lambda x: -f(float(x)), bounds=inside, method="bounded", options={"xatol": 1e-10})
     return (float(found.x), -float(found.fun)) if -found.fun > value else (at, value)
+
+
+def smallest(f: Callable[[float], float], grid: Array) -> tuple[float, float]:
+    """Return where a function is smallest between the ends of a grid, and how small.
+
+    Parameters
+    ----------
+    f, grid
+        As for `largest`; no two minima between neighbouring points.
+
+    Examples
+    --------
+    >>> at, value = smallest(lambda x: (x - 0.3) ** 2, np.linspace(0.0, 1.0, 5))
+    >>> round(at, 6), round(value, 6)
+    (0.3, 0.0)
+    """
+    at, value = largest(lambda x: -f(x), grid)
+    return at, -value
