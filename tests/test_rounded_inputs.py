@@ -46,6 +46,19 @@ def test_an_extremum_inside_is_found(place: float, size: float) -> None:
     assert low[0] == pytest.approx(np.cos(size * (1 + abs(place))) - 0.1, abs=1e-12)
 
 
+def test_a_model_without_vanishing_derivative_is_settled_by_its_corners() -> None:
+    def function(x: np.ndarray) -> np.ndarray:
+        return np.array([x[0] + 0.1 * x[0] * x[1], x[0] ** 2 + x[1], x[0] + x[1] - 0.4 * x[1] ** 2])
+
+    search = searched(function, [0.0, 0.0], [1.0, 1.0], 1e-9)
+    (part,) = search.parts
+    # of the first two functions the derivatives 0.1 x and 2 x vanish inside
+    assert part.monotonic.tolist() == [False, False, True]
+    low, high = search.range()
+    assert (low[2], high[2]) == pytest.approx((-2.4, 1.6))
+    assert (low[1], high[1]) == pytest.approx((-1.0, 2.0))  # the smallest at x = 0, between the corners
+
+
 def test_a_jump_is_inside_the_range() -> None:
     # the location of the larger of two peaks jumps where they are equal
     low, high = searched(lambda x: np.array([1.0 if x[0] > 0.3 else 5.0]), [0.0], [1.0]).range()

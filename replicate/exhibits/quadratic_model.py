@@ -5,7 +5,12 @@ of the box, in the middle of its sides and at its corners; a quadratic polynomia
 the quantity at these points and, to see what they cannot, at others halfway to the corners. Where the two differ by
 more than a given tolerance, the box is halved along its most curved side, and again, until every part passes or the
 parts are too many; a part that does not pass (where the largest of two peaks changes) counts with its own values
-alone. The extrema of the models inside the box are then evaluated once more; those at the corners have been.
+alone. Where the derivatives of a model, which are linear, keep their sign over its part, the model's extrema are at
+corners, and these have been evaluated; where one may vanish, the extrema inside are searched and evaluated once more.
+
+So both ends of a range are values that the quantity takes. That it takes none beyond them is found by search, not
+proven: between the points at which it was evaluated it could leave its model unseen. (Interval arithmetic through a
+whole loop response would prove it, at a thousand times the cost.)
 """
 
 from __future__ import annotations
@@ -48,6 +53,19 @@ class Part:
     def __call__(self, scaled: np.ndarray) -> np.ndarray:
         """Return the models at points of [-1, 1]^d, shape (n, d), as shape (n, m)."""
         return np.asarray(terms(scaled) @ self.coefficients)
+
+    @property
+    def monotonic(self) -> np.ndarray:
+        """By function: whether no derivative of its model vanishes in the part, so that its extrema are at corners."""
+        d = len(self.half)
+        slope = np.abs(self.coefficients[1 : d + 1])
+        spread = np.zeros_like(slope)
+        for (i, j), curved in zip(
+            combinations_with_replacement(range(d), 2), np.abs(self.coefficients[d + 1 :]), strict=True
+        ):
+            spread[i] += curved
+            spread[j] += curved  # twice for i = j, as in the derivative of a square
+        return np.asarray((slope >= spread).all(axis=0))
 
     def point(self, scaled: np.ndarray) -> np.ndarray:
         """Return points of the box for points of [-1, 1]^d."""
@@ -116,7 +134,7 @@ class Search:
         """Return the smallest and largest value of each function; NaN where it has none somewhere."""
         for part, scaled in self.searched():
             guesses = part(scaled)
-            for place in np.nonzero(part.good)[0]:
+            for place in np.nonzero(part.good & ~part.monotonic)[0]:
                 for extreme in {int(np.argmin(guesses[:, place])), int(np.argmax(guesses[:, place]))}:
                     if np.abs(scaled[extreme]).min(initial=1.0) < 1.0:  # the corners are known
                         self.at(part.point(scaled[extreme]))

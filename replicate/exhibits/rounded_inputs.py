@@ -58,7 +58,9 @@ def compute_reading(table: Table, reading: Reading, printed: Mapping[Key, Printe
     DataFrame
         The exhibit for the printed inputs themselves, in its own layout; blank where the reading returns nothing.
     Ranges
-        The range of every cell, and the joint point of every case.
+        The range of every cell, and the joint point of every case. Both ends are values that the cell takes; that it
+        takes none beyond them is found by a search at corners and inside (`replicate.exhibits.quadratic_model`), not
+        proven.
 
     Raises
     ------

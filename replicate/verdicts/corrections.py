@@ -14,7 +14,7 @@ from replicate.exhibits.matching import computed_text, format_like, match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.verdicts.ledger import LedgerEntry
 
-_FEWEST_NEIGHBOURS = 2  # one cell alone says nothing of what is typical of its column
+_FEWEST_NEIGHBOURS = 2  # one cell alone says nothing of what is typical of its quantity
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def correction(
     entry
         The ledger entry that calls its print wrong.
     printed
-        The printed values of the table.
+        The printed values of the same quantity, this one among them.
     numbers
         What the entry's reading gives for them.
     """
@@ -62,14 +62,14 @@ def supported_unit(
 ) -> Decimal | None:
     """Return the weight of the last digit that the reading supports in a cell; ``None`` if it supports all.
 
-    That is so if the reading meets at least half of the column's other cells; otherwise half a unit covers the median
+    That is so if the reading meets at least half of the quantity's other cells; otherwise half a unit covers the median
     of the relative distances between reading and print in those cells.
     """
     value, number = printed[key], Decimal(computed_text(numbers[key]))
     distances = sorted(
         _distance(other, numbers[place])
         for place, other in printed.items()
-        if place[1] == key[1] and place != key and place in numbers and not entry.covers(*place)
+        if place != key and place in numbers and not entry.covers(*place)
     )
     typical = distances[(len(distances) - 1) // 2] if len(distances) >= _FEWEST_NEIGHBOURS else Decimal(0)
     if not typical or not number:

@@ -1,8 +1,8 @@
 r"""How strong a match is: the chance that a reading that explains nothing would meet as many printed values.
 
 A value that comes about by accident is taken to lie, with equal probability, as far from the print on either side as
-the farthest of the other readings of the exhibit does, but at most as far as the print is from zero. It meets the
-print with the probability
+the farthest of the readings of the exhibit that give another number, but at most as far as the print is from zero. It
+meets the print with the probability
 
 .. math::
 
@@ -89,7 +89,7 @@ class Strength:
     def odds(self) -> str:
         """The chance in words."""
         if self.chance >= LEVEL:
-            return f"by accident in {100 * self.chance:.2g} % of cases"
+            return f"by accident in {float(f'{100 * self.chance:.2g}'):g} % of cases"
         if self.chance < 1e-6:
             return "by accident once in more than a million cases"
         return f"by accident once in {float(f'{1 / self.chance:.2g}'):.0f} cases"
@@ -137,7 +137,12 @@ def _judged(one: Computed, as_written: Computed | None) -> bool:
         return False
     if one.reading == AS_WRITTEN or as_written is None or as_written.number is None:
         return True
-    return abs(one.number - as_written.number) > _SAME * abs(as_written.number)
+    return _differ(as_written.number, one)
+
+
+def _differ(number: float, one: Computed) -> bool:
+    """Say whether a reading gives another number than one."""
+    return one.number is None or abs(one.number - number) > _SAME * abs(number)
 
 
 def _odds(key: Key, reading: str, computed: Mapping[str, Mapping[Key, Computed]]) -> float:
@@ -148,7 +153,8 @@ def _odds(key: Key, reading: str, computed: Mapping[str, Mapping[Key, Computed]]
         return 0.5  # a bound or a word: one of two
     printed, unit = float(value.value), float(value.unit)
     others = [other[key].number for id, other in computed.items() if id != reading and key in other]
-    distances = [abs(number - printed) for number in others if number is not None and math.isfinite(number)]
+    rivals = [number for number in others if number is not None and math.isfinite(number) and _differ(number, one)]
+    distances = [abs(number - printed) for number in rivals]
     limit = abs(printed) or max([*distances, unit])
     width = min(max(distances, default=limit), limit)
     window = unit if one.lower is None or one.upper is None else unit + one.upper - one.lower

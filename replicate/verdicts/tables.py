@@ -11,7 +11,7 @@ from replicate.exhibits.matching import computed_text
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.consequences import with_consequences
-from replicate.verdicts.corrections import correction
+from replicate.verdicts.corrections import Correction, correction
 from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
 from replicate.verdicts.matches import other_convention, reading_matches, share_points
 from replicate.verdicts.rows import ERRORS, Computed, Judgement, ValueVerdict, VerdictRow
@@ -109,7 +109,7 @@ class TableJudge:
         if as_written == "consistent":
             return self._verdict_row(key, "consistent", AS_WRITTEN)
         for id in others:
-            if self.computed[id][key].match.kind == "equal" and self._strong(id, key):
+            if self.computed[id][key].match.kind == "equal" and self._strong(id, key) and not self._outdone(id, key):
                 return self._under(id, key, "reconstructed")
         for id in others:
             kind = self.computed[id][key].match.kind
@@ -122,6 +122,18 @@ class TableJudge:
 
     def _strong(self, reading: str, key: Key) -> bool:
         return self.strengths[reading].holds_for(self.table.quantity(*key))
+
+    def _outdone(self, reading: str, key: Key) -> bool:
+        """Say whether a reading that meets more values of the same quantity computes this one, and does not meet it."""
+        quantity = self.table.quantity(*key)
+        _, met = self.strengths[reading].lines[quantity]
+        return any(
+            self.computed[id][key].match.kind in {"near", "differs"}
+            and self._strong(id, key)
+            and self.strengths[id].lines.get(quantity, (0, 0))[1] > met
+            for id in self.table.readings
+            if id not in {AS_WRITTEN, reading}
+        )
 
     def _assign(self, open_keys: set[Key]) -> Iterator[tuple[Key, LedgerEntry]]:
         """Give each value that does not hold its ledger entry, and report entries that do not apply."""
@@ -156,16 +168,21 @@ class TableJudge:
         """Check that the reading of a wrong print gives a right value, and the one that the entry states."""
         if entry.cause not in CORRECTING_CAUSES:
             return True
-        problem = correction(key, entry, self.printed, self.numbers[entry.reading]).problem
+        problem = self._correction(key, entry).problem
         if problem:
             place = f"{self.ledger.place(entry)}: {self.table.id} {_cell(key)}"
             self.judgement.problems.append(f"{place}: {problem}")
         return not problem
 
+    def _correction(self, key: Key, entry: LedgerEntry) -> Correction:
+        quantity = self.table.quantity(*key)
+        others = {place: value for place, value in self.printed.items() if self.table.quantity(*place) == quantity}
+        return correction(key, entry, others, self.numbers[entry.reading])
+
     def _explained(self, key: Key, entry: LedgerEntry) -> VerdictRow:
         corrected = ""
         if entry.cause in CORRECTING_CAUSES:
-            corrected = correction(key, entry, self.printed, self.numbers[entry.reading]).text
+            corrected = self._correction(key, entry).text
         verdict = _CAUSE_VERDICTS[entry.cause]
         return replace(
             self._verdict_row(key, verdict, entry.reading),

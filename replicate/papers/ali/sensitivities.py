@@ -6,7 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import TYPE_CHECKING
 
-from replicate.exhibits import AS_WRITTEN, Table
+from replicate.exhibits import AS_WRITTEN, Table, rank
 from replicate.loops import PID, Loop
 from replicate.papers.ali import paper
 from replicate.papers.ali.structures import Settings, Structure, d_filter, plant, series, trial
@@ -142,6 +142,7 @@ def add_readings(table: Table) -> None:
 
         tried = {} if id == AS_WRITTEN else {"structure, dead time and way to find the peak": TRIED}
         table.reading(id, title, note, tried=tried)(computed)
+    rank(table, "Ms", table.rows, "$M_s$ grows with $\\theta/T$")
     table.trials = lambda: {row: trial(float(Fraction(row)), series(tabulated(table.id, row))) for row in table.rows}
 
 

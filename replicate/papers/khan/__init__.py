@@ -33,6 +33,7 @@ paper = Paper(
         "appendix_coefficients",
         "claims",
         "claims_pi",
+        "claims_robustness",
     ),
     numbered=(
         "fig-1",

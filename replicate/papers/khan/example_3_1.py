@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,9 +18,11 @@ if TYPE_CHECKING:
     import pandas as pd
 
 ROWS_31 = ("L_IB", "L_PB", "Bryant_tr", "Bryant_ts", "L_IH", "L_PH", "Haalman_overshoot", "Haalman_tr", "Haalman_ts",
-           "overshoot_K0.28", "L_P")  # fmt: skip
+           "overshoot_K0.28", "L_P", "K")  # fmt: skip
 
 H = 1.82  # dead time
+TAU = 0.6
+GAIN = 0.28  # K of the cancelled loop, as printed
 
 example_3_1 = paper.table(
     "example-3-1",
@@ -31,19 +35,20 @@ example_3_1 = paper.table(
         "L_IB": "$L_{IB}$", "L_PB": "$L_{PB}$", "L_IH": "$L_{IH}$", "L_PH": "$L_{PH}$", "L_P": "$L_P = 0.28\\,\\tau$",
         "Bryant_tr": "Bryant $t_r$", "Bryant_ts": "Bryant $t_s$", "Haalman_overshoot": "Haalman overshoot (%)",
         "Haalman_tr": "Haalman $t_r$", "Haalman_ts": "Haalman $t_s$", "overshoot_K0.28": "overshoot for $K = 0.28$ (%)",
+        "K": "$K$",
     },
 )  # fmt: skip
 
 
 def _example_3_1(overshoot: float) -> pd.DataFrame:
-    tau = 0.6
+    tau = TAU
     integral = 1.0 / tau
     gain_bryant, gain_haalman = 0.368 * tau / H, 2.0 / 3.0 * tau / H
     # L_P (1 + 1/(tau s)) e^{-hs}/(tau s + 1) = (L_P/tau) e^{-hs}/s: the zero cancels the pole (6)
     bryant, haalman = (Loop(plant(0.0, H), PI(g / tau)).step() for g in (gain_bryant, gain_haalman))
     values = [
         integral, gain_bryant, bryant.rise_time(), bryant.settling_time(), integral, gain_haalman,
-        100.0 * haalman.overshoot(), haalman.rise_time(), haalman.settling_time(), overshoot, 0.28 * tau,
+        100.0 * haalman.overshoot(), haalman.rise_time(), haalman.settling_time(), overshoot, GAIN * tau, math.nan,
     ]  # fmt: skip
     return example_3_1.frame(dict(zip(ROWS_31, values, strict=True)))
 
@@ -51,10 +56,22 @@ def _example_3_1(overshoot: float) -> pd.DataFrame:
 @example_3_1.reading("as-written", "exact")
 def example_3_1_exact() -> pd.DataFrame:
     """Compute everything with the exact response."""
-    return _example_3_1(float(sweep(0.0, np.array([0.28 * H])).overshoot[0]))
+    return _example_3_1(float(sweep(0.0, np.array([GAIN * H])).overshoot[0]))
 
 
 @example_3_1.reading("formulas", "overshoot for $K = 0.28$ by case I of (2)")
 def example_3_1_formulas() -> pd.DataFrame:
     """Take the overshoot from the fit."""
-    return _example_3_1(overshoot_fit(0.0, 0.28 * H))
+    return _example_3_1(overshoot_fit(0.0, GAIN * H))
+
+
+@example_3_1.reading(
+    "printed-gain",
+    "$L_P = K\\tau$ for the printed $K$",
+    "What $K$ rounds to 0.28 is open, and so are $L_P$ and the exact overshoot.",
+    inputs=("K",),
+)
+def from_printed_gain(_: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Compute what follows from the printed K."""
+    overshoot = float(sweep(0.0, np.array([given["K"] * H])).overshoot[0])
+    return {"L_P": given["K"] * TAU, "overshoot_K0.28": overshoot}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,17 +68,14 @@ def example_2_1_fraction() -> pd.DataFrame:
     "printed-parts",
     "from the example's own intermediate values",
     "$t_r$ and the overshoot from the coefficients that the example prints, to see whether its last step is right.",
+    inputs=("A1", "B1", "A2", "B2", "C2", "D2"),
 )
-def example_2_1_from_print() -> pd.DataFrame:
+def example_2_1_from_print(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Take the last step of the example with its printed intermediate values."""
-    printed = {row: float(text) for (row, _), text in paper.printed_cells("example-2-1").items()}
-    parts = [printed[name] for name in ("A2", "B2", "C2", "D2")]
-    values = dict.fromkeys(ROWS_21, float("nan")) | {
-        "overshoot_estimate": printed["A1"] + printed["B1"] * H,
-        "overshoot_error": printed["overshoot_actual"] - printed["overshoot_estimate"],
-        "tr_estimate": H * (parts[0] * np.exp(-H / parts[1]) + parts[2] * np.exp(-H / parts[3])),
+    return {
+        "overshoot_estimate": given["A1"] + given["B1"] * H,
+        "tr_estimate": H * (given["A2"] * np.exp(-H / given["B2"]) + given["C2"] * np.exp(-H / given["D2"])),
     }
-    return example_2_1.frame(values)
 
 
 example_2_2 = paper.table(

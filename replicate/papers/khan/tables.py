@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING
 
-from replicate.exhibits import Table, rank
+from replicate.exhibits import Table, bound, rank
 from replicate.loops import PI
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, gains, loop, plant, specifications
@@ -54,6 +54,12 @@ for _table in (table_1, table_2):
     for _column in _table.columns:
         _symbol = _table.labels[_column]
         rank(_table, _column, _table.rows, f"the ranking of the rules by {_symbol}")
+        # and promises this of its own rule
+        if _column.endswith("Ms"):
+            bound(_table, _column, ("Proposed",), "the sensitivity of (7) is between 1.3 and 2", above=1.3, below=2.0)
+        if _column.endswith("Mp"):
+            _says = "the overshoot of (7) is below 1 %"
+            bound(_table, _column, ("Proposed",), _says, below=1.0, consequence="comparison")
 
 
 def as_written(rule: str, h: float) -> tuple[float, float, float, float]:

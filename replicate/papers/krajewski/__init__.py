@@ -30,6 +30,7 @@ paper = Paper(
         "claims",
         "claims_loci",
         "claims_specifications",
+        "claims_robustness",
         "claims_gain_margin",
         "claims_responses",
     ),

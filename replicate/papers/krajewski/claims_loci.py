@@ -240,7 +240,7 @@ def highest_crossover() -> Finding:
     return Finding(
         "holds" if worst < 1e-12 else "fails",
         highest,
-        f"The frequency at which the largest phase margin is the required one is the same, to {worst:.1g}. For τ = "
+        f"The frequency at which the largest phase margin is the required one is the same, to rounding. For τ = "
         "0.5: "
         f"{end_frequency(0.5, 45.0):.5g} for 45 degrees, {highest:.5g} for 60 and "
         f"{end_frequency(0.5, 75.0):.5g} for 75.",

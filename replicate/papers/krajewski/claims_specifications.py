@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
-from replicate.exhibits.evidence import listed
+from replicate.exhibits.evidence import listed, share
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.claims import claims, interior
@@ -84,6 +84,17 @@ def omega_2_and_75() -> Finding:
 def omega_2_and_45() -> Finding:
     highest = end_frequency(TAU, 45.0)
     return Finding("holds" if highest > 2.0 else "fails", highest, f"45 degrees allow up to {highest:.5g}.")
+
+
+@claims.claim(
+    "omega-1.5",
+    "For τ = 0.5 the crossover frequency 1.5 is compatible with 45, 60 and 75 degrees.",
+    where="Fig. 5, section 8",
+)
+def omega_1_5() -> Finding:
+    highest = {f"{margin:g} degrees": end_frequency(TAU, margin) for margin in (45.0, 60.0, 75.0)}
+    verdict, _, _ = share(limit > 1.5 for limit in highest.values())
+    return Finding(verdict, min(highest.values()), f"The highest crossover frequencies are {listed(highest, 5)}.")
 
 
 @claims.claim(

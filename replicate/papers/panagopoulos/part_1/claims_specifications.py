@@ -59,8 +59,8 @@ def ie() -> Finding:
         "holds" if off < ROUNDING else "fails",
         off,
         "Integrating the exact load responses of the 24 designs of Table 1 gives $1/k_i$ with a relative "
-        f"difference of less than {ROUNDING:g}. So the printed IE that are not $1/k_i$ were integrated "
-        "numerically.",
+        f"difference of less than {ROUNDING:g}. So the IE of Table 4, which are not $1/k_i$, were "
+        "integrated numerically.",
     )
 
 

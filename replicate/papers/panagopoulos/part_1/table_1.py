@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from replicate.exhibits import bound, rank
 from replicate.loops import PI, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import (
@@ -17,7 +18,7 @@ from replicate.papers.panagopoulos.part_1.designs import (
 )
 from replicate.papers.panagopoulos.part_1.frequency_grid import peak_on_grid, weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
-from replicate.papers.panagopoulos.part_1.plants import PLANTS
+from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
 from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
 
@@ -43,6 +44,14 @@ table_1 = paper.table(
 table_1.trials = lambda: trials(
     table_1.id, {row: plant for row, (plant, _) in ROWS.items()}, printed_weights(table_1.id)
 )
+
+for _ms in BOUNDS:
+    _designs = [f"{_plant} Ms={_ms}" for _plant in SIX]
+    bound(table_1, "Mp", _designs, "$M_p$ is at most $M_s$", below=_ms, consequence="comparison")
+for _plant in SIX:
+    _pair = [f"{_plant} Ms={_ms}" for _ms in (BOUNDS[0], BOUNDS[-1])]
+    rank(table_1, "ts", _pair, f"{label(_plant)} settles sooner with the larger $M_s$")
+    rank(table_1, "IE/IAE", _pair, f"the response of {label(_plant)} swings more with the larger $M_s$")
 
 
 def _rows(w0: dict[str, float], b: dict[str, float], ts: dict[str, float]) -> pd.DataFrame:

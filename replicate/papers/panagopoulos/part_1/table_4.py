@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Literal
 
+from replicate.exhibits import rank
 from replicate.loops import PIDesign, Plant, design_pi
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design
@@ -73,6 +74,10 @@ table_4 = paper.table(
     shared_labels=COLUMNS,
     labels={key: f"${key.replace('=', ' = ').replace('inf', INFINITY)}$" for key in FACTORS},
 )
+
+for _column in ("IE", "sigma"):
+    _finite = [row for row, m in FACTORS.items() if math.isfinite(m)]
+    rank(table_4, _column, _finite, "a smaller $m$ costs performance and filters more")
 
 
 def _table(filter_of_ratio: Literal["first", "new"]) -> pd.DataFrame:

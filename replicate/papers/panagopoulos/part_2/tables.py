@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import TYPE_CHECKING
 
+from replicate.exhibits import rank
 from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
@@ -148,6 +149,10 @@ def _add_readings(table: Table) -> None:
         "The largest $k_i$ with neither curvature nor phase constraint.",
     )(_designs(table, "ms-only"))
     table.trials = lambda: _trials(table)
+    for process in PLANTS:
+        pair = [row for row in ROWS if split(row)[0] == process]
+        rank(table, "ts", pair, f"{process} settles sooner with the larger $M_s$")
+        rank(table, "k", pair, f"the gain for {process} is larger with the larger $M_s$")
 
 
 table_1 = paper.table(
