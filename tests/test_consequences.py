@@ -81,6 +81,18 @@ def test_a_correction_has_no_more_digits_than_the_reading_shows_elsewhere(neighb
     assert correction(("A", "x"), replace(entry, corrected=corrected), values, numbers).text in {corrected, ""}
 
 
+def test_a_correction_is_measured_by_cells_of_its_own_quantity() -> None:
+    """Where the columns are the cases, the neighbours of a cell are the others of its row."""
+    paper = synthetic.paper()
+    table = paper.exhibits["table-1"]
+    assert isinstance(table, Table)
+    table.cases = "columns"
+    entry = LedgerEntry("table-1", ("A",), ("x",), "scan", "Why.")
+    run = results(frame(ax=1.26, ay=2.0, bx=9.0, by=4.0), frame(ax=1.26, ay=2.0, bx=9.0, by=4.0))
+    judgement = judge(paper, run, Inputs(printed(ax="9.26"), Ledger("l", (entry,))))
+    assert judgement.verdicts[0].corrected == "1.26"
+
+
 def test_one_other_cell_does_not_limit_a_correction() -> None:
     entry = LedgerEntry("table-1", ("A",), ("x",), "scan", "Why.")
     run = results(frame(ax=1.26, bx=9.0), frame(ax=1.26, bx=9.0))

@@ -6,14 +6,18 @@ from itertools import product
 from math import prod
 
 import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.results import TableResult
+from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.matches import reading_matches
 from replicate.verdicts.strength import LEVEL, Strength, at_least, strengths
+from replicate.verdicts.tables import TableJudge
 
 ROWS, COLUMNS = tuple("ABCDEFGH"), ("x", "y", "z")
 
@@ -107,3 +111,33 @@ def test_a_reading_is_judged_by_what_it_says_differently() -> None:
     assert (found["reading-1"].compared, found["reading-1"].met) == (1, 0)
     assert found["reading-1"].chance == 1.0
     assert found[AS_WRITTEN].met == len(ROWS) * len(COLUMNS)
+
+
+def test_a_reading_that_gives_the_same_number_is_no_rival() -> None:
+    """Where all readings agree on a value, its distance from zero says how much meeting it tells."""
+    rng = np.random.default_rng(23)
+    truth = random_table(rng)
+    alone, agreed = judged(truth, [truth]), judged(truth, [truth, truth, truth])
+    assert agreed[AS_WRITTEN].digits == pytest.approx(alone[AS_WRITTEN].digits)
+    assert agreed[AS_WRITTEN].strong
+
+
+def test_a_value_is_not_reconstructed_by_the_lesser_of_two_readings() -> None:
+    rng = np.random.default_rng(29)
+    truth = random_table(rng)
+    first, lesser = truth.copy(), truth.copy()
+    first[0, 0] += 0.1  # the one value that only the lesser reading meets
+    lesser[1:4, 0] += 0.1
+    table = Table("table-1", "table", "T", rows=ROWS, columns=COLUMNS)
+    readings = {AS_WRITTEN: truth + 1.0, "first": first, "lesser": lesser}
+    cells = [(row, column) for row in ROWS for column in COLUMNS]
+    printed = {key: PrintedValue(f"{truth.flat[i]:.2f}", *key) for i, key in enumerate(cells)}
+    frames = {}
+    for id, numbers in readings.items():
+        table.reading(id, "R")(lambda: None)
+        frames[id] = pd.DataFrame(numbers, index=list(ROWS), columns=list(COLUMNS))
+    judge = TableJudge("toy", table, TableResult("toy", table.id, frames, {}), printed, Ledger())
+    judge.judge()
+    found = {(row.row, row.column): (row.verdict, row.reading) for row in judge.judgement.verdicts}
+    assert found.pop(("A", "x"))[0] != "reconstructed"
+    assert set(found.values()) == {("reconstructed", "first")}

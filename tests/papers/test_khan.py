@@ -18,6 +18,7 @@ from replicate.papers.khan import (
     appendix_coefficients,
     break_point,
     bryant,
+    claims_robustness,
     closed_form,
     coefficients_7,
     fits,
@@ -354,3 +355,24 @@ def test_the_largest_jump_between_cases_iii_and_iv_on_a_dense_grid() -> None:
     found, _, at = largest_jump(("III", "IV"), (p, 0.0), (p, float(k[-1])))
     assert found == pytest.approx(jump[np.argmax(np.abs(jump))], abs=1e-3)
     assert at == pytest.approx(k[np.argmax(np.abs(jump))], abs=1e-4)
+
+
+def test_bryants_gain_overshoots_by_less_than_any_digit() -> None:
+    """The poles of s + K e^{-hs} are W(-Kh)/h; successive extrema of the slowest mode fall by exp(-pi Re/Im)."""
+    pole = lambertw(-0.368)
+    assert abs(pole.imag) > 0.0
+    assert np.exp(-np.pi * abs(pole.real / pole.imag)) < 1e-30
+    finding = claims_robustness.bryant_no_overshoot()
+    assert (finding.verdict, finding.value) == ("holds", 0.0)
+
+
+@pytest.mark.parametrize("ph", [0.1, 1.0, 20.0])
+def test_added_dead_time_at_the_limit_puts_a_pole_on_the_axis(ph: float) -> None:
+    """At Delta h = phi_m/omega_c the characteristic function vanishes at i omega_c."""
+    kp, ki = processes.gains("Proposed", 1.0, ph, processes.RESTORED)
+    wc = brentq(lambda w: abs(complex(kp, -ki / w)) - abs(complex(1.0, w)), 1e-6, 1e3, xtol=1e-15)
+    phase = np.angle(complex(kp, -ki / wc)) - np.angle(complex(1.0, wc)) - wc * ph
+    total = ph + (np.pi + phase) / wc
+    assert abs(1j * wc * (1j * wc + 1.0) + (kp * 1j * wc + ki) * np.exp(-1j * wc * total)) < 1e-9 * wc
+    margins = Loop(Plant([1.0], [1.0, 1.0], dead_time=ph), PI(kp, ki)).margins()
+    assert np.radians(margins.phase) / margins.gain_crossover == pytest.approx(total - ph, rel=1e-9)

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from replicate.exhibits import Table
 from replicate.loops import Loop, Plant
-from replicate.papers.krajewski import paper
+from replicate.papers.krajewski import claims_robustness, paper
 from replicate.papers.krajewski.design import design, first_order_parameters
 from replicate.papers.krajewski.loci import (
     corners,
@@ -238,3 +238,21 @@ def test_the_corner_of_figure_8_has_one_definition_and_its_overbar_wherever_it_i
     assert len({(named.a, named.b, named.exact()) for named in corner}) == 1
     cells = [paper.printed_cells(f"{named.exhibit}-values")[named.row, "b"] for named in corner]
     assert cells == ["0.91[6]"] * 3
+
+
+def test_deviations_of_a_changed_process() -> None:
+    """Phase margin and crossover of K e^{-Ls}/(1 + Ts) with its controller, from |L| = 1 alone."""
+
+    def margins(gain: float, lag: float, dead_time: float) -> tuple[float, float]:
+        a, b = 1.1023, 2.1671  # Fig. 9 (a): K_I and K_P for K = T = 1
+
+        def open_loop(w: float) -> complex:
+            s = 1j * w
+            return (b + a / s) * gain * cmath.exp(-dead_time * s) / (1.0 + lag * s)
+
+        w = brentq(lambda w: abs(open_loop(w)) - 1.0, 0.1, 20.0, xtol=1e-15)
+        return 180.0 + math.degrees(cmath.phase(open_loop(w))), w
+
+    old, new = margins(1.0, 1.0, 0.5), margins(1.2, 1.1, 0.45)
+    assert claims_robustness.eq_25().value == pytest.approx(new[0] - old[0], abs=1e-9)
+    assert claims_robustness.eq_26().value == pytest.approx(new[1] - old[1], abs=1e-9)

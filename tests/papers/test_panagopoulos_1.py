@@ -21,7 +21,7 @@ from scipy.integrate import quad, solve_ivp
 from replicate.exhibits import Table
 from replicate.loops import Circle
 from replicate.papers.panagopoulos import paper, part_1
-from replicate.papers.panagopoulos.part_1 import corner, errata, settling, simple_models, table_4
+from replicate.papers.panagopoulos.part_1 import corner, errata, settling, simple_models, table_1, table_4
 from replicate.papers.panagopoulos.part_1.designs import SIX, complementary_peak, design, load_response, loop, weight
 from replicate.papers.panagopoulos.part_1.example_8 import true_sigma
 from replicate.papers.panagopoulos.part_1.frequency_grid import peak_on_grid, weight_on_grid
@@ -345,3 +345,31 @@ def test_every_design_keeps_its_bound_between_the_tangencies() -> None:
         for ms in (1.4, 2.0):
             value = loop(name, ms)(1j * w)
             assert np.abs(1 + value).min() >= 1 / ms - 1e-9
+
+
+@pytest.mark.parametrize(
+    ("row", "k", "ti", "ie"),  # as Table 1 prints them
+    [
+        ("G3 Ms=2.0", "0.266", "5.51", "20.8"),
+        ("G5 Ms=1.4", "0.179", "1.78", "9.90"),
+        ("G6 Ms=1.6", "0.387", "0.344", "0.891"),
+    ],
+)
+def test_the_integrated_error_is_within_the_rounding_of_the_gains(row: str, k: str, ti: str, ie: str) -> None:
+    """IE = Ti/k rises with Ti and falls with k, so its range has its ends at two corners."""
+
+    def ends(text: str) -> tuple[Fraction, Fraction]:
+        half = Fraction(5, 10 ** (len(text.split(".")[1]) + 1))
+        return Fraction(text) - half, Fraction(text) + half
+
+    (k_low, k_high), (ti_low, ti_high), (low, high) = ends(k), ends(ti), ends(ie)
+    assert ti_low / k_high < high
+    assert low < ti_high / k_low
+    for gains in ((k_low, ti_high), (k_high, ti_low)):
+        found = table_1.from_print(row, {"k": float(gains[0]), "Ti": float(gains[1])})
+        assert found["IE"] == pytest.approx(float(gains[1] / gains[0]), rel=1e-12)
+
+
+def test_table_4_prints_errors_that_its_integral_gains_do_not_allow() -> None:
+    for ki, ie in (("0.78", "1.26"), ("0.81", "1.21"), ("0.83", "1.17"), ("0.85", "1.12")):
+        assert 1 / (Fraction(ki) + Fraction(5, 1000)) > Fraction(ie) + Fraction(5, 1000)
