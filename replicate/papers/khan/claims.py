@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from replicate.exhibits import ClaimVerdict, Finding
+from replicate.exhibits.extrema import largest
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.break_point import double_pole, visible
@@ -37,7 +38,11 @@ def almost_linear() -> Finding:
     def bend(ph: float) -> float:
         part = sweep(ph, np.linspace(0.4, 0.95, 56) * stability_limit(ph))
         line = np.polynomial.Polynomial.fit(part.kh, part.first_peak, 1)
-        return float(np.max(np.abs(part.first_peak - line(part.kh))))
+
+        def deviation(kh: float) -> float:
+            return abs(float(sweep(ph, np.array([kh])).first_peak[0]) - float(line(kh)))
+
+        return largest(deviation, part.kh, np.abs(part.first_peak - line(part.kh)))[1]
 
     bends = {ph: bend(ph) for ph in (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)}
     worst = max(bends, key=bends.__getitem__)
