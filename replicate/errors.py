@@ -11,6 +11,7 @@ ReplicateError                 shown to the user as one line, exit status 2
 ├── FigureRecordError          a record of a figure is damaged, or newer than this version
 ├── SweepFileError             the file of a sweep is malformed (file, line)
 ├── TemplateError              prose asks for a result that does not exist
+│   └── UnreadableFormulaError     a formula is not LaTeX that can be converted
 └── OutputError                a result cannot be written
 
 `replicate.loops` has its own tree (`replicate.loops.errors`), because it knows nothing of papers.
@@ -76,6 +77,20 @@ class SweepFileError(ReplicateError):
 
 class TemplateError(ReplicateError):
     """Prose asks for a result that does not exist."""
+
+
+class UnreadableFormulaError(TemplateError):
+    """A formula is not LaTeX that can be converted.
+
+    Attributes
+    ----------
+    page, tex, why
+        The page on which it stands, the formula without its dollar signs, and what is wrong with it.
+    """
+
+    def __init__(self, page: str, tex: str, why: str) -> None:
+        super().__init__(f"{page}: pandoc cannot convert ${tex}$: {why}")
+        self.page, self.tex, self.why = page, tex, why
 
 
 class OutputError(ReplicateError):

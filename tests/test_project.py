@@ -108,7 +108,7 @@ def test_a_paper_with_the_name_of_a_library_is_refused(tmp_path: Path) -> None:
         ('methods = "m.md"', "replicate.toml:1: methods: there is no file m.md"),
         ('[theme]\naccent = "red"', "replicate.toml:2: theme: accent = 'red'; allowed: accent, paper, ink, each a"),
         ('language = "English"', "replicate.toml:1: language is 'English'; expected: a tag such as 'en'"),
-        ("title = ", "replicate.toml: is not readable TOML: "),
+        ("title = ", "replicate.toml:1: is not readable TOML: Invalid value"),
     ],
 )
 def test_a_malformed_project_file(text: str, message: str, tmp_path: Path) -> None:

@@ -107,7 +107,10 @@ def test_pulls_results(template: str, text: str) -> None:
             "{{ claim('big', 'table-1') }}",
             "claim('big', 'table-1'): 'table-1' holds no claims; allowed: 'claims'",
         ),
-        ("{{ valeu('table-1', 'A', 'x') }}", "'valeu' is undefined"),
+        (
+            "{{ valeu('table-1', 'A', 'x') }}",
+            "'valeu' is undefined; known: claim, count, lower, number, printed, upper, value, verdict",
+        ),
         ("{{ claim('big').vlaue }}", "'replicate.exhibits.claims.Finding object' has no attribute 'vlaue'"),
         ("{{ number('table-1', 'A', 'x') / 0 }}", "float division by zero"),
         (

@@ -114,7 +114,7 @@ def test_a_reading_that_raises_takes_nothing_down(paper: Paper, monkeypatch: pyt
     assert isinstance(table, TableResult)
     assert list(table.frames) == ["decimal"]
     (line,) = run.failures(results)
-    assert line.startswith("lab/table-1 (as-written): ValueError: the kettle is empty (lab_paper.exhibits, line ")
+    assert line.startswith("lab/table-1 (as-written): ValueError: the kettle is empty (lab_paper/exhibits.py:")
     assert "\n" not in line
 
 

@@ -45,7 +45,7 @@ def test_a_unit_that_takes_too_long_breaks_the_run_by_name(folder: Path, replica
     add(folder, "\n@table.reading('slow', 'Slow')\ndef _slow():\n    import time\n    time.sleep(60)\n")
     status, _, errors = replicate("report", "lab", "--unit-timeout", "3")
     assert status == 2
-    assert "lab/table-1 (slow): stopped after 3 s (--unit-timeout allows more) (lab_paper/exhibits.py, line " in errors
+    assert "lab/table-1 (slow): stopped after 3 s (--unit-timeout allows more) (lab_paper/exhibits.py:" in errors
 
 
 def test_a_time_limit_is_more_than_nothing(replicate: Run) -> None:

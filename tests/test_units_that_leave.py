@@ -19,13 +19,13 @@ from replicate.run.parallel import Progress, run
 
 #: What is said about each reading that does not return; the word that names what it did.
 SAID = {
-    "exit-0": "tries to end the program, with status 0 (rogue_paper.exhibits, line ",
-    "exit-3": "tries to end the program, with status 3 (rogue_paper.exhibits, line ",
+    "exit-0": "tries to end the program, with status 0 (rogue_paper/exhibits.py:",
+    "exit-3": "tries to end the program, with status 3 (rogue_paper/exhibits.py:",
     "os-exit": "ended its worker process with status 0",
     "base-exception": "Odd: odd (rogue_paper.exhibits",
     "interrupt": "KeyboardInterrupt (rogue_paper.exhibits",
-    "crash": "ended by SIGSEGV (rogue_paper/exhibits.py, line ",
-    "abort": "ended by SIGABRT (rogue_paper/exhibits.py, line ",
+    "crash": "ended by SIGSEGV (rogue_paper/exhibits.py:",
+    "abort": "ended by SIGABRT (rogue_paper/exhibits.py:",
     "killed": "ended by SIGKILL",
     "recursion": "RecursionError",
     "memory": "MemoryError",

@@ -103,15 +103,28 @@ def _accepted_folder(papers: Library, chosen: Sequence[Paper], *, writing: bool)
 
 
 def exit_with(
-    papers: Library, outcome: Outcome | None = None, status: int = 0, *, failures_shown: bool = False
+    papers: Library,
+    outcome: Outcome | None = None,
+    status: int = 0,
+    *,
+    failures_shown: bool = False,
+    problems_shown: bool = False,
 ) -> NoReturn:
-    """Report what raised and which papers could not be used, and end; either makes the run a broken one."""
+    """Report what raised, which papers could not be used and which of their lines say nothing, and end.
+
+    What raised and what could not be used makes the run a broken one.
+    """
     broken, failed = list(papers.broken), False
     if outcome is not None:
         if not failures_shown:
             tell_failures(outcome)
         broken += outcome.broken.values()
         failed = bool(outcome.failures)
+        judgement = outcome.judgement
+        if outcome.complete and not failed:  # a text may ask for a result that failed or was not computed
+            broken += [line for line in judgement.unreadable if line not in broken]
+        for line in [] if problems_shown else judgement.unused:
+            echo(f"unused: {line}", err=True)
     for line in broken:
         echo(f"broken: {line}", err=True)
     raise typer.Exit(BROKEN if broken or failed else status)

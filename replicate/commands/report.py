@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from replicate.commands.computing import Computing, computing
 from replicate.commands.options import BROKEN, DIFFERS, Accepted, Papers, accepted_folder, exit_with
+from replicate.errors import TemplateError
 from replicate.terminal.streams import echo
 
 
@@ -20,6 +23,7 @@ def report(
     from replicate.report.pages import build_report
     from replicate.report.scope import Scope, owner_of
     from replicate.report.site import site_of
+    from replicate.report.texts import unreadable
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
@@ -37,8 +41,12 @@ def report(
     with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
         outcome = run.recompute(everyone)
+        try:
+            pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
+        except TemplateError:  # one paper's text must not take the pages of the others
+            outcome = outcome.without(unreadable(outcome))
+            pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
-        pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         index = run.folder / "report" / pages[0].name
         rows = rows_of(outcome.papers)
         if rows:
@@ -65,6 +73,7 @@ def check(
     """
     from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
+    from replicate.report.texts import unreadable
 
     chosen = run.within.papers(papers or ())
     baseline = accepted_folder(run.within, chosen, accepted)
@@ -75,4 +84,6 @@ def check(
         echo(problem)
     comparisons = outcome.judgement.compared
     echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
-    exit_with(run.within, outcome, BROKEN if comparison.broken else DIFFERS if problems else 0)
+    outcome = replace(outcome, broken=outcome.broken | unreadable(outcome))
+    status = BROKEN if comparison.broken else DIFFERS if problems else 0
+    exit_with(run.within, outcome, status, problems_shown=True)

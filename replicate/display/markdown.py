@@ -15,7 +15,7 @@ from typing import Literal
 from markupsafe import Markup
 
 from replicate.display.safe_html import sanitised
-from replicate.errors import TemplateError
+from replicate.errors import TemplateError, UnreadableFormulaError
 
 Form = Literal["block", "inline", "plain"]
 
@@ -30,6 +30,7 @@ _NO_ATTRIBUTES = (
 )
 _FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LISTS}{_NO_HTML}{_NO_ATTRIBUTES}"
 _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
+_FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)", re.DOTALL)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 
 
@@ -84,8 +85,10 @@ class MarkdownBatch:
 
         Raises
         ------
+        UnreadableFormulaError
+            If a formula is not LaTeX that pandoc knows.
         TemplateError
-            If pandoc cannot convert a text, for example for a LaTeX command that it does not know.
+            If pandoc cannot convert a text for another reason.
         """
         converted = self._convert()
 
@@ -108,6 +111,9 @@ class MarkdownBatch:
         try:
             document = pypandoc.convert_text("\n".join(marked), "html", format=_FORMAT, extra_args=options)
         except RuntimeError as error:
+            formula = _FORMULA.search(str(error))
+            if formula:
+                raise UnreadableFormulaError(self.name, formula[1].strip(), _reason(formula[2])) from error
             msg = f"{self.name}: pandoc cannot convert a text: {self._culprit(str(error))}"
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
@@ -127,6 +133,12 @@ class MarkdownBatch:
         lines = [line.strip() for line in message.splitlines() if line.strip()]
         start = next((i for i, line in enumerate(lines) if "WARNING" in line or "rror" in line), 0)
         return " ".join(lines[start : start + 2])
+
+
+def _reason(message: str) -> str:
+    """Return what pandoc's reader of formulas met, without the long list of what it would have taken."""
+    found = re.search(r"unexpected [^\n]*", message)
+    return found[0].partition(" expecting")[0].strip() if found else "it is not LaTeX that pandoc knows"
 
 
 def _not_a_block(text: str) -> str:

@@ -7,9 +7,11 @@ defined or read is refused with its place; whatever else is shown has such chara
 from __future__ import annotations
 
 import re
+import tomllib
 import unicodedata
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import Any
 
 from replicate.errors import ReplicateError
 
@@ -75,6 +77,17 @@ def read_text(path: Path | Traversable, name: str, error: type[ReplicateError]) 
         )
         raise error(msg)
     return text
+
+
+def parse_toml(text: str, name: str, error: type[ReplicateError]) -> dict[str, Any]:
+    """Return the tables of a TOML text; if it is none, `error` is raised, with the line."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as why:
+        place = re.search(r" \(at (?:line (\d+)|end of document).*", str(why))
+        line = (place and place[1]) or text.count("\n") + 1
+        msg = f"{name}:{line}: is not readable TOML: {str(why)[: place.start()] if place else why}"
+        raise error(msg) from why
 
 
 def _named(character: str) -> str:

@@ -97,6 +97,36 @@ def _random_state() -> tuple[Any, ...]:
     return (name, keys.tobytes(), *rest)
 
 
+def _pandas_options() -> dict[str, Any]:
+    """Return every option of pandas by its full name."""
+    import pandas as pd
+
+    found: dict[str, Any] = {}
+    waiting = [("", pd.options)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # some options are deprecated
+        while waiting:
+            prefix, group = waiting.pop()
+            for name in dir(group):
+                value = getattr(group, name)
+                if isinstance(value, type(pd.options)):
+                    waiting.append((f"{prefix}{name}.", value))
+                else:
+                    found[f"{prefix}{name}"] = value
+    return found
+
+
+def _set_pandas_options(options: dict[str, Any]) -> None:
+    import pandas as pd
+
+    now = _pandas_options()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for name, value in options.items():
+            if now[name] != value:
+                pd.set_option(name, value)
+
+
 def _matplotlib() -> Any:
     return sys.modules["matplotlib"]
 
@@ -132,6 +162,7 @@ _ASPECTS = (
         lambda options: _numpy().set_printoptions(**options),
         "numpy",
     ),
+    _Aspect("pandas' options", _pandas_options, _set_pandas_options, "pandas"),
     _Aspect("matplotlib's rcParams", lambda: dict(_matplotlib().rcParams), _set_rc, "matplotlib"),
     _Aspect(
         "figures of pyplot",

@@ -165,7 +165,7 @@ def _named(unit: Unit) -> dict[str, str]:
 
 
 def _checked(value: Any) -> Dependencies:
-    groups = {"python", "framework", "paper", "distribution", "module", "data"}
+    groups = {"python", "framework", "paper", "project", "distribution", "module", "data"}
     if not isinstance(value, dict) or set(value) != groups:
         msg = "the dependencies are not complete"
         raise ValueError(msg)

@@ -7,6 +7,7 @@ A worker records what it has loaded when a unit is done:
   ``handout.md``, ``handout.py``), so that editing prose recomputes nothing;
 * every other module that is not the standard library's: by content, or by the version of its distribution if it is
   an installed one;
+* the project file above the paper's folder, by what it says;
 * data files that the paper reads through `Paper.data` or that its exhibits declare with ``depends=``;
 * the versions of Python and of the machine, and the settings that choose numerical kernels.
 
@@ -25,8 +26,10 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
+from replicate.errors import ProjectError
 from replicate.exhibits import Exhibit, Paper
 from replicate.run.modules import distributions_of, file_of, is_standard
+from replicate.run.project import project_text
 
 Dependencies = dict[str, dict[str, str]]
 
@@ -52,6 +55,7 @@ class Looked:
         self._folders: dict[tuple[str, str], dict[str, str]] = {}
         self._modules: dict[str, str] = {}
         self._versions: dict[str, str] = {}
+        self._projects: dict[Path, dict[str, str]] = {}
         self._environment = {
             "version": f"{platform.python_version()} {platform.system()} {platform.machine()}",
             **{name: os.environ.get(name, "") for name in _KERNELS},
@@ -91,6 +95,7 @@ class Looked:
             "python": self._environment,
             "framework": {name: digest for room in rooms for name, digest in self._room(room).items()},
             "paper": self._folder("paper", paper.package, paper.folder()),
+            "project": self._project(Path(str(paper.folder()))),
             "distribution": {name: self._version(name) for name in recorded["distribution"]},
             "module": {name: self._module(name) for name in recorded["module"]},
             "data": {name: self._data(paper, name) for name in recorded["data"]},
@@ -116,6 +121,17 @@ class Looked:
         if key not in self._folders:
             self._folders[key] = dict(self._contents(place, name if kind == "room" else ""))
         return self._folders[key]
+
+    def _project(self, folder: Path) -> dict[str, str]:
+        """Return name and digest of what the nearest project file above a folder says; empty if there is none."""
+        if folder not in self._projects:
+            try:
+                found = project_text(folder)
+            except ProjectError as error:
+                found = ("project file", str(error))
+            digest = hashlib.sha256(found[1].encode()).hexdigest()[:_LENGTH] if found else ""
+            self._projects[folder] = {found[0]: digest} if found else {}
+        return self._projects[folder]
 
     def _version(self, distribution: str) -> str:
         if distribution not in self._versions:

@@ -8,7 +8,10 @@ from __future__ import annotations
 
 import importlib
 import importlib.metadata
+import inspect
 import pkgutil
+import re
+import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,6 +26,8 @@ from replicate.run.exits import only_ours
 
 ENTRY_POINTS = "replicate.papers"
 _HERE = {__file__, exits.__file__}
+_PAPER = str(inspect.getsourcefile(Paper))
+_IMPORTLIB = str(Path(importlib.__file__).parent)
 
 
 @dataclass(frozen=True)
@@ -116,13 +121,27 @@ def importing(what: str) -> Iterator[None]:
             file, line, reason = error.filename, error.lineno, error.msg
         else:
             frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename not in _HERE]
-            frame = next((frame for frame in reversed(frames) if not frame.filename.startswith("<frozen")), None)
-            file, line = (frame.filename, frame.lineno) if frame else (what, 0)
+            file, line = _raised_at(frames, error) or (what, 0)
             text = " ".join(str(error).split())
             ends = f"it tries to end the program, with status {text or 0}"
             reason = ends if isinstance(error, SystemExit) else f"{type(error).__name__}: {text}"
         msg = f"{what} cannot be loaded: {display_name(Path(file))}:{line}: {reason}"
         raise PaperDefinitionError(msg) from error
+
+
+def _raised_at(frames: list[traceback.FrameSummary], error: BaseException) -> tuple[str, int] | None:
+    """Return file and line where an import failed: for a listed module that does not exist, the line that lists it."""
+    own = [frame for frame in frames if not frame.filename.startswith(("<frozen", _IMPORTLIB))]
+    place = (own[-1].filename, own[-1].lineno or 0) if own else None
+    if isinstance(error, ModuleNotFoundError) and error.name and (place is None or place[0] == _PAPER):
+        package, _, module = error.name.rpartition(".")
+        file = getattr(sys.modules.get(package), "__file__", None)
+        if file:
+            lines = Path(file).read_text(encoding="utf-8").splitlines()
+            quoted = re.compile(rf"""["']{re.escape(module)}["']""")
+            listed = (number for number, line in enumerate(lines, 1) if quoted.search(line))
+            return file, next(listed, 1)
+    return place
 
 
 def _defined_at(error: PaperDefinitionError) -> str:

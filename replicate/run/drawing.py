@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pandas as pd
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Canvas
+from matplotlib.text import Text
 
+from replicate.errors import PaperDefinitionError
 from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
 from replicate.figures import capture as record_of
@@ -29,12 +34,15 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
 
     Raises
     ------
+    PaperDefinitionError
+        If the function has drawn nothing on the figure.
     Exception
         Whatever the exhibit's own function raises.
     """
     with style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = Canvas(figsize=exhibit.size)
         exhibit.draw(canvas)
+        _check_drawn(canvas)
         check_limits(canvas)
         rasterise_crowds(canvas)
         record = record_of(canvas)
@@ -47,6 +55,25 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
             axes=[dict(panel) for panel in record.panels],
             figure=dict(record.figure),
         )
+
+
+def _check_drawn(canvas: Canvas) -> None:
+    """Refuse a figure on which nothing is drawn: the function has drawn elsewhere, or forgot to."""
+    blank = [_bare(axes) for axes in canvas.axes]
+    others = [artist for artist in canvas.get_children() if artist is not canvas.patch and artist not in canvas.axes]
+    if others or not all(blank):
+        return
+    if "matplotlib.pyplot" in sys.modules and sys.modules["matplotlib.pyplot"].get_fignums():
+        msg = "the figure is empty, and pyplot has one of its own: draw on the figure given, axes = fig.subplots()"
+    else:
+        msg = "the figure is empty; expected: something drawn on the figure given, axes = fig.subplots()"
+    raise PaperDefinitionError(msg)
+
+
+def _bare(axes: Axes) -> bool:
+    """Say whether axes hold nothing but themselves: frame, axis lines, and texts without words."""
+    own = {axes.patch, axes.xaxis, axes.yaxis, *axes.spines.values()}
+    return all(artist in own or (isinstance(artist, Text) and not artist.get_text()) for artist in axes.get_children())
 
 
 def no_figure(paper: str, exhibit: str, error: str) -> FigureResult:

@@ -57,6 +57,19 @@ class Outcome:
             broken={id: why for id, why in self.broken.items() if id in papers},
         )
 
+    def without(self, broken: dict[str, str]) -> Outcome:
+        """Return the part of it that is not about papers that turned out to be broken, which are named with the reason.
+
+        Raises
+        ------
+        ReplicateError
+            If no paper is left.
+        """
+        left = self.of({paper.id for paper in self.papers} - set(broken))
+        if not left.papers:
+            raise ReplicateError(next(iter(broken.values())))
+        return replace(left, broken=self.broken | broken)
+
     @property
     def failures(self) -> list[str]:
         """One line for everything that raised."""

@@ -24,6 +24,7 @@ from typing import Any
 
 from replicate.errors import ReplicateError
 from replicate.exhibits import Claims, Exhibit
+from replicate.exhibits.file_names import display_name
 from replicate.run.limits import MOST_OUTPUT
 from replicate.run.performance import Performance, with_errors
 from replicate.run.units import Unit, failed
@@ -232,7 +233,7 @@ def _output(worker: _Worker) -> str:
 
 
 def _kill(worker: _Worker) -> str:
-    """End a worker and all that it has started; return where it was, as `` (file, line)``, if it says so."""
+    """End a worker and all that it has started; return where it was, as `` (file:line)``, if it says so."""
     worker.connection.close()
     pid = worker.process.pid
     place = ""
@@ -256,7 +257,7 @@ def _place(output: str) -> str:
     report = output.partition("Fatal Python error")[2]
     for file, line in _FRAME.findall(report.partition("Current thread")[2] or report):
         if "site-packages" not in file and not file.startswith((sys.base_prefix, "<", str(Path(__file__).parent))):
-            return f" ({'/'.join(Path(file).parts[-2:])}, line {line})"
+            return f" ({display_name(Path(file))}:{line})"
     return ""
 
 

@@ -17,13 +17,14 @@ folder upwards. All paths in it are relative to its folder::
 
 from __future__ import annotations
 
+import json
 import re
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from replicate.errors import ProjectError
+from replicate.exhibits.plain_text import parse_toml, read_text
 
 FILE = "replicate.toml"
 PYPROJECT = "pyproject.toml"
@@ -92,6 +93,25 @@ def find_project(start: Path | None = None) -> Project | None:
         pyproject = folder / PYPROJECT
         if pyproject.is_file() and "replicate" in _tables(pyproject).get("tool", {}):
             return read_project(pyproject)
+    return None
+
+
+def project_text(start: Path) -> tuple[str, str] | None:
+    """Return name and text of what the nearest project file says, spelled in one way, without comments.
+
+    Raises
+    ------
+    ProjectError
+        If it is not readable.
+    """
+    here = start.resolve()
+    for folder in (here, *here.parents):
+        for name in (FILE, PYPROJECT):
+            if (folder / name).is_file():
+                said = _tables(folder / name)
+                said = said if name == FILE else said.get("tool", {}).get("replicate")
+                if said is not None:
+                    return name, json.dumps(said, sort_keys=True, default=str)
     return None
 
 
@@ -167,11 +187,7 @@ def _theme(path: Path, theme: object) -> dict[str, str]:
 
 
 def _tables(path: Path) -> dict[str, Any]:
-    try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        msg = f"{path.name}: is not readable TOML: {getattr(error, 'strerror', None) or error}"
-        raise ProjectError(msg) from error
+    return parse_toml(read_text(path, path.name, ProjectError), path.name, ProjectError)
 
 
 def _wrong(path: Path, key: str, why: str) -> ProjectError:

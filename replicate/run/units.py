@@ -8,18 +8,27 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import traceback
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import get_args
+from typing import TYPE_CHECKING, get_args
 
-from replicate.exhibits import Claim, Claims, ClaimVerdict, Exhibit, Figure, Finding, Paper, Table
+from replicate.errors import PaperDefinitionError, ReplicateError
+from replicate.exhibits import Claim, Claims, ClaimVerdict, Exhibit, Figure, Finding, Paper, Reading, Table
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.printed import read_printed
+from replicate.exhibits.frame_check import checked_frame
+from replicate.exhibits.printed import Key, read_printed
 from replicate.exhibits.results import ClaimsResult, FigureResult, Ranges, Result, TableResult
 from replicate.exhibits.rounded_inputs import compute_reading
+from replicate.run.modules import is_standard
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 _LONGEST_REASON = 400
+_CORE, _BUNDLED = "replicate.", "replicate.papers."
 
 
 @dataclass(frozen=True)
@@ -96,17 +105,23 @@ def fits(result: Result, unit: Unit, exhibit: Exhibit) -> bool:
 
 
 def reason(error: BaseException) -> str:
-    """Return one line that says what was raised, and where in the paper's own code or the core."""
-    frame = error.__traceback__
-    place = ""
-    while frame is not None:
-        module = frame.tb_frame.f_globals.get("__name__", "")
-        if module.rpartition(".")[0] != __package__ and "site-packages" not in frame.tb_frame.f_code.co_filename:
-            place = f" ({module}, line {frame.tb_lineno})"
-        frame = frame.tb_next
+    """Return one line that says what was raised, and where in the paper's own code, or in the core if not there."""
+    own, core = "", ""
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        module, file = frame.f_globals.get("__name__", ""), frame.f_code.co_filename
+        if is_standard(module) or "site-packages" in file or file.startswith("<"):
+            continue
+        place = f" ({display_name(Path(file))}:{line})"
+        if not module.startswith(_CORE) or module.startswith(_BUNDLED):
+            own = place
+        elif module.rpartition(".")[0] != __package__:
+            core = place
+    place = own or core
     if isinstance(error, SystemExit):
         return f"it tries to end the program, with status {_text(error.code)}{place}"
     text = _text(error)
+    if isinstance(error, ReplicateError):  # whose text says all, but for the place of a call that was refused
+        return f"{text}{own}"
     return f"{type(error).__name__}: {text}{place}" if text else f"{type(error).__name__}{place}"
 
 
@@ -121,22 +136,28 @@ def _text(value: object) -> str:
 
 
 def _compute_reading(unit: Unit, paper: Paper, table: Table) -> TableResult:
-    import pandas as pd
-
     try:
         reading, ranges = table.readings[unit.reading], dict[str, Ranges]()
-        frame: object
+        file = paper.folder() / "printed" / f"{table.id}.csv"
+        printed = read_printed(file, table) if table.printed and not table.points else {}
+        made: object
         if reading.inputs:
-            printed = read_printed(paper.folder() / "printed" / f"{table.id}.csv", table)
-            frame, ranges[reading.id] = compute_reading(table, reading, printed)
+            made, ranges[reading.id] = compute_reading(table, reading, printed)
         else:
-            frame = reading.compute()
-        if not isinstance(frame, pd.DataFrame):
-            msg = f"the reading returns {type(frame).__name__}; expected: a pandas DataFrame"
-            raise TypeError(msg)  # noqa: TRY301  -- reported like everything else the reading gets wrong
+            made = reading.compute()
+        frame = _checked(table, reading, made, printed)
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error)})
     return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame}, ranges=ranges)
+
+
+def _checked(table: Table, reading: Reading, made: object, printed: Collection[Key]) -> pd.DataFrame:
+    """Return what a reading has made if it is the table, or say where the reading is defined."""
+    try:
+        return checked_frame(table, made, printed)
+    except PaperDefinitionError as error:
+        msg = f"{_place(reading.compute)}: {error}"
+        raise PaperDefinitionError(msg) from error
 
 
 def _draw(unit: Unit, figure: Figure) -> FigureResult:
@@ -144,6 +165,8 @@ def _draw(unit: Unit, figure: Figure) -> FigureResult:
 
     try:
         return capture(unit.paper, figure)
+    except PaperDefinitionError as error:
+        return no_figure(unit.paper, unit.exhibit, f"{_place(figure.draw)}: {reason(error)}")
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return no_figure(unit.paper, unit.exhibit, reason(error))
 
@@ -177,11 +200,16 @@ def _valid(claim: Claim, found: object) -> Finding:
     elif type(found.evidence) is not str:
         msg = f"{where}the evidence is {type(found.evidence).__name__}; expected: text"
     else:
-        return Finding(found.verdict, number(found.value, f"{where}the value is"), found.evidence)
-    raise TypeError(msg)
+        try:
+            return Finding(found.verdict, number(found.value, f"{where}the value is"), found.evidence)
+        except (TypeError, ValueError) as error:
+            raise PaperDefinitionError(str(error)) from error
+    raise PaperDefinitionError(msg)
 
 
 def _place(function: Callable[..., object]) -> str:
     """Return file and line of a function."""
+    while isinstance(function, partial):
+        function = function.func
     code = getattr(inspect.unwrap(function), "__code__", None)
     return f"{display_name(Path(code.co_filename))}:{code.co_firstlineno}" if code else "place unknown"

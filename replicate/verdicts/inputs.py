@@ -5,12 +5,14 @@ A typing error in a data file is reported at once, not after the run.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
+from importlib.resources.abc import Traversable
+from pathlib import PurePosixPath
 
 from replicate.errors import TemplateError
-from replicate.exhibits import Paper, Table
+from replicate.exhibits import Exhibit, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.printed import Key, PrintedValue, read_printed
@@ -31,10 +33,13 @@ class Inputs:
     ----------
     printed
         By exhibit id: the printed numbers by (row, column).
+    unused
+        A line for each file of printed numbers that is no exhibit's.
     """
 
     printed: Printed = field(default_factory=dict)
     ledger: Ledger = field(default_factory=Ledger)
+    unused: tuple[str, ...] = ()
 
 
 def _points(table: Table) -> dict[Key, PrintedValue]:
@@ -67,4 +72,19 @@ def read_inputs(paper: Paper) -> Inputs:
     for file in sorted(folder.iterdir(), key=lambda file: file.name):
         if file.name.endswith(".md") and file.name.startswith(_TEXTS):
             check_syntax(read_text(file, display_name(file), TemplateError), display_name(file))
-    return Inputs(printed, ledger)
+    return Inputs(printed, ledger, tuple(_unused(paper, folder / "printed")))
+
+
+def _unused(paper: Paper, folder: Traversable) -> Iterator[str]:
+    """Yield a line for each file of printed numbers that nothing reads."""
+    printed = {f"{id}.csv" for id, exhibit in paper.exhibits.items() if isinstance(exhibit, Table) and exhibit.printed}
+    points = {f"{id.removesuffix('-points')}.csv" for id, exhibit in paper.exhibits.items() if _is_read_off(exhibit)}
+    data = {PurePosixPath(name).name for exhibit in paper.exhibits.values() for name in paper.data_of(exhibit)}
+    for file in sorted(folder.iterdir(), key=lambda file: file.name) if folder.is_dir() else ():
+        if file.name.endswith(".csv") and file.name not in printed | points | data:
+            allowed = ", ".join(sorted(printed | points)) or "none"
+            yield f"{display_name(file)}: belongs to no exhibit with printed values; read: {allowed}"
+
+
+def _is_read_off(exhibit: Exhibit) -> bool:
+    return isinstance(exhibit, Table) and bool(exhibit.points)

@@ -54,6 +54,8 @@ def judge(
             for id in paper.numbered
             if id not in paper.exhibits
         )
+        judgement.problems.extend(inputs.unused)
+        judgement.unused.extend(inputs.unused)
     explained: list[tuple[int, LedgerEntry]] = []
     for id, exhibit in paper.exhibits.items():
         if exhibits is not None and id not in exhibits:
@@ -96,4 +98,5 @@ def _explain(
             text = f"(This text cannot be shown: {error})"
             if str(error) not in judgement.problems:
                 judgement.problems.append(str(error))
+                judgement.unreadable.append(str(error))
         judgement.verdicts[index] = replace(verdict, explanation=text)

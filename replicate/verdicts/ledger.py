@@ -24,7 +24,6 @@ can be known without.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from importlib.resources.abc import Traversable
@@ -35,7 +34,7 @@ from replicate.errors import LedgerError
 from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import ALLOWED, parse_number
-from replicate.exhibits.plain_text import read_text, steering
+from replicate.exhibits.plain_text import parse_toml, read_text, steering
 
 Cause = Literal[
     "misprint",
@@ -131,12 +130,8 @@ class Ledger:
         name = display_name(path)
         if not path.is_file():
             return cls(name)
-        try:
-            text = read_text(path, name, LedgerError)
-            data = tomllib.loads(text)
-        except tomllib.TOMLDecodeError as error:
-            msg = f"{name}: is not readable TOML: {error}"
-            raise LedgerError(msg) from error
+        text = read_text(path, name, LedgerError)
+        data = parse_toml(text, name, LedgerError)
         raw = data.pop("entry", [])
         if data or not isinstance(raw, list) or not all(isinstance(item, dict) for item in raw):
             found = f"; found '{next(iter(data))}'" if data else ""

@@ -127,6 +127,8 @@ class Prose:
         ) as error:
             line = first_line + (getattr(error, "line", 0) or _template_line(error)) - 1
             msg = f"{source}:{line}: {str(error) or type(error).__name__}"
+            if msg.endswith(" is undefined"):
+                msg += f"; known: {', '.join(sorted({*self._functions, *variables}))}"
             raise TemplateError(msg) from error
 
     def render_lines(self, text: str, source: str) -> list[tuple[str, int]]:
@@ -217,7 +219,10 @@ class Prose:
         where = f"{function}('{exhibit}', '{row}', '{column}')"
         found = self._by_cell.get((exhibit, row, column))
         if found is None:
-            self._result(exhibit, where)
+            result = self._result(exhibit, where)
+            if isinstance(result, TableResult) and AS_WRITTEN in result.errors:
+                msg = f"{where}: the reading '{AS_WRITTEN}' failed: {result.errors[AS_WRITTEN]}"
+                raise _MissingResultError(msg)
             msg = f"{where}: the paper prints no value there"
             raise _MissingResultError(msg)
         return found

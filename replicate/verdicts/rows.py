@@ -170,6 +170,11 @@ class Judgement:
     ----------
     problems
         One line each: what keeps `replicate check` from passing.
+    unused
+        Those of them that every command says: what the paper's files say of nothing, such as a ledger entry that
+        explains no value.
+    unreadable
+        Those of them that break a run: a text asks for a result that does not exist.
     strengths
         How strong the match of a reading with its exhibit is, by paper, exhibit and reading.
     """
@@ -177,6 +182,8 @@ class Judgement:
     verdicts: list[VerdictRow] = field(default_factory=list)
     exhibits: list[ExhibitRow] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
+    unused: list[str] = field(default_factory=list)
+    unreadable: list[str] = field(default_factory=list)
     strengths: dict[tuple[str, str, str], Strength] = field(default_factory=dict)
 
     @property
@@ -194,4 +201,6 @@ class Judgement:
         self.verdicts.extend(part.verdicts)
         self.exhibits.extend(part.exhibits)
         self.problems.extend(part.problems)
+        self.unused.extend(part.unused)
+        self.unreadable.extend(part.unreadable)
         self.strengths.update(part.strengths)

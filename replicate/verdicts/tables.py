@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from replicate.exhibits import AS_WRITTEN, Table
@@ -60,6 +60,8 @@ class TableJudge:
         explained = []
         for reading in self.table.readings:
             self._read(reading)
+        if AS_WRITTEN in self.result.errors:
+            return []  # what the text says is not known, so nothing can be said of the print
         points = [reading for reading in self.table.readings if reading in self.result.ranges]
         share_points(self.table, self.printed, self.computed, points)
         self.strengths = strengths(self.table, self.computed)
@@ -142,7 +144,7 @@ class TableJudge:
             place = self.ledger.place(entry)
             if entry.explicit:
                 named = [(row, column) for row in entry.rows for column in entry.columns]
-                self.judgement.problems.extend(
+                self._unused(
                     f"{place}: {self.table.id} {_cell(key)} "
                     + ("no longer differs" if key in self.printed else "is blank in the paper")
                     for key in named
@@ -156,7 +158,7 @@ class TableJudge:
                     if key in open_keys - taken and entry.covers(*key) and not self._by_other_convention(key)
                 ]
                 if not found:
-                    self.judgement.problems.append(f"{place}: {self.table.id}: explains no printed value that differs")
+                    self._unused([f"{place}: {self.table.id}: explains no printed value that differs"])
             right = [key for key in found if self._correction_holds(key, entry)]
             taken.update(right)
             yield from ((key, entry) for key in right)
@@ -236,6 +238,11 @@ class TableJudge:
             value=self.printed[key],
             values=tuple(self.computed[id][key] for id in self.table.readings),
         )
+
+    def _unused(self, lines: Iterable[str]) -> None:
+        for line in lines:
+            self.judgement.problems.append(line)
+            self.judgement.unused.append(line)
 
     def _problem(self, text: str) -> None:
         self.judgement.problems.append(f"{self.paper} {self.table.id}: {text}")

@@ -1,0 +1,59 @@
+"""Whether the texts of papers can be shown: what they ask for exists, and their formulas can be converted."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from replicate.display.markdown import MarkdownBatch
+from replicate.errors import TemplateError, UnreadableFormulaError
+from replicate.exhibits import Paper, Table
+from replicate.exhibits.file_names import display_name
+from replicate.exhibits.results import Results
+from replicate.report.pages import paper_pages
+from replicate.run.outcome import Outcome
+from replicate.verdicts.rows import Judgement
+
+_TEXTS = (".md", ".toml", ".py", ".csv")
+
+
+def unreadable(outcome: Outcome) -> dict[str, str]:
+    """Return by id why the texts of a paper cannot be shown, with file and line; nothing for those that can be."""
+    found = {}
+    for paper in outcome.papers:
+        error = _unreadable(paper, outcome.results, outcome.judgements[paper.id])
+        if error is not None:
+            found[paper.id] = str(error)
+    return found
+
+
+def _unreadable(paper: Paper, results: Results, judgement: Judgement) -> TemplateError | None:
+    try:
+        for page in paper_pages(paper, results, judgement):
+            batch = MarkdownBatch(page.file)
+            texts = [piece.text for piece in page.prose if piece.kind != "exhibit"]
+            texts += [verdict.explanation for verdict in page.verdicts]
+            for view in page.exhibits:
+                exhibit = paper.exhibits[view.id]
+                texts.append(exhibit.title)
+                texts += exhibit.labels.values() if isinstance(exhibit, Table) else ()
+            batch.substitute("".join(batch.block(text) for text in texts))
+    except TemplateError as error:
+        return located(error, paper)
+    return None
+
+
+def located(error: TemplateError, paper: Paper) -> TemplateError:
+    """Return the error with the place of a wrong formula in the files of the paper, where it can be found there."""
+    if not isinstance(error, UnreadableFormulaError):
+        return error
+    words = r"\s+".join(re.escape(word) for word in error.tex.split())
+    as_written = re.compile(f"{words}|{words.replace(re.escape(chr(92)), re.escape(chr(92) * 2))}")
+    folder = Path(str(paper.folder()))
+    for file in sorted(path for path in folder.rglob("*") if path.suffix in _TEXTS):
+        text = file.read_text(encoding="utf-8", errors="replace")
+        found = as_written.search(text)
+        if found:
+            place = f"{display_name(file)}:{text.count(chr(10), 0, found.start()) + 1}"
+            return TemplateError(f"{place}: pandoc cannot convert ${error.tex}$: {error.why}")
+    return error
