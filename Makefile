@@ -73,6 +73,10 @@ lint: $(VENV)/.developed ## ruff (rules and format) and mypy --strict
 COMPILE := --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
     --custom-compile-command "make lock"
 
+.PHONY: docs
+docs: $(VENV)/.developed ## build the documentation as a site that needs no network: build/docs/index.html
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+
 .PHONY: lock
 lock: $(VENV)/.developed ## remake both locks from pyproject.toml: make lock [ARGS=--upgrade]
 	$(BIN)/uv pip compile pyproject.toml --group build --output-file requirements.lock $(COMPILE) $(ARGS)

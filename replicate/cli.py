@@ -16,7 +16,19 @@ from typing import Annotated, NoReturn
 
 import typer
 
-from replicate.commands import accepted, beginnings, cache, figures, handouts, papers, printed, report, sweeps, whatif
+from replicate.commands import (
+    accepted,
+    beginnings,
+    cache,
+    figures,
+    handouts,
+    papers,
+    printed,
+    report,
+    schemas,
+    sweeps,
+    whatif,
+)
 from replicate.commands.options import BROKEN
 from replicate.errors import TERMINATED, ReplicateError
 from replicate.run.exits import only_ours
@@ -118,5 +130,6 @@ app.command()(beginnings.new)
 app.add_typer(printed.app, name="printed")
 app.add_typer(figures.app, name="figures")
 app.command()(cache.cache)
+app.command()(schemas.schema)
 app.command()(whatif.whatif)
 app.command()(sweeps.sweep)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import keyword
+import os
 import re
 import sys
 from pathlib import Path
@@ -26,7 +27,7 @@ _PLACES = {
 }
 
 
-def new_paper(id: str, parent: Path) -> Path:
+def new_paper(id: str, parent: Path, schemas: Path | None = None) -> Path:
     """Write the package of a new paper and return its folder.
 
     Parameters
@@ -35,6 +36,8 @@ def new_paper(id: str, parent: Path) -> Path:
         The paper's id: lower-case letters, digits and ``_``, starting with a letter.
     parent
         The folder of papers in which the paper's folder is made.
+    schemas
+        Folder of the JSON Schemas, which the ledger names for editors if it is given and exists.
 
     Raises
     ------
@@ -54,11 +57,15 @@ def new_paper(id: str, parent: Path) -> Path:
         msg = f"{folder}: exists already; nothing was written"
         raise OutputError(msg)
     places = {name: f"{id}/{place.format(id=id)}" for name, place in _PLACES.items()}
-    write_templates("new_paper", places, parent, id=id)
+    there = schemas is not None and (schemas / "ledger.schema.json").is_file()
+    schema = Path(os.path.relpath(schemas / "ledger.schema.json", folder)).as_posix() if schemas and there else ""
+    write_templates("new_paper", places, parent, id=id, schema=schema)
     return folder
 
 
-def write_templates(source: str, places: dict[str, str], folder: Path, **variables: str) -> None:
+def write_templates(
+    source: str, places: dict[str, str], folder: Path, others: dict[str, str] | None = None, **variables: str
+) -> None:
     """Fill the templates of a folder and write all of them, or none.
 
     Parameters
@@ -67,6 +74,8 @@ def write_templates(source: str, places: dict[str, str], folder: Path, **variabl
         Name of the folder among the templates.
     places
         By name of a template, without ``.jinja``: where its text goes in `folder`.
+    others
+        Further files as they are, by place.
     variables
         What the templates may use.
 
@@ -81,5 +90,6 @@ def write_templates(source: str, places: dict[str, str], folder: Path, **variabl
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701 -- the templates make Python, TOML and Markdown, not HTML
     )
-    texts = {place: environment.get_template(f"{name}.jinja").render(variables) for name, place in places.items()}
+    filled = {place: environment.get_template(f"{name}.jinja").render(variables) for name, place in places.items()}
+    texts = filled | (others or {})
     replace_files(folder, {place: text.encode() for place, text in texts.items()})

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from replicate import resources
 from replicate.errors import OutputError
 from replicate.new_paper import write_templates
 
@@ -15,6 +16,10 @@ _PLACES = {
     "workflow.yml": ".github/workflows/replicate.yml",
     "papers.md": "papers/README.md",
 }
+
+#: Folder of a project with the JSON Schemas that its files name, so that editors complete and check them offline.
+SCHEMAS = ".schemas"
+_WRITTEN = ("ledger", "project")
 
 
 def new_project(folder: Path, title: str = "") -> None:
@@ -32,9 +37,11 @@ def new_project(folder: Path, title: str = "") -> None:
     OutputError
         If one of the files exists already, or the folder cannot be written.
     """
-    for place in dict.fromkeys(Path(place).parts[0] for place in _PLACES.values()):
+    for place in dict.fromkeys([*(Path(place).parts[0] for place in _PLACES.values()), SCHEMAS]):
         if (folder / place).exists():
             msg = f"{folder / place}: exists already; nothing was written"
             raise OutputError(msg)
     words = folder.resolve().name.replace("-", " ").replace("_", " ")
-    write_templates("new_project", _PLACES, folder, title=title or words[:1].upper() + words[1:])
+    schemas = {f"{SCHEMAS}/{name}.schema.json": text for name, text in resources.schemas().items() if name in _WRITTEN}
+    variables = {"title": title or words[:1].upper() + words[1:], "schema": f"{SCHEMAS}/project.schema.json"}
+    write_templates("new_project", _PLACES, folder, schemas, **variables)

@@ -51,6 +51,18 @@ def accepted_dir() -> Path:
     return _find("_figures", "figures")
 
 
+def schemas() -> dict[str, str]:
+    """Return the JSON Schemas of file formats by name, as texts.
+
+    Examples
+    --------
+    >>> list(schemas())
+    ['figure-record', 'ledger', 'project', 'sweep']
+    """
+    files = sorted((_PACKAGE / "schemas").glob("*.schema.json"))
+    return {file.name.removesuffix(".schema.json"): file.read_text(encoding="utf-8") for file in files}
+
+
 def _find(packaged: str, checkout: str) -> Path:
     candidates = (_PACKAGE / packaged, _PACKAGE.parent / checkout)
     for candidate in candidates:

@@ -163,6 +163,6 @@ def test_records_fit_the_documented_schema(tmp_path: Path) -> None:
 
 
 def fits(paths: list[Path]) -> subprocess.CompletedProcess[str]:
-    schema = ROOT / "docs/figure-record.schema.json"
+    schema = ROOT / "replicate/schemas/figure-record.schema.json"
     command = [sys.executable, "-m", "check_jsonschema", "--schemafile", str(schema), *map(str, paths)]
     return subprocess.run(command, capture_output=True, text=True, check=False)

@@ -33,13 +33,15 @@ def new(
 ) -> None:
     """Begin a paper, in the project or in this folder."""
     from replicate.new_paper import new_paper
+    from replicate.new_project import SCHEMAS
 
     within = library()
     if paper in within.ids():
         msg = f"the paper '{paper}' already exists; choose another id"
         raise PaperDefinitionError(msg)
     homes = within.project.papers if within.project is not None else ()
-    folder = new_paper(paper, homes[0] if homes else Path())
+    schemas = within.project.root / SCHEMAS if within.project is not None else None
+    folder = new_paper(paper, homes[0] if homes else Path(), schemas)
     option, state = ("", "") if homes else (" --papers .", " --accepted accepted")
     echo(
         f"Created {shortest(folder.resolve())}. Next steps:\n"

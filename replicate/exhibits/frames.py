@@ -111,8 +111,13 @@ def _read(cells: FrameCells, key: Key, value: object) -> None:
         cells.words[key] = given_text(value) or str(value)
         cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds {kind} ({value!r}); expected: a number"
     else:
-        number = float(value)
-        cells.numbers[key] = None if number != number else number  # noqa: PLR0124  -- NaN
+        try:
+            number = float(value)
+        except OverflowError:
+            cells.words[key] = str(value)
+            cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds an integer beyond the largest number"
+        else:
+            cells.numbers[key] = None if number != number else number  # noqa: PLR0124  -- NaN
 
 
 def _twice(kind: str, keys: Iterable[str]) -> frozenset[tuple[str, str]]:

@@ -1,6 +1,6 @@
 """The record of a figure: what it shows, as plain data with a version number, written as JSON and read back.
 
-``docs/figure-record.schema.json`` is its JSON Schema. Version 1, which only papers used, was the bare list of panels
+``schemas/figure-record.schema.json`` is its JSON Schema. Version 1, which only papers used, was the bare list of panels
 with the curves in a CSV beside it; version 2 adds everything that is drawn.
 """
 

@@ -1,0 +1,108 @@
+"""The JSON Schemas: what they accept is what the package reads, and what it refuses they refuse."""
+
+import json
+import re
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from replicate.new_paper import new_paper
+from replicate.new_project import new_project
+from replicate.resources import schemas
+from replicate.run import project as projects
+from replicate.sweeps import sweep_file
+from replicate.verdicts import ledger as ledgers
+
+ROOT = Path(__file__).parent.parent
+LEDGERS = sorted([*ROOT.glob("replicate/papers/*/ledger*.toml"), *ROOT.glob("examples/*/papers/*/ledger*.toml")])
+PROJECTS = sorted(ROOT.glob("examples/*/replicate.toml"))
+ENTRY = {"exhibit": "table-1", "rows": ["A"], "columns": "*", "cause": "unknown", "explanation": "x"}
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+def refused(name: str, data: object) -> str:
+    validator = jsonschema.Draft202012Validator(json.loads(schemas()[name]))
+    return "; ".join(error.message for error in validator.iter_errors(data))
+
+
+@pytest.mark.parametrize("name", list(schemas()))
+def test_a_schema_is_one(name: str) -> None:
+    jsonschema.Draft202012Validator.check_schema(json.loads(schemas()[name]))
+
+
+@pytest.mark.parametrize("file", LEDGERS, ids=lambda file: f"{file.parent.name}-{file.stem}")
+def test_ledgers_fit(file: Path) -> None:
+    assert not refused("ledger", tomllib.loads(file.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("file", PROJECTS, ids=lambda file: file.parent.name)
+def test_project_files_fit(file: Path) -> None:
+    assert not refused("project", tomllib.loads(file.read_text(encoding="utf-8")))
+
+
+def test_the_project_of_the_checkout_fits() -> None:
+    assert not refused("project", tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["replicate"])
+
+
+def test_the_sweep_of_the_guide_fits() -> None:
+    guide = (ROOT / "docs" / "sweeps.md").read_text(encoding="utf-8")
+    found = re.findall(r"^```toml\n(.*?)^```", guide, flags=re.MULTILINE | re.DOTALL)
+    assert found
+    assert not [refused("sweep", tomllib.loads(text)) for text in found if refused("sweep", tomllib.loads(text))]
+
+
+@pytest.mark.parametrize(
+    ("name", "data"),
+    [
+        ("ledger", {"entry": [{**ENTRY, "cause": "typo"}]}),
+        ("ledger", {"entry": [{**ENTRY, "rows": []}]}),
+        ("ledger", {"entry": [{**ENTRY, "rows": ["A", "A"]}]}),
+        ("ledger", {"entry": [{**ENTRY, "corrected": 1.5}]}),
+        ("ledger", {"entry": [{**ENTRY, "cause": "misprint", "columns": ["x", "y"], "corrected": "1.5"}]}),
+        ("ledger", {"entry": [{**ENTRY, "consequence": "safety"}]}),
+        ("ledger", {"entry": [{**ENTRY, "answer": "yes"}]}),
+        ("ledger", {"entry": [{key: ENTRY[key] for key in ENTRY if key != "cause"}]}),
+        ("ledger", {"entries": []}),
+        ("project", {"titel": "x"}),
+        ("project", {"papers": "papers"}),
+        ("project", {"theme": {"accent": "red"}}),
+        ("project", {"language": "English"}),
+        ("sweep", {"plants": "1/(s+1)"}),
+        ("sweep", {"plants": "1/(s+1)", "controllers": {"kp": 1}}),
+        ("sweep", {"plants": "1/(s+1)", "controllers": {"k": {"from": 1, "to": 2}}}),
+    ],
+)
+def test_what_is_refused(name: str, data: dict[str, object]) -> None:
+    assert refused(name, data)
+
+
+def test_a_schema_knows_the_fields_that_are_read() -> None:
+    entry = json.loads(schemas()["ledger"])["$defs"]["entry"]
+    assert tuple(entry["properties"]) == ledgers._REQUIRED + ledgers._OPTIONAL
+    assert tuple(entry["required"]) == ledgers._REQUIRED
+    assert tuple(entry["properties"]["cause"]["enum"]) == ledgers.CAUSES
+    assert tuple(json.loads(schemas()["project"])["properties"]) == projects._KEYS
+    assert tuple(json.loads(schemas()["sweep"])["properties"]) == sweep_file._KEYS
+
+
+def test_new_files_name_their_schema_and_fit(tmp_path: Path) -> None:
+    new_project(tmp_path)
+    new_paper("gauss", tmp_path / "papers", tmp_path / ".schemas")
+    for file in (tmp_path / "replicate.toml", tmp_path / "papers" / "gauss" / "ledger.toml"):
+        text = file.read_text(encoding="utf-8")
+        named = re.match(r"#:schema (\S+)\n", text)
+        assert named
+        schema = (file.parent / named[1]).read_text(encoding="utf-8")
+        assert not list(jsonschema.Draft202012Validator(json.loads(schema)).iter_errors(tomllib.loads(text)))
+
+
+def test_the_command_prints_them(replicate: Run) -> None:
+    status, out, _ = replicate("schema")
+    assert status == 0
+    assert [line.split()[0] for line in out.splitlines()] == list(schemas())
+    assert json.loads(replicate("schema", "ledger")[1])["title"] == "ledger.toml"
+    assert replicate("schema", "x")[0] == 2
