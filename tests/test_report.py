@@ -267,7 +267,7 @@ def test_a_part_with_notes_of_its_own_has_a_page(make: Make) -> None:
             r"notes\.md:2: exhibit\('table-9'\): no such exhibit; allowed: table-1, fig-1",
         ),
         ("{{ exhibit('fig-1') }}\n{{ exhibit('fig-1') }}", r"notes\.md:2: .*placed twice"),
-        ("$\\nonsense{x}$", r"synthetic\.html: pandoc cannot convert a text: .*nonsense"),
+        ("$\\nonsense{x}$", r"synthetic\.html: pandoc cannot convert .*: unexpected control sequence .*nonsense"),
     ],
 )
 def test_wrong_prose_is_named(make: Make, notes: str, message: str, tmp_path: Path) -> None:
