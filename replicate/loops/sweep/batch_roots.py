@@ -13,7 +13,7 @@ Places = NDArray[np.intp]
 
 DENSE = 40  # samples of a piece, Lobatto points too
 STEPS = 4
-CONVERGED = 1e-8  # last step of Newton's method, after which the next would be rounding
+CONVERGED = 1e-6  # last step of Newton's method, after which the next would be rounding
 
 
 def dense_nodes() -> Array:

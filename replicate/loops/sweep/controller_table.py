@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,8 @@ GAINS = ("k", "ki", "kd", "b")
 class ControllerTable:
     """Gains, shape (n,) each, and for each controller the number of its form.
 
-    Two controllers have one form if they differ in the gains alone, and in no gain's being zero.
+    Two controllers have one form if they differ in the gains alone, and in no gain's being zero: the gains of a form
+    are one or zero.
     """
 
     k: Array
@@ -48,7 +49,17 @@ class ControllerTable:
             bases = list(known)
         pattern = 4 * (k != 0.0) + 2 * (ki != 0.0) + (kd != 0.0)
         _, first, form = np.unique(8 * base + pattern, return_index=True, return_inverse=True)
-        return cls(k, ki, kd, b, form, tuple(bases[base[i]] for i in first))
+        return cls(
+            k,
+            ki,
+            kd,
+            b,
+            form,
+            tuple(
+                replace(bases[base[i]], k=float(k[i] != 0.0), ki=float(ki[i] != 0.0), kd=float(kd[i] != 0.0))
+                for i in first
+            ),
+        )
 
 
 def form_of(controller: PID) -> PID:

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
-SUSPECTED = 1e-10  # residual of the recurrence, of the largest deviation, with which a pole is looked for
+SUSPECTED = 4e-12  # residual of the recurrence, of the largest deviation, with which a pole is looked for
 PROVEN = 1e-12  # residual of the fit with which it is the last one
 
 
@@ -113,9 +113,12 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
         return found
     if len(recent) < 3:
         return found
-    oldest, middle, newest = (np.concatenate(recent[i * splits : (i + 1) * splits]) for i in range(3))
+    oldest, middle, newest = (
+        recent[i] if splits == 1 else np.concatenate(recent[i * splits : (i + 1) * splits]) for i in range(3)
+    )
     start, oscillates = _starts(oldest, middle, newest, size)
-    chosen = np.nonzero(np.isfinite(start))[0]
+    # an oscillation that is still outside the band will be looked at again
+    chosen = np.nonzero(np.isfinite(start) & ~(oscillates & (np.abs(newest[-1]) > band)))[0]
     if chosen.size == 0:
         return found
     s = start[chosen]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,12 @@ from replicate.loops.plant import Plant
 from replicate.loops.units import Units
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+ComplexArray = NDArray[np.complexfloating[Any, Any]]
 Places = NDArray[np.intp]
+
+
+SHARED = ("controller_poles", "shared_num", "den", "zeros", "poles")
+OWN = ("gains", "controller_zeros", "num")
 
 
 @dataclass(frozen=True)
@@ -30,7 +35,8 @@ class LoopColumns:
     plant
         In units in which its dead time is one.
     form
-        A controller with the filters and weights that all share, in the same units; its gains count for nothing.
+        A controller with the filters and weights that all share, in the same units; of its gains only which are zero
+        counts.
     k, ki, kd, b
         Gains in these units, shape (n,).
     time, gain
@@ -61,7 +67,11 @@ class LoopColumns:
 
     def take(self, places: Places) -> LoopColumns:
         """Return some of the columns."""
-        return replace(self, k=self.k[places], ki=self.ki[places], kd=self.kd[places], b=self.b[places])
+        part = replace(self, k=self.k[places], ki=self.ki[places], kd=self.kd[places], b=self.b[places])
+        # what is known already is not computed again
+        part.__dict__.update({name: self.__dict__[name] for name in SHARED if name in self.__dict__})
+        part.__dict__.update({name: self.__dict__[name][:, places] for name in OWN if name in self.__dict__})
+        return part
 
     @cached_property
     def gains(self) -> Array:
@@ -71,22 +81,22 @@ class LoopColumns:
     @cached_property
     def controller_zeros(self) -> Array:
         """Coefficients of the controller's own numerator, measurement filter left out; descending powers of s."""
-        rows = [self.k, self.ki] if self.ki.any() else [self.k]
-        if self.kd.any():
+        rows = [self.k, self.ki] if self.form.ki else [self.k]
+        if self.form.kd:
             # (base)(lag s + 1) + kd s times the integrator
             lag, none = self.form.derivative_filter, np.zeros_like(self.k)
             rows = [high + lag * low for high, low in zip([none, *rows], [*rows, none], strict=True)]
             rows[0] = rows[0] + self.kd
-        elif not self.k.any():
+        elif not self.form.k:
             rows = rows[1:]
         return np.stack(rows) if rows else np.zeros((0, len(self)))
 
     @cached_property
     def controller_poles(self) -> Array:
         """Coefficients of the controller's denominator, the same for all, measurement filter left out."""
-        den = np.array([1.0, 0.0]) if self.ki.any() else np.array([1.0])
+        den = np.array([1.0, 0.0]) if self.form.ki else np.array([1.0])
         lag = self.form.derivative_filter
-        return np.asarray(np.polymul(den, [lag, 1.0]), dtype=float) if lag and self.kd.any() else den
+        return np.asarray(np.polymul(den, [lag, 1.0]), dtype=float) if lag and self.form.kd else den
 
     @cached_property
     def shared_num(self) -> Array:
@@ -103,6 +113,16 @@ class LoopColumns:
         """Coefficients of L's denominator, the same for all."""
         den = np.polymul(self.plant.den, self.controller_poles)
         return np.asarray(np.polymul(den, self.form.measurement_filter_polynomials()[1]), dtype=float)
+
+    @cached_property
+    def zeros(self) -> ComplexArray:
+        """The zeros of L that all columns share."""
+        return np.asarray(np.roots(self.shared_num), dtype=complex)
+
+    @cached_property
+    def poles(self) -> ComplexArray:
+        """The poles of L."""
+        return np.asarray(np.roots(self.den), dtype=complex)
 
     @property
     def feedthrough(self) -> Array:
@@ -131,7 +151,7 @@ class LoopColumns:
         reference, measured = setpoint * float(num[-1] / den[-1]), float(filter_num[-1] / filter_den[-1])
         if plant.num[-1] == 0.0 or not measured:
             return nan, nan
-        if self.ki.any():
+        if self.form.ki:
             output = np.full(len(self), reference / measured)
             return output, output / plant.gain - load
         if np.isinf(plant.gain):

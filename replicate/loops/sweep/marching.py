@@ -28,7 +28,7 @@ LAST_ROWS = chebyshev.values_to_coefficients(DEGREE)[-2:]
 AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
 RESOLVED = 1e-12  # size of the last coefficients of a control signal, relative to its largest value
 MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
-FIRST_LOOK, LOOKS = 6, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
+FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
 WORTH = 0.1  # share of loops that must have left before the others move together
 
 
@@ -100,7 +100,7 @@ def march(loops: LoopColumns, setpoint: float, load: float, until: float | None,
     band
         Half-width of the settling band: a response is followed at least until it is inside for good.
     """
-    chain = build_chain(loops.plant, loops.form, integral=bool(loops.ki.any()), derivative=bool(loops.kd.any()))
+    chain = build_chain(loops.plant, loops.form, integral=bool(loops.form.ki), derivative=bool(loops.form.kd))
     chain = chain.balanced(np.max(np.abs(loops.gains), axis=1))
     radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
     march = _March(loops, chain, setpoint, load, until, band)
@@ -249,7 +249,8 @@ class _Law:
         gains = loops.gains
         plain = bool(np.array_equal(chain.wx[1], chain.c) and np.array_equal(chain.wv[1], chain.d))
         direct = not chain.wx[0].any()  # no set-point filter: the filtered set-point is the set-point
-        rows = [w for w in range(4) if gains[w].any() and not (w == 1 and plain) and not (w == 0 and direct)]
+        used = (loops.form.k, loops.form.k, loops.form.ki, loops.form.kd)
+        rows = [w for w in range(4) if used[w] and not (w == 1 and plain) and not (w == 0 and direct)]
         blocks = np.concatenate([fixed.output, *(fixed.basis[w] for w in rows), fixed.state])
         constant = gains[0] * (setpoint * chain.wr[0]) if direct else np.zeros(len(loops))
         return cls(blocks, tuple(rows), plain, gains, constant)

@@ -149,7 +149,7 @@ class ResponseMetrics:
             series = batch_roots.series(self._gathered(piece, column))
             dense = batch_roots.samples(series)
             size, sign = np.abs(dense), np.sign(dense)
-            touching = (np.abs(size - width[column]) < TOUCHING * np.ptp(dense, axis=0)) & _summits(size)
+            touching = _summits(size, np.abs(size - width[column]) < TOUCHING * np.ptp(dense, axis=0))
             nodes, dense = batch_roots.sharpened(series, dense, touching, sign)
             beyond = np.abs(dense) > width[column]
             some = beyond.any(axis=0)
@@ -189,7 +189,7 @@ class ResponseMetrics:
             piece = np.argmax(reaching[:, column], axis=0)
             series = batch_roots.series(self._gathered(piece, column))
             dense = batch_roots.samples(series)
-            touching = (np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0)) & _summits(dense)
+            touching = _summits(dense, np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0))
             nodes, dense = batch_roots.sharpened(series, dense, touching, np.ones(dense.shape))
             beyond = dense >= level[column]
             some, at = beyond.any(axis=0), np.argmax(beyond, axis=0)
@@ -258,31 +258,37 @@ class ResponseMetrics:
         dense = batch_roots.samples(series)
         size, sign = np.abs(dense), np.sign(dense)
         # two zeros may hide next to an extremum that nearly touches zero
-        touching = _summits(-size) & (size < TOUCHING * np.ptp(dense, axis=0))
+        touching = size < TOUCHING * np.ptp(dense, axis=0)
         turned = sign[1:] != sign[:-1]  # there is a zero already
         touching[1:] &= ~turned
         touching[:-1] &= ~turned
+        touching = _summits(-size, touching)
         nodes, dense = batch_roots.sharpened(series, dense, touching, -sign)
         negative = dense < 0.0
-        place, before = np.nonzero((negative[1:] != negative[:-1]).T)
+        before, place = np.nonzero(negative[1:] != negative[:-1])
         running = _antiderivative() @ series  # zero at -1
         x = batch_roots.roots(
-            series[:, place],
-            nodes[before, place],
-            nodes[before + 1, place],
-            dense[before, place],
-            dense[before + 1, place],
-        )
+            series[:, place], nodes[before, place], nodes[before + 1, place],
+            dense[before, place], dense[before + 1, place],
+        )  # fmt: skip
         at_root = batch_roots.evaluate(running[:, place], x)
         sides = np.where(negative[before, place], -2.0, 2.0)
         total = np.where(negative[-1], -1.0, 1.0) * running.sum(axis=0)
         return np.asarray(total + np.bincount(place, weights=sides * at_root, minlength=total.size))
 
 
-def _summits(values: Array) -> Flags:
-    """Return which samples are no lower than their neighbours, ends included."""
-    padded = np.concatenate([np.full((1, values.shape[1]), -np.inf), values, np.full((1, values.shape[1]), -np.inf)])
-    return np.asarray((values >= padded[:-2]) & (values >= padded[2:]))
+def _summits(values: Array, candidates: Flags) -> Flags:
+    """Return which candidates among samples are no lower than their neighbours, ends included."""
+    columns = np.nonzero(candidates.any(axis=0))[0]
+    part = values[:, columns]
+    falls = part[1:] <= part[:-1]
+    rises = part[1:] >= part[:-1]
+    summits = candidates[:, columns]
+    summits[:-1] &= falls
+    summits[1:] &= rises
+    result = np.zeros(candidates.shape, dtype=bool)
+    result[:, columns] = summits
+    return result
 
 
 @cache

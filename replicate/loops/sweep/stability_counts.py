@@ -7,13 +7,15 @@ crossovers nearly touch or the curve nearly passes through -1, is left to the si
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.sweep.loop_columns import LoopColumns
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
+ComplexArray = NDArray[np.complexfloating[Any, Any]]
 Flags = NDArray[np.bool_]
 
 REAL = 1e-8  # imaginary part, relative to the modulus, of a root in w^2 that is real
@@ -28,8 +30,7 @@ def stability(loops: LoopColumns) -> tuple[NDArray[np.int8], Array]:
     The crossovers have shape (most, n), ascending; ``inf`` where a loop has fewer.
     """
     crossovers, doubtful = gain_crossovers(loops)
-    poles = np.roots(loops.den).astype(complex)
-    shared = np.roots(loops.shared_num).astype(complex)
+    poles, shared = loops.poles, loops.zeros
     own, lost = _controller_roots(loops.controller_zeros)
     doubtful |= lost
     most = crossovers.shape[0]
