@@ -105,7 +105,7 @@ def test_same_results_same_bytes(tmp_path: Path) -> None:
     one, other = written(tmp_path / "1"), written(tmp_path / "2")
     files = {path.relative_to(one): path.read_bytes() for path in one.rglob("*") if path.is_file()}
     assert files == {path.relative_to(other): path.read_bytes() for path in other.rglob("*") if path.is_file()}
-    assert len(files) == 20  # with the manifest; nine of them twice, once inside the report
+    assert len(files) == 22  # with the manifest; ten of them twice, once inside the report
     assert not any(str(tmp_path).encode() in content for content in files.values())
 
 

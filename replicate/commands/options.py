@@ -23,6 +23,10 @@ Out = Annotated[
     Path | None,
     typer.Option("--out", help="Folder for the results; default: the project's.", file_okay=False),
 ]
+SingleFile = Annotated[
+    bool,
+    typer.Option("--single-file", help="Also write each paper as one file that can be mailed, PAPER.html."),
+]
 Accepted = Annotated[
     Path | None,
     typer.Option("--accepted", help="Folder of the accepted state; default: the project's own."),

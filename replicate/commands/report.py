@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from replicate.commands.computing import Computing, computing
-from replicate.commands.options import BROKEN, DIFFERS, Accepted, Papers, accepted_folder, exit_with
+from replicate.commands.options import BROKEN, DIFFERS, Accepted, Papers, SingleFile, accepted_folder, exit_with
 from replicate.errors import TemplateError
 from replicate.terminal.streams import echo
 
@@ -14,13 +14,14 @@ from replicate.terminal.streams import echo
 def report(
     run: Computing,
     papers: Papers = None,
+    single_file: SingleFile = False,
 ) -> None:
     """Recompute every exhibit and write the report.
 
     Of papers that are named, their pages are written and what all pages share.
     """
     from replicate.report.data import expected_files, write_outputs
-    from replicate.report.pages import build_report
+    from replicate.report.pages import build_report, single_page
     from replicate.report.scope import Scope, owner_of
     from replicate.report.site import site_of
     from replicate.report.texts import unreadable
@@ -46,18 +47,24 @@ def report(
         except TemplateError:  # one paper's text must not take the pages of the others
             outcome = outcome.without(unreadable(outcome))
             pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
-        write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
+        data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         index = run.folder / "report" / pages[0].name
         rows = rows_of(outcome.papers)
         if rows:
             page = whatif_page(rows, back="index.html")
             (fresh / "report" / WHATIF).write_bytes(page.encode())
+        mailed = [paper for paper in outcome.papers if paper.id in named] if single_file else []
+        for paper in mailed:
+            text = single_page(paper, outcome.results, outcome.judgement, data, about)
+            (fresh / f"{paper.id}.html").write_bytes(text.encode())
         for path in [path for path in fresh.rglob("*") if path.is_file()]:
             if not scope.renews(path.relative_to(fresh).as_posix()):
                 path.unlink()
     outcome = outcome.of(named)
     print_summary(outcome, console())
     echo(f"\nreport: {index}")
+    for paper in mailed:
+        echo(f"in one file: {run.folder / paper.id}.html")
     exit_with(run.within, outcome)
 
 

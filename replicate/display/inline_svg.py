@@ -1,24 +1,25 @@
-"""A drawn figure as inline SVG: responsive, accessible, and in the colours of its page."""
+"""A drawn figure as inline SVG: responsive, accessible, small, and in the colours of its page."""
 
 from __future__ import annotations
 
 import html
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+from xml.etree import ElementTree as ET
 
+from replicate.display.live_curves import mark_curves
 from replicate.figures.style import themed
 
-_SVG_TAG = re.compile(r"<svg\b[^>]*>", re.DOTALL)
-_VIEW_BOX = re.compile(r'viewBox="([^"]+)"')
 # What an SVG file says about itself; in a page, the element's own title and description do.
-_FOR_FILES = re.compile(r"<(metadata|title)\b.*?</\1>\s*", re.DOTALL)
-# Nothing refers to groups by their ids, and every figure has the same ones.
-_GROUP_ID = re.compile(r'<g id="[^"]*"')
-_REFERENCE = re.compile(r'\bid="|href="#|url\(#')
+_FOR_FILES = {"metadata", "title"}
+_REFERENCE = re.compile(r"url\(#")
+_COORDINATE = re.compile(r"-?\d+\.\d{3,}")
+_SPACE = re.compile(r"\s+")
+_XLINK = "{http://www.w3.org/1999/xlink}href"
 
 
-def inline_svg(svg: str, id: str, title: str, description: str) -> str:
+def inline_svg(svg: str, id: str, title: str, description: str, axes: Sequence[Mapping[str, Any]] = ()) -> str:
     """Return an SVG document as an element that can stand in a page.
 
     Parameters
@@ -29,35 +30,84 @@ def inline_svg(svg: str, id: str, title: str, description: str) -> str:
         Id of the element, unique on the page; all ids inside begin with it.
     title, description
         Plain text for `<title>` and `<desc>`, which say what the image shows to those who cannot see it.
+    axes
+        What its axes hold; with it the curves are marked, so that a script can read values off them.
 
     Returns
     -------
     str
-        One `<svg role="img">` element in the page's colours; its width follows its container.
+        One `<svg role="img">` element in the page's colours; its width follows its container. Coordinates are rounded
+        to a hundredth of a point.
 
     Raises
     ------
     ValueError
         If the document has no `<svg>` element or no view box.
     """
-    tag = _SVG_TAG.search(svg)
-    view_box = _VIEW_BOX.search(tag[0]) if tag else None
-    if tag is None or view_box is None:
+    try:
+        root = ET.fromstring(svg, parser=ET.XMLParser(target=ET.TreeBuilder(insert_comments=True)))  # noqa: S314 -- drawn here
+    except ET.ParseError as error:
+        msg = f"{id}: the drawing is not an SVG document: {error}"
+        raise ValueError(msg) from error
+    view_box = root.get("viewBox")
+    if _name(root.tag) != "svg" or view_box is None:
         msg = f"{id}: the drawing is not an SVG document with a view box"
         raise ValueError(msg)
-    body = svg[tag.end() : svg.rindex("</svg>")]
-    body = _FOR_FILES.sub("", body)
-    body = _GROUP_ID.sub("<g", body)
-    body = _REFERENCE.sub(rf"\g<0>{id}-", body)
-    # matplotlib's style sheet addresses every element; inside a page that would be every element of the page.
-    body = body.replace('<style type="text/css">*{', f'<style type="text/css">#{id} *{{')
-    width, height = (float(size) for size in view_box[1].split()[2:])
+    mark_curves(root, axes)
+    body = "".join(text for child in root for text in _written(child, id))
+    width, height = (float(size) for size in view_box.split()[2:])
     return (
-        f'<svg id="{id}" role="img" aria-labelledby="{id}-title {id}-desc" viewBox="{view_box[1]}" '
+        f'<svg id="{id}" role="img" aria-labelledby="{id}-title {id}-desc" viewBox="{view_box}" '
         f'fill="currentColor" style="aspect-ratio: {width:g} / {height:g}; --width: {width:g}">'
         f'<title id="{id}-title">{html.escape(title)}</title>'
-        f'<desc id="{id}-desc">{html.escape(description)}</desc>{themed(body.strip())}</svg>'
+        f'<desc id="{id}-desc">{html.escape(description)}</desc>{themed(body)}</svg>'
     )
+
+
+def _name(tag: str) -> str:
+    return tag.rpartition("}")[2]
+
+
+def _written(element: ET.Element, id: str) -> Iterator[str]:
+    """Write an element and what is in it: without comments, without groups that change nothing."""
+    if not isinstance(element.tag, str):
+        return
+    name = _name(element.tag)
+    if name in _FOR_FILES:
+        return
+    attributes = dict(_attributes(element, name, id))
+    content = "".join(text for child in element for text in _written(child, id))
+    text = html.escape(element.text or "", quote=False)
+    if name == "style":
+        # matplotlib's style sheet addresses every element; inside a page that would be every element of the page.
+        text = text.replace("*{", f"#{id} *{{", 1)
+    elif name not in {"text", "tspan"}:
+        text = text.strip()
+    if name == "g" and not attributes:
+        yield content
+        return
+    if name in {"g", "defs"} and not content:
+        return
+    opening = "".join([name, *(f' {key}="{html.escape(value)}"' for key, value in attributes.items())])
+    yield f"<{opening}>{text}{content}</{name}>" if text or content else f"<{opening}/>"
+
+
+def _attributes(element: ET.Element, name: str, id: str) -> Iterator[tuple[str, str]]:
+    for key, value in element.items():
+        if key == "id":
+            if name != "g":  # nothing refers to groups by their ids, and every figure has the same ones
+                yield key, f"{id}-{value}"
+        elif key == _XLINK:
+            yield "xlink:href", f"#{id}-{value[1:]}" if value.startswith("#") else value
+        elif key in {"d", "x", "y"}:
+            yield key, _SPACE.sub(" ", _COORDINATE.sub(_rounded, value)).strip()
+        else:
+            yield _name(key), _REFERENCE.sub(f"url(#{id}-", value)
+
+
+def _rounded(match: re.Match[str]) -> str:
+    text = f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
+    return "0" if text == "-0" else text
 
 
 def description(alt: str, axes: Sequence[Mapping[str, Any]]) -> str:

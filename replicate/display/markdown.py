@@ -14,6 +14,7 @@ from typing import Literal
 
 from markupsafe import Markup
 
+from replicate.display.formulas import formulas
 from replicate.display.safe_html import sanitised
 from replicate.errors import TemplateError, UnreadableFormulaError
 
@@ -32,17 +33,6 @@ _FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LIST
 _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)", re.DOTALL)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
-
-
-_DISPLAY = re.compile(r'<math display="block">.*?</math>', re.DOTALL)
-_LONG_FORMULA = 45  # characters of TeX; a longer one may have to scroll on a phone
-
-
-def _reachable(match: re.Match[str]) -> str:
-    """Let the keyboard reach a formula that may be too wide for a small screen."""
-    tex = re.search(r"<annotation[^>]*>(.*?)</annotation>", match[0], re.DOTALL)
-    long = tex is not None and len(html.unescape(tex[1])) > _LONG_FORMULA
-    return match[0].replace("<math ", '<math tabindex="0" ', 1) if long else match[0]
 
 
 class MarkdownBatch:
@@ -118,7 +108,7 @@ class MarkdownBatch:
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
         document = sanitised(document.replace("\r\n", "\n")).replace(' id="footnotes"', "")
-        document = _DISPLAY.sub(_reachable, document)
+        document = formulas(document)
         parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():
@@ -148,12 +138,11 @@ def _not_a_block(text: str) -> str:
 
 
 def strip_elements(text: str) -> str:
-    r"""Return the text of an HTML fragment without its elements.
+    """Return the text of an HTML fragment without its elements.
 
     Examples
     --------
-    >>> strip_elements('<em>a</em> &lt; <math><mi>b</mi><annotation>\\beta</annotation></math>')
+    >>> strip_elements("<em>a</em> &lt; <math><mi>b</mi></math>")
     'a < b'
     """
-    text = re.sub(r"<annotation\b.*?</annotation>", "", text, flags=re.DOTALL)
     return html.unescape(re.sub(r"<[^>]*>", "", text)).strip()

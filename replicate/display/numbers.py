@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from decimal import ROUND_HALF_EVEN, Decimal
 
@@ -14,6 +15,7 @@ FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
 OVERLINE = "\N{COMBINING OVERLINE}"
 PUNCTUATION_SPACE = "\N{PUNCTUATION SPACE}"  # as wide as a decimal point
 
+_HYPHEN = re.compile(r"(?<![\w.)\]])-(?=[\d.\[])|(?<=[\d.]e)-(?=\d)")  # before a number, not between two
 _PLAIN_DIGITS = 6  # significant digits where nothing printed tells how many are of interest
 _LONG_PRINT = 5  # a print with at least so many digits is followed by one more, a shorter one by two
 _MOST_PADDING = 8  # a column that mixes 0.0000001 and 1000 is not aligned
@@ -79,13 +81,14 @@ def _minus(text: str) -> str:
 
 
 def overlined(printed: str) -> str:
-    r"""Return a print as the paper shows it: digits in brackets under an overbar.
+    r"""Return a print as the paper shows it: digits in brackets under an overbar, a minus sign that is one.
 
     Examples
     --------
-    >>> overlined("0.916"), overlined("0.91[6]") == "0.916\N{COMBINING OVERLINE}"
-    ('0.916', True)
+    >>> overlined("-0.916"), overlined("0.91[6]") == "0.916\N{COMBINING OVERLINE}"
+    ('−0.916', True)
     """
+    printed = _HYPHEN.sub(MINUS, printed)
     plain, _, repeated = printed.partition("[")
     digits, _, rest = repeated.partition("]")
     return plain + "".join(f"{digit}{OVERLINE}" for digit in digits) + rest

@@ -61,11 +61,17 @@ def render(template: str, name: str, **context: Any) -> str:
         consequences=consequences,
         numbers=numbers,
         off=off,
+        script=_script,
         versions=environment.versions(),
         style=Markup(_STYLE),  # noqa: S704 -- two marks, replaced below
         policy=Markup(_POLICY),  # noqa: S704
     )
     return visible(with_policy(batch.substitute(text).replace(_STYLE, style_sheet(context.get("theme") or {}))))
+
+
+def _script(name: str) -> Markup:
+    """Return a hand-written script of the pages."""
+    return Markup((templates_dir() / name).read_text(encoding="utf-8"))  # noqa: S704 -- the project's own
 
 
 _STYLE, _POLICY = "\ue006style\ue007", "\ue006policy\ue007"

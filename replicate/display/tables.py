@@ -14,10 +14,12 @@ from replicate.exhibits.frames import FrameCells
 from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import Ranges, TableResult
-from replicate.verdicts.rows import HOLDING, Computed, VerdictRow
+from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
 _MANY_CELLS = 6
+_WRONG = {*ERRORS, "unexplained"}
+_TOWER, _MOST_STRETCHES = 14, 3  # lines of a table with one column from which on it is a tower; pieces at most
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,11 @@ class Value:
     point: str = ""
     off: str = ""
 
+    @property
+    def same(self) -> tuple[str, ...]:
+        """What two readings have to share to be shown as one."""
+        return self.full or self.text, self.match.kind, self.range
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -59,9 +66,26 @@ class Cell:
     note: int = 0  # number of the explanation under the table; 0 if it needs none
     texts: Mapping[str, str] = field(default_factory=dict)  # the column's numbers with padding
 
+    @property
+    def alike(self) -> list[tuple[list[str], Value]]:
+        """The computed values with the readings that agree in them, in the order of the readings."""
+        groups: dict[tuple[str, ...], tuple[list[str], Value]] = {}
+        for value in self.values:
+            groups.setdefault(value.same, ([], value))[0].append(value.reading.id)
+        return list(groups.values())
+
     def padded(self, text: str) -> str:
         """Return a number of this cell padded so that the decimal points of its column are in line."""
         return self.texts.get(text, text)
+
+
+@dataclass(frozen=True)
+class Line:
+    """One line of a row: the readings that agree in all of its cells, and what they compute."""
+
+    readings: list[str]
+    values: list[Value]
+    places: str  # of the readings among those of the table, from 2 on: the first choice of a list is "all"
 
 
 @dataclass(frozen=True)
@@ -95,14 +119,55 @@ class TableView:
         """The rows in which some printed value does not hold."""
         return {verdict.row for verdict in self.verdicts if verdict.verdict not in HOLDING}
 
+    @property
+    def line_count(self) -> int:
+        """How long the table is."""
+        return sum(self._height(cells) for _, cells in self.rows)
+
+    def _height(self, cells: list[Cell]) -> int:
+        lines = len(self.lines(cells))
+        return lines + 1 if self.verdicts or lines > 1 else lines
+
+    @property
+    def stretches(self) -> list[list[tuple[int, str, list[Cell]]]]:
+        """The numbered rows of the table; those of a long one with a single column in stretches of similar length.
+
+        The stretches can stand beside each other, where the whole would be a mostly white tower.
+        """
+        rows = [(number, row, cells) for number, (row, cells) in enumerate(self.rows, 1)]
+        wanted = min(_MOST_STRETCHES, -(-self.line_count // _TOWER)) if len(self.columns) == 1 else 1
+        stretches: list[list[tuple[int, str, list[Cell]]]] = [[] for _ in range(max(1, wanted))]
+        height, total = 0, max(1, self.line_count)
+        for entry in rows:
+            stretches[height * len(stretches) // total].append(entry)
+            height += self._height(entry[2])
+        return [stretch for stretch in stretches if stretch] or [[]]
+
     @staticmethod
-    def lines(row: list[Cell]) -> list[tuple[list[str], list[Value]]]:
-        """Return the lines of a row without printed values: readings that agree in all of it share one."""
-        lines: dict[tuple[str, ...], tuple[list[str], list[Value]]] = {}
+    def found(row: list[Cell]) -> str:
+        """Return the verdicts of a row as names of classes, by which a page selects what it shows."""
+        return classes(cell.verdict.verdict for cell in row if cell.verdict)
+
+    def lines(self, row: list[Cell]) -> list[Line]:
+        """Return the lines of a row: readings that agree in all of it share one."""
+        places = {reading.id: str(place) for place, reading in enumerate(self.readings, 2)}
+        lines: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[Value]]] = {}
         for values in zip(*(entry.values for entry in row), strict=True):
-            ids, _ = lines.setdefault(tuple(value.full or value.text for value in values), ([], list(values)))
+            ids, _ = lines.setdefault(tuple(value.same for value in values), ([], list(values)))
             ids.append(values[0].reading.id)
-        return list(lines.values())
+        return [Line(ids, values, " ".join(places[id] for id in ids)) for ids, values in lines.values()]
+
+
+def classes(verdicts: Iterable[str]) -> str:
+    """Return verdicts as names of classes of an element; ``has-wrong`` stands for errors and open questions.
+
+    Examples
+    --------
+    >>> classes(["near", "misprint", "near"])
+    'has-near has-misprint has-wrong'
+    """
+    found = dict.fromkeys(verdicts)
+    return " ".join([f"has-{id}" for id in found] + (["has-wrong"] if _WRONG & found.keys() else []))
 
 
 def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]) -> TableView:

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from replicate.report.views import ExhibitView
-from replicate.verdicts.rows import CLAIM_COLUMN, ERRORS, HOLDING, VerdictRow
+from replicate.verdicts.rows import CLAIM_COLUMN, HOLDING
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,3 @@ def advice(exhibits: Iterable[ExhibitView]) -> Advice:
         else:
             found.beware.append(exhibit)
     return found
-
-
-def wrong_cells(verdicts: Iterable[VerdictRow]) -> list[VerdictRow]:
-    """Return the printed numbers that are in error, worst first as `replicate.display.consequences.errors` says."""
-    return [verdict for verdict in verdicts if verdict.column != CLAIM_COLUMN and verdict.verdict in ERRORS]

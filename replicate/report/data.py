@@ -1,4 +1,4 @@
-"""Write what a run leaves behind: results, verdicts, errata, inventory, tables, figures and a JUnit file.
+"""Write what a run leaves behind: results, verdicts, errata, inventory, tables, figures, their columns, a JUnit file.
 
 Same results, same bytes: no clock, no absolute paths, rows in the order of the papers.
 """
@@ -15,6 +15,8 @@ from replicate.display.csv_text import csv_text, curves_text, table_text
 from replicate.display.junit import junit
 from replicate.exhibits import Figure, Paper
 from replicate.exhibits.results import FigureResult, Results, TableResult
+from replicate.report.columns import COLUMN_COLUMNS, column_rows
+from replicate.report.pages import DATA
 from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
 
 RESULT_COLUMNS = ("paper", "exhibit", "row", "column", "printed", "reading", "computed", "match")
@@ -53,9 +55,6 @@ ERRATA_COLUMNS = (
 EXHIBIT_COLUMNS = ("paper", "exhibit", "kind", "title", "status", "reason")
 
 
-DATA = "data"
-
-
 def expected_files(papers: Iterable[Paper]) -> list[str]:
     """Return files that a run will write, as far as they are known before, by name inside the output folder."""
     figures = (
@@ -67,7 +66,7 @@ def expected_files(papers: Iterable[Paper]) -> list[str]:
     return ["results.csv", "verdicts.csv", "exhibits.csv", "junit.xml", "report/index.html", *figures]
 
 
-def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> None:
+def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> dict[str, bytes]:
     """Write everything but the report into a folder.
 
     Parameters
@@ -79,34 +78,47 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
     folder
         An existing folder; see `replicate.staging.staged` for how to replace an earlier state safely.
 
+    Returns
+    -------
+    dict
+        The files of the data by name.
+
     Raises
     ------
     OSError
         If a file cannot be written.
     """
-    _write_data(papers, results, judgement, folder)
-    # A second copy inside the report, so that the report can be mailed whole.
-    _write_data(papers, results, judgement, folder / "report" / DATA)
-    _write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement))
+    files = data_files(papers, results, judgement)
+    for name, content in files.items():
+        _write(folder / name, content)
+        # The same bytes inside the report, so that the report can be mailed whole.
+        _write(folder / "report" / DATA / name, content)
+    _write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement).encode())
+    return files
 
 
-def _write_data(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> None:
-    _write(folder / "results.csv", _records(judgement.results, RESULT_COLUMNS))
+def data_files(papers: Sequence[Paper], results: Results, judgement: Judgement) -> dict[str, bytes]:
+    """Return the files of the data by name."""
     pages = {paper.id: pages_of(paper) for paper in papers}
-    _write(folder / "verdicts.csv", _addressed(judgement.verdicts, VERDICT_COLUMNS, pages))
-    _write(folder / "errata.csv", _addressed(errors(judgement.verdicts), ERRATA_COLUMNS, pages))
-    _write(folder / "exhibits.csv", _records(judgement.exhibits, EXHIBIT_COLUMNS))
-    (folder / "tables").mkdir()
-    (folder / "figures").mkdir()
+    found: dict[str, str | bytes] = {
+        "results.csv": _records(judgement.results, RESULT_COLUMNS),
+        "verdicts.csv": _addressed(judgement.verdicts, VERDICT_COLUMNS, pages),
+        "errata.csv": _addressed(errors(judgement.verdicts), ERRATA_COLUMNS, pages),
+        "exhibits.csv": _records(judgement.exhibits, EXHIBIT_COLUMNS),
+        "columns.csv": csv_text(COLUMN_COLUMNS, (one for paper in papers for one in column_rows(paper, results))),
+    }
     for (paper, exhibit), result in results.items():
         if isinstance(result, TableResult):
             for reading, frame in result.frames.items():
-                _write(folder / "tables" / paper / f"{exhibit}.{reading}.csv", table_text(frame))
+                found[f"tables/{paper}/{exhibit}.{reading}.csv"] = table_text(frame)
         elif isinstance(result, FigureResult) and not result.error:
-            place = folder / "figures" / paper
-            _write(place / f"{exhibit}.svg", result.svg)
-            _write(place / f"{exhibit}.png", result.png)
-            _write(place / f"{exhibit}.csv", curves_text(result.curves))
+            place = f"figures/{paper}/{exhibit}"
+            found |= {
+                f"{place}.svg": result.svg,
+                f"{place}.png": result.png,
+                f"{place}.csv": curves_text(result.curves),
+            }
+    return {name: text.encode() if isinstance(text, str) else text for name, text in found.items()}
 
 
 def _records(records: Iterable[ResultRow | VerdictRow | ExhibitRow], columns: Sequence[str]) -> str:
@@ -131,6 +143,6 @@ def _one_line(text: Any) -> str:
     return " ".join(str(text).split())
 
 
-def _write(path: Path, content: str | bytes) -> None:
+def _write(path: Path, content: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    path.write_bytes(content)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from replicate.display.labels import heading
 from replicate.exhibits import Claims, Paper
 from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
 
+_SENTENCE = re.compile(r"(?<=[\w)$%`*][.])\s+(?=[A-Z$*`])")
 _TOLD = frozenset({"misprint", "damaged", "fails"})  # to the authors, besides all that has a consequence
 
 
@@ -49,11 +51,32 @@ class Erratum:
         """Whether the authors should hear of it."""
         return self.first.verdict in _TOLD or self.first.consequence not in {"", "none"}
 
+    def named(self, key: str) -> str:
+        """Return the display text of a row or column key."""
+        return self.labels.get(key, key.replace("_", " "))
+
+    @property
+    def page(self) -> str:
+        """File name of the page on which it stands."""
+        return self.address.partition("#")[0]
+
+    @property
+    def reason(self) -> str:
+        """The first sentence of the explanation."""
+        text = " ".join(self.first.explanation.split())
+        sentence = _SENTENCE.split(text, maxsplit=1)[0]
+        # A full stop inside a formula, code or emphasis ends no sentence.
+        return sentence if all(sentence.count(mark) % 2 == 0 for mark in "$`*") else text
+
     @staticmethod
-    def right(row: VerdictRow) -> str:
+    def number(row: VerdictRow) -> float | None:
+        """Return what the deciding reading gives for a cell."""
+        return next((one.number for one in row.values if one.reading == row.reading), None)
+
+    @classmethod
+    def right(cls, row: VerdictRow) -> str:
         """Return the right value of a cell as text: the corrected one, or what the deciding reading gives."""
-        number = next((one.number for one in row.values if one.reading == row.reading), None)
-        return row.corrected or numbers.shown(number, row.value)
+        return row.corrected or numbers.shown(cls.number(row), row.value)
 
 
 @dataclass(frozen=True)

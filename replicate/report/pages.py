@@ -1,28 +1,29 @@
 """The report: an overview of all papers and one page per paper (or per part of a long one).
 
-Every page stands alone: its style is inside it, nothing is fetched, no script is needed.
+Every page stands alone: style and script are inside it, nothing is fetched, and all can be read without the script.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import dropwhile, takewhile
 from pathlib import Path
 
 from replicate.display.addresses import address, page_name, pages_of, parts
-from replicate.display.consequences import consequential, errors
+from replicate.display.consequences import consequential
 from replicate.display.rendering import render
-from replicate.errors import OutputError, TemplateError
+from replicate.errors import TemplateError
 from replicate.exhibits import Claims, Exhibit, Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
-from replicate.report.advice import advice, wrong_cells
-from replicate.report.errata import errata
+from replicate.report.advice import advice
 from replicate.report.errata_sheet import sheets
 from replicate.report.notes import Piece, pieces, place
+from replicate.report.search import KINDS, hits
+from replicate.report.single_file import self_contained
 from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
@@ -33,6 +34,8 @@ INDEX = "index.html"
 METHODS = "methods.html"
 VERDICTS = "verdicts.html"  # in its place, where the project has no page on methods
 ERRATA = "errata.html"
+SEARCH = "search.html"
+DATA = "data"  # the folder of what can be downloaded
 
 _MOST_GRAVE = 8
 
@@ -112,7 +115,7 @@ def build_report(
     ------
     TemplateError
         If prose asks for something that does not exist or cannot be converted.
-    OutputError
+    OSError
         If a file cannot be written.
     """
     site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
@@ -128,7 +131,16 @@ def build_report(
     name = METHODS if about.methods else VERDICTS
     verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")
     texts[name] = render("methods.html", name, verdicts=verdicts, **shared)
-    texts[ERRATA] = render("errata.html", ERRATA, sheets=sheets(papers, judgement), **shared)
+    found = sheets(papers, judgement)
+    mistakes = [erratum for sheet in found for erratum in sheet.errata]
+    texts[ERRATA] = render("errata.html", ERRATA, sheets=found, **shared)
+    listed = hits(
+        papers,
+        judgement,
+        {paper.id: pages_of(paper) for paper in papers},
+        {sheet.paper.id: sheet.errata for sheet in found},
+    )
+    texts[SEARCH] = render("search.html", SEARCH, hits=listed, kinds=KINDS, **shared)
     for pages in site.values():
         for page in pages:
             texts[page.file] = render(
@@ -136,23 +148,13 @@ def build_report(
                 page.file,
                 page=page,
                 pages=pages,
-                mistakes=errata(page.exhibits),
-                wrong=wrong_cells(errors(page.verdicts)),
+                mistakes=[erratum for erratum in mistakes if erratum.page == page.file],
                 **shared,
             )
-    written = []
+    out_dir.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
-        path = out_dir / name
-        try:
-            out_dir.mkdir(parents=True, exist_ok=True)
-            path.write_text(text, encoding="utf-8", newline="\n")
-        except OSError as error:
-            if out_dir.parent.parent.name == ".replicate":
-                raise  # a staged report: who stages it knows the place that the user named
-            msg = f"{path}: cannot be written: {error.strerror or error}"
-            raise OutputError(msg) from error
-        written.append(path)
-    return written
+        (out_dir / name).write_bytes(text.encode())
+    return [out_dir / name for name in texts]
 
 
 def _sentence(exhibit: Exhibit, row: VerdictRow) -> str:
@@ -165,26 +167,54 @@ def _address(site: Mapping[str, Sequence[Page]], row: VerdictRow) -> str:
     return address(page.file, row.exhibit, row.row, row.column)
 
 
+def single_page(
+    paper: Paper, results: Results, judgement: Judgement, data: Mapping[str, bytes], about: Site | None = None
+) -> str:
+    """Return a paper with all its parts as one page that needs no file beside it.
+
+    Parameters
+    ----------
+    data
+        What `replicate.report.data.data_files` returns.
+
+    Raises
+    ------
+    TemplateError
+        If prose asks for something that does not exist or cannot be converted.
+    """
+    about = about or Site()
+    views = exhibit_views(paper, results, judgement, pages_of(paper))
+    texts = [text for _, text in _texts(paper, results, judgement, views)]
+    page = Page(paper, "", paper.title, pieces("\n\n".join(texts)), views)
+    mistakes = [erratum for sheet in sheets([paper], judgement) for erratum in sheet.errata]
+    text = render(
+        "paper.html", page.file, page=page, pages=[page], mistakes=mistakes, language=about.language, theme=about.theme
+    )
+    own = {page.file, *(page_name(paper.id, part) for part in parts(paper))}
+    return self_contained(text, own, {f"{DATA}/{name}": content for name, content in data.items()})
+
+
 def paper_pages(paper: Paper, results: Results, judgement: Judgement) -> list[Page]:
     """Return the pages of a paper, the main page first."""
-    folder = paper.folder()
     views = exhibit_views(paper, results, judgement, pages_of(paper))
     pages = []
-    for part, file in [("", "notes.md"), *parts(paper).items()]:
+    for part, whole in _texts(paper, results, judgement, views):
         here = [view for view in views if view.page == page_name(paper.id, part)]
-        placing = _Placing(page_name(paper.id, part), views)
-        prose = Prose(paper, results, judgement.verdicts, {"exhibit": placing})
-        notes = folder / file
-        text = (
-            prose.render(read_text(notes, display_name(notes), TemplateError), display_name(notes))
-            if notes.is_file()
-            else ""
-        )
-        title = paper.title
-        if part:
-            title, text = _title(text, f"Part {part}")
+        title, text = _title(whole, f"Part {part}") if part else (paper.title, whole)
         pages.append(Page(paper, part, title, pieces(text), here))
     return pages
+
+
+def _texts(
+    paper: Paper, results: Results, judgement: Judgement, views: Sequence[ExhibitView]
+) -> Iterator[tuple[str, str]]:
+    """Yield the parts of a paper with the text of their notes, in which exhibits have their places."""
+    folder = paper.folder()
+    for part, file in [("", "notes.md"), *parts(paper).items()]:
+        prose = Prose(paper, results, judgement.verdicts, {"exhibit": _Placing(page_name(paper.id, part), views)})
+        notes = folder / file
+        name = display_name(notes)
+        yield part, prose.render(read_text(notes, name, TemplateError), name) if notes.is_file() else ""
 
 
 class _Placing:

@@ -29,8 +29,12 @@ class Scope:
         [True, True, True, False]
         >>> scope.renews("figures/ali/fig-1.svg"), scope.renews("report/ali-part-2.html")
         (False, False)
+        >>> scope.renews("khan.html"), scope.renews("ali.html")
+        (True, False)
         """
         room, _, rest = name.partition("/")
+        if not rest and room.endswith(".html"):
+            return room.removesuffix(".html") not in self.others
         if room in ("tables", "figures"):
             return rest.partition("/")[0] not in self.others
         if room == "report":

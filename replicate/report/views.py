@@ -13,7 +13,7 @@ from replicate.display.inline_svg import description, inline_svg
 from replicate.display.labels import heading
 from replicate.display.scores import Score
 from replicate.display.source_code import Source, sources
-from replicate.display.tables import TableView, table_view
+from replicate.display.tables import TableView, classes, table_view
 from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, Paper, Table
 from replicate.exhibits.numerals import parse_number
 from replicate.exhibits.printed import PrintedValue
@@ -40,6 +40,11 @@ class ClaimView:
     value: str
     error: str
 
+    @property
+    def found(self) -> str:
+        """Its verdict as names of classes, by which a page selects what it shows."""
+        return classes([self.finding.verdict] if self.finding else [])
+
 
 @dataclass(frozen=True)
 class ExhibitView:
@@ -60,6 +65,11 @@ class ExhibitView:
     claims: list[ClaimView] = field(default_factory=list)
     caption: str = ""
     files: list[tuple[str, str]] = field(default_factory=list)
+
+    @property
+    def found(self) -> str:
+        """Its verdicts as names of classes, by which a page selects what it shows."""
+        return classes(one.verdict for one in self.verdicts)
 
 
 def exhibit_views(
@@ -133,7 +143,7 @@ def _figure(figure: Figure, result: FigureResult) -> FigureView:
     if result.error:
         return FigureView(figure, Markup(""), result.error, [])
     base = f"data/figures/{result.paper}/{figure.id}"
-    svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, description(figure.alt, result.axes))
+    svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, description(figure.alt, result.axes), result.axes)
     files = [(suffix.upper(), f"{base}.{suffix}") for suffix in ("svg", "png", "csv")]
     return FigureView(figure, Markup(svg), "", files)  # noqa: S704 -- drawn here; its texts are escaped
 

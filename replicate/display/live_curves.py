@@ -1,0 +1,102 @@
+"""Mark the curves of a drawing, so that a page can read values off them and switch them on and off.
+
+matplotlib names its groups by kind (``axes_1``, ``line2d_7``, ``legend_1``) and writes the text of a legend as a
+comment beside its outlines. That is enough to tell which line is which curve: a line belongs to the legend entry that
+is drawn in the same style.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+from xml.etree import ElementTree as ET
+
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+_SCALES = {"linear", "log"}
+
+
+def mark_curves(root: ET.Element, panels: Sequence[Mapping[str, Any]]) -> None:
+    """Add ``data-`` attributes to a drawing.
+
+    Parameters
+    ----------
+    root
+        The drawing, with the ids that matplotlib gives; it is changed.
+    panels
+        Descriptions of its axes, in the order of the drawing. Nothing is marked if they are not as many.
+
+    Notes
+    -----
+    Axes get ``data-box`` (left, top, right and bottom edge in the drawing's units) and ``data-x``, ``data-y`` (limits
+    and scale); a curve gets ``data-curve`` with its name, which is empty if the legend has none; the parts of a legend
+    entry get ``data-legend``.
+    """
+    groups = [element for element in root.iter() if _id(element).startswith("axes_")]
+    if len(groups) != len(panels):
+        return
+    for group, panel in zip(groups, panels, strict=True):
+        box = _box(group)
+        if box is None or "polar" in panel or not {panel.get("xscale"), panel.get("yscale")} <= _SCALES:
+            continue
+        names = dict(_legend(group))
+        marked = False
+        for line in group:
+            path = _line(line)
+            if path is not None:
+                line.set("data-curve", names.get(_look(path), ""))
+                marked = True
+        if marked:
+            group.set("data-box", " ".join(f"{edge:g}" for edge in box))
+            for axis in "xy":
+                low, high = panel[f"{axis}lim"]
+                group.set(f"data-{axis}", f"{low:.9g} {high:.9g} {panel[f'{axis}scale']}")
+
+
+def _id(element: ET.Element) -> str:
+    return element.get("id") or ""
+
+
+def _line(group: ET.Element) -> ET.Element | None:
+    """Return the path of a line without markers."""
+    paths = list(group)
+    if not _id(group).startswith("line2d_") or len(paths) != 1 or _tag(paths[0]) != "path":
+        return None
+    return paths[0] if "stroke:" in paths[0].get("style", "") else None
+
+
+def _tag(element: ET.Element) -> str:
+    return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
+
+
+def _look(path: ET.Element) -> tuple[str, ...]:
+    """Return what tells curves apart: colour, dashes and width."""
+    parts = dict(part.strip().partition(":")[::2] for part in path.get("style", "").split(";"))
+    return tuple(
+        parts.get(name, "").strip() for name in ("stroke", "stroke-dasharray", "stroke-width", "stroke-opacity")
+    )
+
+
+def _box(axes: ET.Element) -> tuple[float, float, float, float] | None:
+    patch = next((path for group in axes if _id(group).startswith("patch_") for path in group), None)
+    numbers = [float(number) for number in _NUMBER.findall(patch.get("d", ""))] if patch is not None else []
+    if len(numbers) < 8:
+        return None
+    return min(numbers[::2]), min(numbers[1::2]), max(numbers[::2]), max(numbers[1::2])
+
+
+def _legend(axes: ET.Element) -> Iterator[tuple[tuple[str, ...], str]]:
+    """Yield looks and names of a legend's entries: a handle stands before its text."""
+    for legend in (group for group in axes if _id(group).startswith("legend_")):
+        handle: ET.Element | None = None
+        for part in legend:
+            text = next((str(child.text).strip() for child in part if child.tag is ET.Comment), "")
+            if _line(part) is not None:
+                handle = part
+            elif text and handle is not None:
+                path = _line(handle)
+                assert path is not None  # noqa: S101  -- it was when it became the handle
+                for piece in (handle, part):
+                    piece.set("data-legend", text)
+                yield _look(path), text
+                handle = None
