@@ -10,7 +10,7 @@ _FORMULA = re.compile(
     r'<math display="(block|inline)"><semantics>(.*?)<annotation[^>]*>(.*?)</annotation></semantics></math>', re.DOTALL
 )
 _LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
-_VERY_LONG = 40
+_VERY_LONG = 34
 _BREAKS = {"=", "≤", "≥", "<", ">", "≈", "≠", "→", "+", "−"}  # a line may break before these, as in a printed text
 
 
@@ -42,7 +42,7 @@ def _formula(match: re.Match[str]) -> str:
 
 
 def _pieces(content: str, inside: int) -> list[str]:
-    """Cut a formula before the relations and signs that stand in no fraction or root, and in at most so many brackets."""
+    """Cut a formula before its relations and signs outside fractions and roots, and in at most so many brackets."""
     row = ET.fromstring(content)  # noqa: S314 -- pandoc's, and sanitised
     if row.tag != "mrow":
         return [content]

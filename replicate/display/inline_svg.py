@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from xml.etree import ElementTree as ET
 
-from replicate.display.live_curves import mark_curves
+from replicate.display.live_curves import mark_curves, tag
 from replicate.figures.style import themed
 
 # What an SVG file says about itself; in a page, the element's own title and description do.
@@ -50,7 +50,7 @@ def inline_svg(svg: str, id: str, title: str, description: str, axes: Sequence[M
         msg = f"{id}: the drawing is not an SVG document: {error}"
         raise ValueError(msg) from error
     view_box = root.get("viewBox")
-    if _name(root.tag) != "svg" or view_box is None:
+    if tag(root) != "svg" or view_box is None:
         msg = f"{id}: the drawing is not an SVG document with a view box"
         raise ValueError(msg)
     mark_curves(root, axes)
@@ -70,10 +70,8 @@ def _name(tag: str) -> str:
 
 def _written(element: ET.Element, id: str) -> Iterator[str]:
     """Write an element and what is in it: without comments, without groups that change nothing."""
-    if not isinstance(element.tag, str):
-        return
-    name = _name(element.tag)
-    if name in _FOR_FILES:
+    name = tag(element)
+    if not name or name in _FOR_FILES:
         return
     attributes = dict(_attributes(element, name, id))
     content = "".join(text for child in element for text in _written(child, id))

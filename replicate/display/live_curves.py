@@ -60,13 +60,15 @@ def _id(element: ET.Element) -> str:
 def _line(group: ET.Element) -> ET.Element | None:
     """Return the path of a line without markers."""
     paths = list(group)
-    if not _id(group).startswith("line2d_") or len(paths) != 1 or _tag(paths[0]) != "path":
+    if not _id(group).startswith("line2d_") or len(paths) != 1 or tag(paths[0]) != "path":
         return None
     return paths[0] if "stroke:" in paths[0].get("style", "") else None
 
 
-def _tag(element: ET.Element) -> str:
-    return element.tag.rpartition("}")[2] if isinstance(element.tag, str) else ""
+def tag(element: ET.Element) -> str:
+    """Return the name of an element without its namespace; empty for a comment, whose "tag" is a function."""
+    name: object = element.tag
+    return name.rpartition("}")[2] if isinstance(name, str) else ""
 
 
 def _look(path: ET.Element) -> tuple[str, ...]:
@@ -90,7 +92,7 @@ def _legend(axes: ET.Element) -> Iterator[tuple[tuple[str, ...], str]]:
     for legend in (group for group in axes if _id(group).startswith("legend_")):
         handle: ET.Element | None = None
         for part in legend:
-            text = next((str(child.text).strip() for child in part if child.tag is ET.Comment), "")
+            text = next((str(child.text).strip() for child in part if not tag(child)), "")
             if _line(part) is not None:
                 handle = part
             elif text and handle is not None:
