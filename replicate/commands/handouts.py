@@ -70,6 +70,7 @@ def handout(
     )
     from replicate.handout import language as language_of
     from replicate.staging import staged
+    from replicate.whatif import write_whatif
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
@@ -112,6 +113,7 @@ def handout(
                 file_format=file_format,
                 sheet=sheet,
             )
+        written += write_whatif(outcome.papers, fresh / "handouts")  # exercises link to it
     for path in written:
         echo(f"handout: {run.folder / 'handouts' / path.name}")
     exit_with(run.within, outcome)

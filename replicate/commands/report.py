@@ -28,8 +28,7 @@ def report(
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
-    from replicate.whatif import NAME as WHATIF
-    from replicate.whatif import rows_of, whatif_page
+    from replicate.whatif import write_whatif
 
     chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
@@ -49,10 +48,7 @@ def report(
             pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         index = run.folder / "report" / pages[0].name
-        rows = rows_of(outcome.papers)
-        if rows:
-            page = whatif_page(rows, back="index.html")
-            (fresh / "report" / WHATIF).write_bytes(page.encode())
+        write_whatif(outcome.papers, fresh / "report", back="index.html")
         mailed = [paper for paper in outcome.papers if paper.id in named] if single_file else []
         for paper in mailed:
             text = single_page(paper, outcome.results, outcome.judgement, data, about)

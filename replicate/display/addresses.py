@@ -8,6 +8,9 @@ from urllib.parse import quote
 from replicate.display.labels import part_of
 from replicate.exhibits import Paper
 
+#: The page on which loops can be tried out, in the report's folder and in that of the handouts.
+TRIALS = "whatif.html"
+
 _NOTES = re.compile(r"notes-(\w+)\.md")
 
 
@@ -56,12 +59,23 @@ def address(page: str, exhibit: str, row: str, column: str) -> str:
     return f"{page}#{anchor(exhibit, row, column)}"
 
 
+def trial_label(exhibit: str, row: str) -> str:
+    """Return what a row is called where its loop can be tried out, after its paper.
+
+    Examples
+    --------
+    >>> trial_label("I-table-1", "G1 Ms=1.4")
+    'I-table-1: G1 Ms=1.4'
+    """
+    return f"{exhibit}: {row.replace('_', ' ')}"
+
+
 def trial_address(plant: str, controller: str) -> str:
-    """Return where a loop can be tried out, relative to the report's folder.
+    """Return where a loop can be tried out, relative to the folder of the report or of the handouts.
 
     Examples
     --------
     >>> trial_address("e^{-s}/(s+1)", "k=0.6,ki=0.5")
     'whatif.html#plant=e%5E%7B-s%7D%2F%28s%2B1%29&controller=k%3D0.6%2Cki%3D0.5'
     """
-    return f"whatif.html#plant={quote(plant, safe='')}&controller={quote(controller, safe='')}"
+    return f"{TRIALS}#plant={quote(plant, safe='')}&controller={quote(controller, safe='')}"

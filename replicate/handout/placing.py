@@ -12,6 +12,8 @@ transposed=False)``
     how its answers are to be rounded, on the sheets of a class; nothing on the handout that all share;
 ``answer(name)``
     what a function in the paper's ``handout.py`` computes for an exercise, by the names of its values;
+``try_it(table, row)``
+    a link to the page on which the row's loop can be tried out; on paper its name and the row's;
 ``tex(number, digits=3)``, ``fixed(number, decimals)``, ``percent(number, digits=2)``
     a number for use in a formula, say ``4.2 \cdot 10^{-5}``; with fixed decimals; times 100.
 
@@ -28,6 +30,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+from replicate.display.addresses import TRIALS, trial_address, trial_label
 from replicate.display.inline_svg import description
 from replicate.display.tables import table_view
 from replicate.errors import PaperDefinitionError, TemplateError
@@ -94,6 +97,7 @@ class Placing:
             "answer": self.answer,
             "inputs": self.inputs,
             "stated": self.stated,
+            "try_it": self.try_it,
             "tex": tex,
             "fixed": fixed,
             "percent": percent,
@@ -140,6 +144,15 @@ class Placing:
         """Return how the answers to an exercise are to be rounded, with a space before it, on a form only."""
         variation = self._variation("stated", name)
         return f" {variation.stated}" if self.form and variation.stated else ""
+
+    def try_it(self, table: str, row: str) -> str:
+        """Return a link, in Markdown, to the page that holds the loop of a table's row."""
+        exhibit = self.paper.exhibits.get(table)
+        trials = exhibit.trials() if isinstance(exhibit, Table) and exhibit.trials else {}
+        if row not in trials:
+            msg = f"try_it('{table}', '{row}'): no loop to try out; allowed: {_listed(trials)}"
+            raise TemplateError(msg)
+        return f"[{TRIALS} ({self.paper.id} {trial_label(table, row)})]({trial_address(*trials[row])})"
 
     def _variation(self, function: str, name: str) -> Variation:
         if name not in self.exercises.variations:

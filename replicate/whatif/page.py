@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
+from pathlib import Path
 
 from markupsafe import Markup
 
 import replicate
+from replicate.display.addresses import TRIALS
 from replicate.display.rendering import html_environment
 from replicate.display.safe_html import policy
+from replicate.exhibits import Paper
 from replicate.resources import templates_dir
 from replicate.whatif.reference import markers, reference
-from replicate.whatif.rows import Row
+from replicate.whatif.rows import Row, rows_of
 from replicate.whatif.still import still
 
-NAME = "whatif.html"
+NAME = TRIALS
 
 #: Constants of the browser's kernel: degree of a piece, pieces at most, and fastest pole times length of a piece.
 CONSTANTS = {"nodes": 24, "mostPieces": 40000, "decayPerPiece": 8}
@@ -61,6 +64,15 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") ->
             version=replicate.__version__,
         )
     )
+
+
+def write_whatif(papers: Iterable[Paper], folder: Path, back: str = "") -> list[Path]:
+    """Write the page of the papers' rows into a folder; return the file, or nothing where no paper declares a row."""
+    rows = rows_of(papers)
+    if not rows:
+        return []
+    (folder / NAME).write_bytes(whatif_page(rows, back=back).encode())
+    return [folder / NAME]
 
 
 def _style_elements(svg: str) -> list[str]:

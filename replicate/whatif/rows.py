@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from replicate.display.addresses import trial_label
 from replicate.exhibits import Paper, Table
 
 
@@ -24,6 +25,6 @@ def rows_of(papers: Iterable[Paper]) -> list[Row]:
         for exhibit in paper.exhibits.values():
             if isinstance(exhibit, Table) and exhibit.trials is not None:
                 for row, (plant, controller) in exhibit.trials().items():
-                    label = f"{paper.id} {exhibit.id}: {row.replace('_', ' ')}"
+                    label = f"{paper.id} {trial_label(exhibit.id, row)}"
                     found.setdefault((plant, controller), Row(label, plant, controller))
     return list(found.values())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 
 import pytest
 
@@ -43,6 +44,19 @@ def test_the_page_can_read_each_loop(id: str) -> None:
             read = (controller.k, controller.ki, controller.kd)
             plain = PID(*read, b=controller.b, derivative_filter=controller.derivative_filter)
             assert controller.notation() in {plain.notation(), plain.notation().replace(",kd=0", "")}, where
+
+
+@pytest.mark.parametrize("id", PAPERS)
+def test_exercises_lead_to_loops_that_exist(id: str) -> None:
+    text = (PAPERS[id].folder() / "handout.md").read_text(encoding="utf-8")
+    exercises = text.partition("## Exercises")[2]
+    calls = re.findall(r"try_it\('([^']+)', '([^']+)'\)", exercises)
+    assert len(set(calls)) >= 2
+    for table, row in calls:
+        found = PAPERS[id].exhibits[table]
+        assert isinstance(found, Table)
+        assert found.trials is not None
+        assert row in found.trials()
 
 
 def printed(paper: str, table: str) -> dict[str, dict[str, str]]:

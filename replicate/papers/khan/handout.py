@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.loops import PI, Loop
@@ -36,6 +37,17 @@ def wrong_digit() -> Values:
     right = f"{settled:.{len(text.partition('.')[2])}f}"
     ((wrong, good),) = [(old, new) for old, new in zip(text, right, strict=True) if old != new]  # one, or it is no slip
     return {"wrong": wrong, "right": good}
+
+
+@exercises.answer("sharpened")
+def sharpened() -> Values:
+    """Return M_s of the rule at ph = 1, and the factor on both gains that brings it to 2."""
+    kp, ki = case_gains("7b", 1.0, 1.0)
+
+    def peak(factor: float) -> float:
+        return float(Loop(plant(1.0, 1.0), PI(factor * kp, factor * ki)).sensitivity_peak())
+
+    return {"rule": peak(1.0), "factor": brentq(lambda factor: peak(factor) - 2.0, 1.0, 2.5)}
 
 
 @cache
