@@ -21,10 +21,11 @@ from replicate.whatif.still import still
 
 NAME = TRIALS
 
-#: Constants of the browser's kernel: degree of a piece, pieces at most, and fastest pole times length of a piece.
-CONSTANTS = {"nodes": 24, "mostPieces": 40000, "decayPerPiece": 8}
+#: Constants of the browser's kernel: degree of a piece, pieces at most, fastest pole times length of a piece, and up to
+#: which angle of the dead time, in radians, a frequency response is looked at.
+CONSTANTS = {"nodes": 24, "mostPieces": 12000, "decayPerPiece": 8, "mostTurns": 2000}
 
-_SCRIPTS = ("kernel.js", "notation.js", "plane.js", "page.js")
+_SCRIPTS = ("kernel.js", "notation.js", "measures.js", "charts.js", "plane.js", "views.js", "page.js")
 
 
 def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") -> str:

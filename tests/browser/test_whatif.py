@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from replicate.loops import PID, Loop, Plant
+from replicate.loops.tune import amigo, simc, ziegler_nichols
 from replicate.whatif import Row, whatif_page
 
 sync_api = pytest.importorskip("playwright.sync_api")
@@ -142,12 +143,109 @@ def test_an_address_reopens_the_loop(page: Any, address: str) -> None:
     until(page, "decodeURIComponent(location.hash).includes('k=0.5,')")
 
 
-def test_the_python_lines_reproduce_the_loop(page: Any) -> None:
-    lines = page.evaluate("whatif.python()")
-    names: dict[str, Any] = {}
-    exec(lines, names)  # noqa: S102  -- the lines that a reader would run
-    shown = page.evaluate("whatif.state.last.overshoot")
-    assert names["y"].overshoot() == pytest.approx(shown, abs=1e-9)
+def test_an_address_holds_all_that_was_set(page: Any, address: str) -> None:
+    page.click("#pin")
+    page.fill("#k", "0.7")
+    page.check("[name=plane][value=kd]")
+    page.fill("#limit", "2")
+    page.check("#saturation")
+    page.uncheck("#anti-windup")
+    page.fill("#mismatch-size", "30")
+    page.check("#mismatch")
+    until(page, "location.hash.includes('mismatch=30') && location.hash.includes('plane=kd')")
+    there = page.evaluate("location.href")
+    page.goto(address + "#")
+    page.goto(there)
+    until(page, "document.querySelectorAll('#output .cloud').length === 8")
+    assert page.evaluate("[whatif.state.controller.k, whatif.state.plane, whatif.state.pins.length]") == [0.7, "kd", 1]
+    assert not page.is_checked("#anti-windup")
+    page.goto(f"{address}#plant=1%2F(s%2B1)&controller=k%3D1%2Cki%3D1")  # an address without options has none
+    until(page, "whatif.state.plantText === '1/(s+1)' && !document.querySelector('#output .cloud')")
+    assert page.evaluate("[whatif.state.plane, whatif.state.pins.length]") == ["ki", 0]
+
+
+def numbers(text: str) -> list[float]:
+    return [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text)]
+
+
+def test_the_python_lines_print_what_the_table_shows(page: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    exec(page.evaluate("whatif.python()"), {})  # noqa: S102  -- the lines that a reader would run
+    printed = numbers(capsys.readouterr().out)
+    assert printed == numbers(" ".join(page.locator("#metrics-body td").all_inner_texts()))
+    assert len(printed) == page.locator("#metrics-body tr").count()
+
+
+def test_an_ideal_derivative_is_that_of_the_core(page: Any, address: str) -> None:
+    page.goto(f"{address}#plant=1%2F(s%2B1)%5E4&controller=k%3D1%2Cki%3D0.98%2Ckd%3D3")
+    until(page, "whatif.state.plantText === '1/(s+1)^4' && whatif.state.last.stable")
+    loop = Loop(Plant([1.0], np.poly([-1.0] * 4)), PID(1.0, 0.98, 3.0))
+    found = page.evaluate(
+        "(({ overshoot, loadIae, variation, ms }) => [overshoot, loadIae, variation, ms])(whatif.state.last)"
+    )
+    expected = [loop.step().overshoot(), loop.load_step().iae(), loop.respond().control.total_variation()]
+    assert found == pytest.approx([*expected, float(loop.sensitivity_peak())], rel=1e-8)
+
+
+def test_the_slider_multiplies_all_gains(page: Any) -> None:
+    page.focus("#sharpen")
+    for _ in range(20):
+        page.keyboard.press("ArrowRight")
+    until(page, "Math.abs(whatif.state.controller.k - 0.66) < 1e-9")
+    assert page.evaluate("whatif.state.controller.ki") == pytest.approx(0.55)
+    assert page.inner_text("#factor") == "1.100"
+    loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PID(0.66, 0.55))
+    assert f"{float(loop.sensitivity_peak()):.4g}" in page.inner_text("#metrics-body")
+
+
+def test_the_rules_of_the_page_are_those_of_the_core(page: Any) -> None:
+    for text, plant in (
+        ("e^{-2s}/(3s+1)", Plant.foptd(1.0, 3.0, 2.0)),
+        ("0.5e^{-2s}/s", Plant([0.5], [1.0, 0.0], dead_time=2.0)),
+    ):
+        found = page.evaluate("(text) => Measures.rules(Kernel.prepare(Notation.parsePlant(text)))", text)
+        for rule, expected in zip(found, (simc(plant), amigo(plant), ziegler_nichols(plant)), strict=True):
+            assert [rule["k"], rule["ki"]] == pytest.approx([expected.k, expected.ki], rel=1e-12), (text, rule["name"])
+
+
+def test_curves_and_picture_can_be_taken_away(page: Any) -> None:
+    page.click("#pin")
+    until(page, "whatif.state.pins.length")
+    with page.expect_download() as got:
+        page.click("#csv")
+    lines = Path(got.value.path()).read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "t,y_setpoint,u_setpoint,y_load,u_load,a_y_setpoint,a_u_setpoint,a_y_load,a_u_load"
+    values = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PID(0.6, 0.5))
+    assert np.max(np.abs(values[:, 1] - loop.step(until=1.01 * values[-1, 0])(values[:, 0]))) < 1e-9
+    with page.expect_download() as got:
+        page.click("#svg")
+    picture = Path(got.value.path()).read_text(encoding="utf-8")
+    parse = (
+        "(text) => new DOMParser().parseFromString(text, 'image/svg+xml').querySelectorAll(':root > svg .curve').length"
+    )
+    assert page.evaluate(parse, picture) == 8  # of the loop and the pinned one, in four of the five diagrams
+
+
+def test_it_prints_on_one_page(page: Any) -> None:
+    for gain in ("0.5", "0.7", "0.8"):
+        page.fill("#k", gain)
+        until(page, f"whatif.state.controller.k === {gain}")
+        page.click("#pin")
+        until(page, f"whatif.state.pins.at(-1)?.controller.k === {gain}")
+    assert len(re.findall(rb"/Type */Page\b(?!s)", page.pdf(prefer_css_page_size=True))) == 1
+
+
+def test_a_change_is_drawn_once_a_frame(page: Any) -> None:
+    frames = page.evaluate("""async () => {
+      let frames = 0;
+      const asked = window.requestAnimationFrame;
+      window.requestAnimationFrame = (f) => asked(() => { frames++; f(); });
+      const key = new KeyboardEvent("keydown", { key: "ArrowRight", bubbles: true });
+      for (let i = 0; i < 50; i++) document.getElementById("plane").dispatchEvent(key);
+      await new Promise((done) => asked(() => setTimeout(done, 0)));
+      return frames;
+    }""")
+    assert frames == 1
 
 
 @pytest.mark.parametrize(
@@ -163,14 +261,22 @@ def test_the_python_lines_reproduce_the_loop(page: Any) -> None:
         ("controller", "k=abc", "'abc' is not known here"),
         ("controller", "k=1e308", "beyond any limit"),
         ("controller", "ki=1", "the gain is missing"),
+        ("plant", "e^{-9s}/(0.001s+1)", "so fast a plant or filter beside so long a dead time"),
+        ("k", "1e308", "beyond any limit"),
+        ("k", "1e9", "so high a gain is not drawn here"),
+        ("ki", "", "'' is not a number"),
+        ("kd", "0,5", "'0,5' is not a number; write a point"),
+        ("filter", "-1", "must not be negative"),
     ],
 )
 def test_nonsense_gets_a_sentence_and_changes_nothing(page: Any, field: str, text: str, reason: str) -> None:
     before = page.evaluate("[whatif.state.plantText, whatif.state.controller]")
     page.fill(f"#{field}", text)
     page.press(f"#{field}", "Enter")
-    until(page, f"document.getElementById('{field}-error').textContent")
-    assert reason in page.inner_text(f"#{field}-error")
+    error = page.get_attribute(f"#{field}", "aria-describedby")
+    until(page, f"document.getElementById('{error}').textContent")
+    assert reason in page.inner_text(f"#{error}")
+    assert page.get_attribute(f"#{field}", "aria-invalid") == "true"
     assert page.evaluate("[whatif.state.plantText, whatif.state.controller]") == before
 
 

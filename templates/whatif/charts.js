@@ -1,0 +1,59 @@
+// Diagrams as elements of SVG: numbers as text, axes, curves.
+"use strict";
+
+const Charts = (() => {
+const SVG = "http://www.w3.org/2000/svg";
+
+// A number in so many digits; `all` keeps zeros at the end.
+function shown(x, digits = 4, all = false) {
+  if (x === Infinity) return "∞";
+  if (x === undefined || Number.isNaN(x)) return "–";
+  const text = Math.abs(x) >= 1e5 || (x && Math.abs(x) < 1e-4) ? x.toExponential(digits - 1) : x.toPrecision(digits);
+  return (all || text.includes("e") ? text : String(Number(text))).replace("-", "−");
+}
+
+function element(name, attributes, parent, text) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  if (text !== undefined) made.textContent = text;
+  if (parent) parent.append(made);
+  return made;
+}
+
+// Round numbers for an axis.
+function ticks(low, high, count = 5) {
+  const rough = (high - low) / count, power = Math.pow(10, Math.floor(Math.log10(rough)));
+  const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= rough) || power * 10;
+  const found = [];
+  for (let x = Math.ceil(low / step - 1e-9) * step; x <= high + 1e-9 * step; x += step) found.push(Math.abs(x) < step * 1e-9 ? 0 : x);
+  return found;
+}
+
+// An empty diagram in an <svg>: axes, and functions from values to places.
+function diagram(svg, box, { width = 460, height = 260, x = "", y = "" }) {
+  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+  svg.replaceChildren();
+  const left = 52, right = width - 10, top = 10, bottom = height - (x ? 36 : 20);
+  const px = (value) => left + (value - box.left) / (box.right - box.left) * (right - left);
+  const py = (value) => bottom - (value - box.bottom) / (box.top - box.bottom) * (bottom - top);
+  const grid = element("g", { class: "grid" }, svg);
+  for (const value of ticks(box.left, box.right)) {
+    element("path", { d: `M${px(value)} ${top}V${bottom}` }, grid);
+    element("text", { x: px(value), y: bottom + 15, "text-anchor": "middle" }, svg, shown(value));
+  }
+  for (const value of ticks(box.bottom, box.top, 4)) {
+    element("path", { d: `M${left} ${py(value)}H${right}` }, grid);
+    element("text", { x: left - 6, y: py(value) + 4, "text-anchor": "end" }, svg, shown(value));
+  }
+  element("text", { x: (left + right) / 2, y: height - 5, "text-anchor": "middle", class: "axis" }, svg, x);
+  element("text", { x: 12, y: (top + bottom) / 2, "text-anchor": "middle", class: "axis", transform: `rotate(-90 12 ${(top + bottom) / 2})` }, svg, y);
+  const clip = `${svg.id}-clip`, inside = element("g", { "clip-path": `url(#${clip})` }, svg);
+  element("rect", { x: left, y: top, width: right - left, height: bottom - top }, element("clipPath", { id: clip }, svg));
+  element("rect", { x: left, y: top, width: right - left, height: bottom - top, class: "frame" }, svg);
+  return { inside, px, py, box, left, right, top, bottom };
+}
+
+const path = (points, { px, py }) => points.map(([x, y], i) => `${i && Number.isFinite(y) ? "L" : "M"}${px(x).toFixed(1)} ${py(y).toFixed(1)}`).join("");
+
+return { SVG, shown, element, diagram, path };
+})();
