@@ -72,11 +72,12 @@ def minimum_distance() -> Finding:
 def y_starts() -> Finding:
     largest = max(1.0 - math.sqrt(float(x) / 2.0) for x in TABLE_1)  # |b|/T, above which q is imaginary
     return Finding(
-        "fails" if largest < float(START) else "holds",
+        "holds-partly" if largest < float(START) else "holds",
         largest,
-        "By (7) and (8) $y$ is $1/|S|$, and $q$ is real only for $y \\le 1 - \\sqrt{\\theta/2T}$, at most "
-        f"{number(largest)} in Table 1: with $y \\ge 1.2$ no $T_i$ is real. It is $M_s^* = 1/y$ that is stepped, which "
-        "gives the column $M_s^*$.",
+        "True of $M_s^* = 1/y$, which gives the column $M_s^*$, not of $y$. By (7) and (8) $y$ is $1/|S|$, and $q$ is "
+        f"real only for $y \\le 1 - \\sqrt{{\\theta/2T}}$, at most {number(largest)} in Table 1: with $y \\ge 1.2$ no "
+        "$T_i$ "
+        "is real.",
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from replicate.exhibits.extrema import largest
 from replicate.papers.krajewski.normalised_loop import loop
 from replicate.papers.krajewski.points import TAU, response
 
@@ -41,9 +42,14 @@ def modes(a: float, b: float, count: int) -> list[tuple[complex, complex]]:
 
 def three_mode_error(a: float, b: float, start: float) -> float:
     """Return the largest error of the three slowest modes from ``start`` to the end of the figures' time axis."""
+    found, exact = modes(a, b, 3), response(a, b)
+
+    def error(t: Array) -> Array:
+        modal = 1.0 + sum((residue * np.exp(pole * t)).real for pole, residue in found)
+        return np.asarray(np.abs(modal - exact(t)))
+
     t = np.linspace(start, UNTIL, 2001)
-    modal = 1.0 + sum((residue * np.exp(pole * t)).real for pole, residue in modes(a, b, 3))
-    return float(np.max(np.abs(modal - response(a, b)(t))))
+    return largest(lambda x: float(error(np.array([x]))[0]), t, error(t))[1]
 
 
 @cache
@@ -54,16 +60,22 @@ def second_order_error(a: float, b: float) -> float:
     figures' time axis; c enters linearly and is solved for.
     """
     t = np.linspace(0.0, UNTIL - TAU, 1201)
-    error = 1.0 - response(a, b)(t + TAU)
+    exact = response(a, b)
+    error = 1.0 - exact(t + TAU)
 
-    def residual(parameters: Array) -> Array:
+    def parts(parameters: Array, t: Array) -> tuple[Array, Array]:
         sigma, square = parameters
         root = np.sqrt(complex(square))
         decay = np.exp(-sigma * t)
-        cosine = decay * np.cos(root * t).real
-        sine = decay * (t * np.sinc(root * t / np.pi)).real
-        c = float(sine @ (error - cosine) / (sine @ sine))
-        return np.asarray(error - cosine - c * sine)
+        return decay * np.cos(root * t).real, decay * (t * np.sinc(root * t / np.pi)).real
+
+    def weight(parameters: Array) -> float:
+        cosine, sine = parts(parameters, t)
+        return float(sine @ (error - cosine) / (sine @ sine))
+
+    def residual(parameters: Array) -> Array:
+        cosine, sine = parts(parameters, t)
+        return np.asarray(error - cosine - weight(parameters) * sine)
 
     def cost(parameters: Array) -> float:
         # Modes must decay: σ > 0, and for a real pair σ² > -ω².
@@ -77,4 +89,10 @@ def second_order_error(a: float, b: float) -> float:
         for start in starts
     ]
     best = min(fits, key=lambda fit: float(fit.fun))
-    return float(np.max(np.abs(residual(best.x))))
+    c = weight(best.x)
+
+    def remaining(x: float) -> float:
+        cosine, sine = parts(best.x, np.array([x]))
+        return abs(1.0 - float(exact(x + TAU)) - float(cosine[0]) - c * float(sine[0]))
+
+    return largest(remaining, t, np.abs(residual(best.x)))[1]
