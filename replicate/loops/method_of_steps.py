@@ -50,10 +50,10 @@ class PieceMap:
     state: Array
 
 
-def piece_map(chain: Chain, length: float) -> PieceMap:
+def piece_map(chain: Chain, length: float, degree: int = DEGREE) -> PieceMap:
     """Solve the collocation system of one piece for all its inputs at once."""
-    points, n = DEGREE + 1, chain.e.size
-    half_s = 0.5 * length * chebyshev.integration(DEGREE)
+    points, n = degree + 1, chain.e.size
+    half_s = 0.5 * length * chebyshev.integration(degree)
     right = np.zeros((points, n, points + n + 1))
     right[:, :, :points] = half_s[:, None, :] * chain.b[None, :]
     right[:, :, points:-1] = np.eye(n)

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops import chebyshev
-from replicate.loops.method_of_steps import DEGREE
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]
 
-DENSE = 40  # samples of a piece, Lobatto points too
+DEGREE = 14  # of a piece: lower than for single loops, because most of the work grows with its square
+DENSE = 32  # samples of a piece, Lobatto points too
 STEPS = 4
 CONVERGED = 1e-6  # last step of Newton's method, after which the next would be rounding
 
@@ -79,21 +79,22 @@ def roots(coefficients: Array, left: Array, right: Array, at_left: Array, at_rig
     return x
 
 
-def sharpened(coefficients: Array, values: Array, chosen: NDArray[np.bool_], sign: Array) -> tuple[Array, Array]:
-    """Return coordinates and values of the samples, those chosen moved to the extremum next to them.
+def sharpened(
+    coefficients: Array, nodes: Array, values: Array, chosen: NDArray[np.bool_], sign: Array
+) -> tuple[Array, Array]:
+    """Return coordinates and values of samples, those chosen moved to the extremum next to them.
 
-    ``sign`` is +1 where a maximum is meant and -1 where a minimum is, of the shape of the samples.
+    ``sign`` is +1 where a maximum is meant and -1 where a minimum is; all have the shape of the samples.
     """
-    nodes = dense_nodes()
-    x = np.repeat(nodes[:, None], values.shape[1], axis=1)
     at, column = np.nonzero(chosen)
-    if at.size:
-        values = values.copy()
-        series = coefficients[:, column]
-        x[at, column] = maxima(
-            series * sign[at, column], nodes[np.maximum(at - 1, 0)], nodes[np.minimum(at + 1, DENSE - 1)]
-        )
-        values[at, column] = evaluate(series, x[at, column])
+    if at.size == 0:
+        return nodes, values
+    x, values = nodes.copy(), values.copy()
+    series, last = coefficients[:, column], values.shape[0] - 1
+    found = maxima(
+        series * sign[at, column], nodes[np.maximum(at - 1, 0), column], nodes[np.minimum(at + 1, last), column]
+    )
+    x[at, column], values[at, column] = found, evaluate(series, found)
     return x, values
 
 

@@ -24,6 +24,7 @@ Flags = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
 AT_A_TIME = 512
+SHORTER = (1, 2, 4)
 OF_THE_LOOP = ("ms", "mp", "gain_margin", "phase_margin", "delay_margin")
 FEWEST = 4  # loops below which a block costs more than they do one by one
 OF_A_STEP = ("overshoot", "rise_time", "delay_time")  # relative to the final value
@@ -101,18 +102,26 @@ def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | N
         asked = [name for name in values if name.startswith(LOAD) == load and name not in OF_THE_LOOP]
         if not asked or chosen.size == 0:
             continue
-        part = loops.take(chosen)
         end = None if until is None else until / loops.time
-        responses = march(part, 0.0 if load else 1.0, loops.gain if load else 0.0, end, band)
-        found = ResponseMetrics(responses)
-        for name in asked:
-            value, missing, why = _answer(found, name.removeprefix(LOAD), band, loops.time)
-            values[name][chosen] = np.where(missing, np.nan, value)
-            if missing.any():
+        setpoint, step, part = 0.0 if load else 1.0, loops.gain if load else 0.0, chosen
+        for shorter in SHORTER:  # again, with shorter pieces, for loops that need them
+            if part.size == 0:
+                break
+            responses = march(loops.take(part), setpoint, step, end, band, shorter)
+            if not responses.pieces:  # nothing here has a final value to settle to
+                alone[part] = True
+                break
+            found = ResponseMetrics(responses)
+            for name in asked:
+                value, missing, why = _answer(found, name.removeprefix(LOAD), band, loops.time)
+                values[name][part] = np.where(missing, np.nan, value)
                 flags = np.zeros(len(loops), dtype=bool)
-                flags[chosen] = missing
-                reasons.append((flags, f"{name}: {why}"))
-        alone[chosen] |= found.doubtful
+                flags[part] = missing & ~found.doubtful
+                if flags.any():
+                    reasons.append((flags, f"{name}: {why}"))
+            again = responses.unresolved if shorter != SHORTER[-1] else np.zeros(part.size, dtype=bool)
+            alone[part] |= found.doubtful & ~again
+            part = part[again]
     return BlockMetrics(stable, values, reasons, alone)
 
 

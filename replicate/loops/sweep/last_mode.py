@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops import chebyshev
-from replicate.loops.method_of_steps import DEGREE
+from replicate.loops.sweep.batch_roots import DEGREE
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 
 Array = NDArray[np.float64]
@@ -116,27 +116,37 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
     oldest, middle, newest = (
         recent[i] if splits == 1 else np.concatenate(recent[i * splits : (i + 1) * splits]) for i in range(3)
     )
-    start, oscillates = _starts(oldest, middle, newest, size)
+    chosen = _in_sight(oldest, middle, newest, size)
+    oldest, middle, newest = (values[:, chosen] for values in (oldest, middle, newest))
+    start, oscillates = _starts(oldest, middle, newest, size[chosen])
     # an oscillation that is still outside the band will be looked at again
-    chosen = np.nonzero(np.isfinite(start) & ~(oscillates & (np.abs(newest[-1]) > band)))[0]
+    kept = np.nonzero(np.isfinite(start) & ~(oscillates & (np.abs(newest[-1]) > band[chosen])))[0]
+    chosen, start, oscillates, middle, newest = (
+        chosen[kept], start[kept], oscillates[kept], middle[:, kept], newest[:, kept],
+    )  # fmt: skip
     if chosen.size == 0:
         return found
-    s = start[chosen]
-    part = loops.take(chosen)
+    s, part = start, loops.take(chosen)
     with np.errstate(all="ignore"):
         for _ in range(4):
             s = s - part.newton_step(s)
-    s = np.where(oscillates[chosen], s, s.real)
-    nodes = np.concatenate([(i + 0.5 * (chebyshev.nodes(DEGREE) + 1.0)) / splits for i in range(splits)])
-    with np.errstate(all="ignore"):
-        c, residual = _fit(s, nodes, middle[:, chosen], newest[:, chosen], oscillates[chosen])
+        s = np.where(oscillates, s, s.real)
+        nodes = np.concatenate([(i + 0.5 * (chebyshev.nodes(DEGREE) + 1.0)) / splits for i in range(splits)])
+        c, residual = _fit(s, nodes, middle, newest, oscillates)
         envelope = np.abs(c)
         proven = (residual <= PROVEN * size[chosen]) & (s.real < 0.0)
-        over = oscillates[chosen] & ((envelope > 0.99 * band[chosen]) | (envelope > high[chosen]))
-        proven &= ~over & (~oscillates[chosen] | (s.imag > 0.0))
+        over = oscillates & ((envelope > 0.99 * band[chosen]) | (envelope > high[chosen]))
+        proven &= ~over & (~oscillates | (s.imag > 0.0))
     at = chosen[proven]
     found.found[at], found.pole[at], found.coefficient[at] = True, s[proven], c[proven]
     return found
+
+
+def _in_sight(oldest: Array, middle: Array, newest: Array, size: Array) -> Places:
+    """Return the columns in which the recurrence holds at a few nodes: all the others have more modes."""
+    rows = np.linspace(0, oldest.shape[0] - 1, 4).astype(int)
+    start, _ = _starts(oldest[rows], middle[rows], newest[rows], size)
+    return np.asarray(np.nonzero(np.isfinite(start))[0])
 
 
 def _starts(oldest: Array, middle: Array, newest: Array, size: Array) -> tuple[ComplexArray, Flags]:

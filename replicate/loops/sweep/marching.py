@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from replicate.loops import chebyshev
 from replicate.loops.chain import Chain, build_chain
-from replicate.loops.method_of_steps import DEGREE, STIFFNESS, piece_map
+from replicate.loops.method_of_steps import piece_map
+from replicate.loops.sweep.batch_roots import DEGREE
 from replicate.loops.sweep.last_mode import LastModes, last_modes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 
@@ -27,6 +28,7 @@ WEIGHTS = chebyshev.integration(DEGREE)[-1]
 LAST_ROWS = chebyshev.values_to_coefficients(DEGREE)[-2:]
 AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
 RESOLVED = 1e-12  # size of the last coefficients of a control signal, relative to its largest value
+STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
 FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
 WORTH = 0.1  # share of loops that must have left before the others move together
@@ -74,6 +76,8 @@ class Responses:
         Number of pieces of each loop.
     modes
         What follows after the last piece.
+    unresolved
+        Loops whose pieces are too long.
     failed
         Loops whose response is not resolved or has not come to rest: theirs is not to be used.
     settles
@@ -86,25 +90,32 @@ class Responses:
     pieces: list[Piece]
     ends: NDArray[np.intp]
     modes: LastModes
+    unresolved: Flags
     failed: Flags
     settles: bool
 
 
-def march(loops: LoopColumns, setpoint: float, load: float, until: float | None, band: float) -> Responses:
+def march(
+    loops: LoopColumns, setpoint: float, load: float, until: float | None, band: float, shorter: int = 1
+) -> Responses:
     """Return the responses of stable loops to steps of set-point and load.
 
     Parameters
     ----------
+    setpoint, load
+        Heights of the steps, in the units of the columns.
     until
         Horizon in the unit of the columns; by default each loop is followed until it is at rest.
     band
         Half-width of the settling band: a response is followed at least until it is inside for good.
+    shorter
+        How many times shorter the pieces are than they usually need to be.
     """
     chain = build_chain(loops.plant, loops.form, integral=bool(loops.form.ki), derivative=bool(loops.form.kd))
     chain = chain.balanced(np.max(np.abs(loops.gains), axis=1))
     radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
     march = _March(loops, chain, setpoint, load, until, band)
-    return march.run(max(1, int(np.ceil(radius / STIFFNESS))))
+    return march.run(shorter * max(1, int(np.ceil(radius / STIFFNESS))))
 
 
 class _March:
@@ -127,8 +138,8 @@ class _March:
             if most > MOST_PIECES:
                 failed[:] = True
         found = Responses(
-            1.0 / splits, self.final, share, [], np.zeros(count, dtype=np.intp), LastModes.none(count), failed,
-            self.until is None,
+            1.0 / splits, self.final, share, [], np.zeros(count, dtype=np.intp), LastModes.none(count),
+            np.zeros(count, dtype=bool), failed, self.until is None,
         )  # fmt: skip
         state = _Moving(self, splits, np.nonzero(~failed)[0])
         look = FIRST_LOOK
@@ -222,8 +233,10 @@ class _Moving:
     def keep(self, stay: Places, found: Responses) -> None:
         """Drop all loops but some; those dropped that never left, or are not resolved, have failed."""
         with np.errstate(invalid="ignore"):
-            unusable = ~self.left | ~(self.tail <= RESOLVED * self.control_size)
-        unusable[stay] = False
+            unresolved = ~(self.tail <= RESOLVED * self.control_size)
+        unusable = ~self.left | unresolved
+        unusable[stay] = unresolved[stay] = False
+        found.unresolved[self.columns[unresolved]] = True
         found.failed[self.columns[unusable]] = True
         self.columns, self.loops, self.law = self.columns[stay], self.loops.take(stay), self.law.take(stay)
         for name in ("final", "band", "impulse", "size", "high", "control_size", "tail", "left"):
@@ -245,7 +258,7 @@ class _Law:
 
     @classmethod
     def of(cls, loops: LoopColumns, chain: Chain, length: float, setpoint: float) -> _Law:
-        fixed = piece_map(chain, length)
+        fixed = piece_map(chain, length, DEGREE)
         gains = loops.gains
         plain = bool(np.array_equal(chain.wx[1], chain.c) and np.array_equal(chain.wv[1], chain.d))
         direct = not chain.wx[0].any()  # no set-point filter: the filtered set-point is the set-point

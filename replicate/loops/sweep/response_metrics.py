@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops import chebyshev
-from replicate.loops.method_of_steps import DEGREE
 from replicate.loops.signal import APPROACH, ARRIVAL, ROUNDING
 from replicate.loops.sweep import batch_roots
+from replicate.loops.sweep.batch_roots import DEGREE
 from replicate.loops.sweep.marching import Responses
 
 Array = NDArray[np.float64]
@@ -120,10 +120,11 @@ class ResponseMetrics:
         value, time = self._summit
         level = APPROACH * np.abs(self.final)
         approaches = value <= level if self.responses.settles else np.abs(value) <= level
-        low, high = self._ranges
-        error = np.where(self._exists, np.maximum(-low, high), 0.0)
-        arrives = np.any((error[:-1] > ARRIVAL * np.abs(self.final)) & (error[1:] <= level), axis=0)
-        self.doubtful |= approaches & arrives & ~self.responses.modes.found
+        some = np.nonzero(approaches & ~self.responses.modes.found)[0]
+        low, high = (part[:, some] for part in self._ranges)
+        error = np.where(self._exists[:, some], np.maximum(-low, high), 0.0)
+        arrives = (error[:-1] > ARRIVAL * np.abs(self.final[some])) & (error[1:] <= level[some])
+        self.doubtful[some] |= arrives.any(axis=0)
         return np.where(approaches, np.inf, time)
 
     def overshoot(self) -> Array:
@@ -150,7 +151,7 @@ class ResponseMetrics:
             dense = batch_roots.samples(series)
             size, sign = np.abs(dense), np.sign(dense)
             touching = _summits(size, np.abs(size - width[column]) < TOUCHING * np.ptp(dense, axis=0))
-            nodes, dense = batch_roots.sharpened(series, dense, touching, sign)
+            nodes, dense = batch_roots.sharpened(series, _dense(column.size), dense, touching, sign)
             beyond = np.abs(dense) > width[column]
             some = beyond.any(axis=0)
             at = batch_roots.DENSE - 1 - np.argmax(beyond[::-1], axis=0)
@@ -190,7 +191,7 @@ class ResponseMetrics:
             series = batch_roots.series(self._gathered(piece, column))
             dense = batch_roots.samples(series)
             touching = _summits(dense, np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0))
-            nodes, dense = batch_roots.sharpened(series, dense, touching, np.ones(dense.shape))
+            nodes, dense = batch_roots.sharpened(series, _dense(column.size), dense, touching, np.ones(dense.shape))
             beyond = dense >= level[column]
             some, at = beyond.any(axis=0), np.argmax(beyond, axis=0)
             at_start = some & (at == 0)
@@ -254,27 +255,33 @@ class ResponseMetrics:
 
     def _absolute(self, values: Array) -> Array:
         """Return the integrals of |e| over [-1, 1] of polynomials in columns."""
-        series = batch_roots.series(values)
-        dense = batch_roots.samples(series)
-        size, sign = np.abs(dense), np.sign(dense)
-        # two zeros may hide next to an extremum that nearly touches zero
-        touching = size < TOUCHING * np.ptp(dense, axis=0)
-        turned = sign[1:] != sign[:-1]  # there is a zero already
+        sign = np.sign(values)
+        # two zeros may hide next to an extremum that nearly touches zero, away from other zeros
+        touching = np.abs(values) < MARGIN * np.ptp(values, axis=0)
+        turned = sign[1:] != sign[:-1]
         touching[1:] &= ~turned
         touching[:-1] &= ~turned
-        touching = _summits(-size, touching)
-        nodes, dense = batch_roots.sharpened(series, dense, touching, -sign)
-        negative = dense < 0.0
+        series = batch_roots.series(values)
+        nodes = np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], values.shape)
+        if touching.any():
+            summits = _summits(-np.abs(values), touching)
+            nodes, values = batch_roots.sharpened(series, nodes, values, summits, -sign)
+        negative = values < 0.0
         before, place = np.nonzero(negative[1:] != negative[:-1])
         running = _antiderivative() @ series  # zero at -1
         x = batch_roots.roots(
             series[:, place], nodes[before, place], nodes[before + 1, place],
-            dense[before, place], dense[before + 1, place],
+            values[before, place], values[before + 1, place],
         )  # fmt: skip
         at_root = batch_roots.evaluate(running[:, place], x)
         sides = np.where(negative[before, place], -2.0, 2.0)
         total = np.where(negative[-1], -1.0, 1.0) * running.sum(axis=0)
         return np.asarray(total + np.bincount(place, weights=sides * at_root, minlength=total.size))
+
+
+def _dense(count: int) -> Array:
+    """Return the dense nodes as columns."""
+    return np.broadcast_to(batch_roots.dense_nodes()[:, None], (batch_roots.DENSE, count))
 
 
 def _summits(values: Array, candidates: Flags) -> Flags:
