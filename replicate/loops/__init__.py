@@ -20,6 +20,7 @@ from replicate.loops.pid_result import PIDDesign
 from replicate.loops.plant import Plant
 from replicate.loops.setpoint_weights import pid_setpoint_weight, setpoint_weight
 from replicate.loops.signal import Signal
+from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.sweep import SweepResult, sweep
 
 __all__ = [
@@ -39,6 +40,7 @@ __all__ = [
     "Plant",
     "Response",
     "Signal",
+    "SmithPredictor",
     "SweepResult",
     "UnstableLoopError",
     "Weight",

@@ -22,7 +22,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.chain import Chain, build_chain, gains
+from replicate.loops.chain import Chain, open_loop_of
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.piece_flow import DEGREE, SAME, Row, delayed_values, integrations, nominal, piece_flow
@@ -52,10 +52,8 @@ def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, loa
     LoopError
         If the response needs too many pieces, or grows out of range.
     """
-    g = gains(controller)
-    chain = build_chain(plant, controller, integral=bool(g[2]), derivative=bool(g[3])).balanced(g)
-    delays = np.array([part.dead_time for part in plant.parts])
-    return march(chain, g, delays, until, setpoint=setpoint, loads=np.full(delays.size, load))
+    parts = open_loop_of(plant, controller)
+    return march(parts.chain, parts.gains, parts.delays, until, setpoint=setpoint, loads=load * parts.loaded)
 
 
 def march(

@@ -71,20 +71,70 @@ def gains(controller: PID) -> Array:
     return np.array([controller.k * controller.b, -controller.k, controller.ki, controller.kd])
 
 
-def build_chain(plant: Plant, controller: PID, *, integral: bool = True, derivative: bool = True) -> Chain:
+@dataclass(frozen=True)
+class OpenLoop:
+    """A chain with what closes it: the gains (4,), the dead time of each input, and which inputs a load enters."""
+
+    chain: Chain
+    gains: Array
+    delays: Array
+    loaded: Array
+
+
+def open_loop_of(plant: Plant, controller: PID) -> OpenLoop:
+    """Return the balanced chain of one controller."""
+    g = gains(controller)
+    chain = build_chain(plant, controller, integral=bool(g[2]), derivative=bool(g[3])).balanced(g)
+    delays = np.array([part.dead_time for part in plant.parts])
+    return OpenLoop(chain, g, delays, np.ones(delays.size))
+
+
+def open_loop_of_spaces(plant: Plant, model: Plant | None, controller: PID) -> OpenLoop:
+    """Return the chain of a controller that measures the sum of a plant and a model which the load does not enter.
+
+    The output is the plant's alone. Inputs are ordered by their dead times.
+    """
+    if model is None:
+        return open_loop_of(plant, controller)
+    (a, b, c, d), (e, f, g, h) = _plant_state_space(plant), _plant_state_space(model)
+    n, m = a.shape[0], b.shape[1]
+    delays = np.array([part.dead_time for part in (*plant.parts, *model.parts)])
+    order = np.argsort(delays, kind="stable")
+    loaded = (np.arange(delays.size) < m).astype(float)
+    space = (
+        scipy.linalg.block_diag(a, e), scipy.linalg.block_diag(b, f)[:, order],
+        np.concatenate([c, g]), np.concatenate([d, h])[order],
+    )  # fmt: skip
+    closing = gains(controller)
+    chain = build_chain(plant, controller, integral=bool(closing[2]), derivative=bool(closing[3]), space=space)
+    only = np.concatenate([c, np.zeros(chain.e.size - n)])
+    chain = replace(chain, c=only, d=(np.concatenate([d, np.zeros(h.size)])[order])).balanced(closing)
+    return OpenLoop(chain, closing, delays[order], loaded[order])
+
+
+def build_chain(
+    plant: Plant,
+    controller: PID,
+    *,
+    integral: bool = True,
+    derivative: bool = True,
+    space: tuple[Array, Array, Array, Array] | None = None,
+) -> Chain:
     """Return the chain of a rational plant and a controller's filters and weights (its gains are not used).
 
     Parameters
     ----------
     integral, derivative
         Whether any controller that will use this chain has integral or derivative action.
+    space
+        (A, B, C, D) of what is measured, an input for each dead time, if it is not the plant's own.
 
     Raises
     ------
     ImproperLoopError
         If an ideal derivative meets a plant whose output jumps with its input.
     """
-    pa, pb, pc, d = _plant_state_space(plant)
+    pa, pb, pc, d = _plant_state_space(plant) if space is None else space
     n_plant, inputs = pb.shape
     n_filter = controller.measurement_filter_polynomials()[1].size - 1
     n_integral = 1 if integral else 0

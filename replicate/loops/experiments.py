@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import reduce
 
 import numpy as np
@@ -120,21 +119,16 @@ def _step(loop: Loop, name: str, end: float) -> Response:
         return loop.respond(until=end)
     if name == "load":
         return loop.respond(setpoint=0.0, load=1.0, until=end)
-    response = Loop(loop.plant, _by_measurement(loop.controller)).respond(until=end)
+    response = loop.with_primary(_by_measurement(loop.primary_controller)).respond(until=end)
     return Response(response.output * -1.0, response.control * -1.0)
 
 
 def _by_measurement(controller: PID) -> PID:
     """Return the controller whose set-point takes the way of the measurement."""
-    order = controller.measurement_filter_order
-    lag = [np.array([controller.measurement_filter, 1.0])] * (order if controller.measurement_filter else 0)
-    polynomial = tuple(float(c) for c in reduce(np.polymul, lag, np.array([1.0])))
-    return replace(
-        PID(**{name: getattr(controller, name) for name in controller.__dataclass_fields__}),
-        b=1.0,
-        c=1.0,
-        setpoint_filter=((1.0,), polynomial) if lag else 0.0,
-    )
+    num, den = controller.measurement_filter_polynomials()
+    plain = {name: getattr(controller, name) for name in controller.__dataclass_fields__}
+    same_way = (tuple(num.tolist()), tuple(den.tolist())) if den.size > 1 or num[0] != 1.0 else 0.0
+    return PID(**(plain | {"b": 1.0, "c": 1.0, "setpoint_filter": same_way}))
 
 
 def _answer(step: Signal, item: Input, end: float) -> Signal:

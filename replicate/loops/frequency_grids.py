@@ -20,7 +20,7 @@ def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Ar
     """Return frequencies that resolve every corner, resonance and dead-time rotation of L up to ``end``."""
     corners = transfer.corner_frequencies
     slow = [end, *np.abs(corners).tolist()]
-    longest = max((part.dead_time for part in transfer.plant.parts), default=transfer.dead_time)
+    longest = transfer.longest_dead_time
     if longest:
         slow.append(1.0 / longest)
     start = 1e-4 * min(slow)

@@ -16,14 +16,12 @@ from replicate.loops.anti_windup import (
     checked_anti_windup,
     checked_limits,
 )  # fmt: skip
-from replicate.loops.chain import build_chain, gains
 from replicate.loops.errors import LoopError
 from replicate.loops.inputs import Input, Sine
 from replicate.loops.limited_steps import Jump, LimitedSteps
 from replicate.loops.loop import SETTLED, Loop, Response
 from replicate.loops.piece_flow import Row
 from replicate.loops.signal import Signal
-from replicate.loops.units import Units
 
 MOST_EXTENSIONS = 40  # of the horizon, before a loop counts as one that never comes to rest
 Given = float | Input | Sequence[Input]
@@ -67,7 +65,7 @@ def limited_response(
 ) -> LimitedResponse:
     """Return the response of a loop whose control signal stays within limits; see `Loop.saturated`."""
     low, high = checked_limits(limits)
-    scheme, tracking = checked_anti_windup(anti_windup, tracking_time, loop.controller)
+    scheme, tracking = checked_anti_windup(anti_windup, tracking_time, loop.primary_controller)
     load_at = checks.non_negative("load_at", load_at, allowed="a time >= 0")
     setpoints, loads = _jumps("setpoint", setpoint, 0.0), _jumps("load", load, load_at)
     if until is not None:
@@ -75,10 +73,8 @@ def limited_response(
     if not loop.plant.parts:
         msg = "limits of the control signal need a rational plant with dead times, not one given by a function"
         raise LoopError(msg)
-    units = Units.of(loop.plant, loop.controller)
-    plant, controller = units.plant(loop.plant), units.controller(loop.controller)
-    g = gains(controller)
-    chain = build_chain(plant, controller, integral=bool(g[2]), derivative=bool(g[3])).balanced(g)
+    units, parts = loop.open_loop()
+    chain, g = parts.chain, parts.gains
     if g[3] * chain.setpoint_impulse and setpoints:
         msg = "an ideal derivative of a set-point step has no limited response: give derivative_filter > 0 or c = 0"
         raise LoopError(msg)
@@ -86,9 +82,8 @@ def limited_response(
         chain, Row(g @ chain.wx, g @ chain.wv, float(g @ chain.wr)),
         (low * units.gain, high * units.gain), scheme, tracking / units.time,
     )  # fmt: skip
-    delays = np.array([part.dead_time for part in plant.parts])
     steps = LimitedSteps(
-        limited, delays,
+        limited, parts.delays, parts.loaded,
         [(time / units.time, value) for time, value in setpoints],
         [(time / units.time, value * units.gain) for time, value in loads],
     )  # fmt: skip

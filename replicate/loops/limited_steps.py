@@ -52,12 +52,15 @@ class LimitedSteps:
         The chain, the command, its limits and its anti-windup.
     delays
         The dead time of each of the chain's inputs.
+    loaded
+        1 for the inputs that the load enters, 0 for the others.
     setpoints, loads
         Piecewise constant inputs: their jumps in order of time, the first at t = 0.
     """
 
     controller: LimitedController
     delays: Array
+    loaded: Array
     setpoints: list[Jump]
     loads: list[Jump]
     mode: Mode = FREE
@@ -221,11 +224,11 @@ class LimitedSteps:
     def _inputs(self, start: float, h: float, mode: Mode) -> Array:
         """Return what enters a piece: the known part of the delayed inputs, the state, and the unit set-point."""
         known = []
-        for delay in self.delays.tolist():
+        for delay, loaded in zip(self.delays.tolist(), self.loaded.tolist(), strict=True):
             values, earlier = delayed_values(self.breaks, self.control, start, h, delay)
             if mode != FREE:
                 values[~earlier] = self.controller.limit(mode)
-            known.append(values + _value(self.loads, start - delay, slack=SAME * start))
+            known.append(values + loaded * _value(self.loads, start - delay, slack=SAME * start))
         return np.concatenate([np.array(known).ravel(), self.x, [1.0]])
 
     def _flow(self, h: float, mode: Mode) -> PieceFlow:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks, inversion, margins, poles, sensitivity, stability
+from replicate.loops.chain import OpenLoop, open_loop_of
 from replicate.loops.control_signal import control_signal
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
@@ -20,6 +22,7 @@ from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
 from replicate.loops.responses import responses
 from replicate.loops.signal import Signal
+from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.steady_state import steady_state
 from replicate.loops.units import Units
 
@@ -46,19 +49,19 @@ class Response:
 
 
 class Loop(LoopViews):
-    """A plant under feedback by a PI or PID controller, dead time exact.
+    """A plant under feedback by a PI or PID controller or a Smith predictor, dead time exact.
 
     Parameters
     ----------
     plant : Plant
-    controller : PI or PID
+    controller : PI, PID or SmithPredictor
 
     Raises
     ------
     ImproperLoopError
         If the loop gain grows without bound at high frequency.
     LoopError
-        If the plant is not a Plant or the controller not a PI or PID.
+        If the plant is not a Plant or the controller not a PI, PID or SmithPredictor.
 
     Examples
     --------
@@ -73,9 +76,19 @@ class Loop(LoopViews):
     0.25
     """
 
-    def __init__(self, plant: Plant, controller: PID) -> None:
+    def __new__(cls, *arguments: Any, **named: Any) -> Self:
+        """Make the loop of a Smith predictor where the controller is one."""
+        controller = named.get("controller", arguments[1] if len(arguments) > 1 else None)
+        if cls is Loop and isinstance(controller, SmithPredictor):
+            from replicate.loops.predictor_loop import PredictorLoop
+
+            return super().__new__(PredictorLoop)  # type: ignore[return-value]
+        return super().__new__(cls)
+
+    def __init__(self, plant: Plant, controller: PID | SmithPredictor) -> None:
         checks.instance("the plant of a loop", plant, Plant, "a Plant (Plant.from_control makes one)")
-        checks.instance("the controller of a loop", controller, PID, "a PI or PID")
+        checks.instance("the controller of a loop", controller, PID, "a PI, PID or SmithPredictor")
+        assert isinstance(controller, PID)  # noqa: S101  -- just checked
         self.plant = plant
         self.controller = controller
         # everything is computed in units in which the loop's numbers are of the order of one
@@ -249,13 +262,7 @@ class Loop(LoopViews):
             added = self.respond(setpoint=0.0, load=load, until=end - load_at)
             return Response(base.output + added.output.delayed(load_at), base.control + added.control.delayed(load_at))
         time, gain = self._units.time, self._units.gain
-        if not self.plant.parts:
-            breaks, y, control_breaks, u = self._by_inversion(setpoint, load * gain, end / time)
-        else:
-            [(breaks, y, u)] = responses(
-                self._plant, [self._controller], end / time, setpoint=setpoint, load=load * gain
-            )
-            control_breaks = breaks
+        breaks, y, control_breaks, u = self._responses(setpoint, load * gain, end / time)
         final_y, final_u = self.steady_state(setpoint, load)
         return Response(
             Signal(breaks * time, y, final=final_y, stable=self.is_stable),
@@ -271,6 +278,18 @@ class Loop(LoopViews):
             Heights of the two steps.
         """
         return steady_state(self.plant, self.controller, setpoint, load)
+
+    def open_loop(self) -> tuple[Units, OpenLoop]:
+        """Return the chain that is closed by the controller's gains, in the loop's units."""
+        return self._units, open_loop_of(self._plant, self._controller)
+
+    def _responses(
+        self, setpoint: float, load: float, end: float
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        if not self.plant.parts:
+            return self._by_inversion(setpoint, load, end)
+        [(breaks, y, u)] = responses(self._plant, [self._controller], end, setpoint=setpoint, load=load)
+        return breaks, y, breaks, u
 
     def _by_inversion(
         self, setpoint: float, load: float, end: float

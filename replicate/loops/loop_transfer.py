@@ -67,6 +67,11 @@ class LoopTransfer:
         return self.dead_time == 0.0
 
     @property
+    def longest_dead_time(self) -> float:
+        """The longest of the dead times."""
+        return max((part.dead_time for part in self.plant.parts), default=self.dead_time)
+
+    @property
     def open_loop_poles(self) -> ComplexArray:
         """The poles of the open loop's rational part: the zeros of f where L is negligible."""
         return np.asarray(np.roots(self.den), dtype=complex)

@@ -13,6 +13,7 @@ from replicate.loops.to_control import Kind, loop_to_control
 
 if TYPE_CHECKING:
     from replicate.loops.anti_windup import AntiWindup
+    from replicate.loops.controller import PID
     from replicate.loops.experiments import Given
     from replicate.loops.limited_response import LimitedResponse
     from replicate.loops.loop import Loop, Response
@@ -24,6 +25,21 @@ class LoopViews:
     @property
     def _loop(self) -> Loop:
         return cast("Loop", self)
+
+    @property
+    def primary_controller(self) -> PID:
+        """The PI or PID controller, that of a Smith predictor without its model."""
+        return self._loop.controller
+
+    def with_primary(self, controller: PID) -> Loop:
+        """Return the same loop with another PI or PID controller.
+
+        Parameters
+        ----------
+        controller : PI or PID
+            Takes the place of `primary_controller`.
+        """
+        return type(self._loop)(self._loop.plant, controller)
 
     def summary(self) -> LoopSummary:
         """Return stability, peaks, margins, and the metrics of the step and load responses in one record."""

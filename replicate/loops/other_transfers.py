@@ -78,7 +78,7 @@ class FunctionTransfer(LoopTransfer):
         end = self.beyond(0.5)
         low = min([end, self.plant.corners[0], *np.abs(self.corner_frequencies).tolist()])
         start = 1e-8 * low
-        return _crossings_of_one(self, np.geomspace(start, end, int(PER_DECADE * np.log10(end / start))))
+        return crossings_of_one(self, np.geomspace(start, end, int(PER_DECADE * np.log10(end / start))))
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which |L(i w)| is taken to stay below ``level``: checked over eight octaves."""
@@ -241,7 +241,7 @@ class SumTransfer(LoopTransfer):
         from replicate.loops.frequency_grids import loop_grid
 
         end = self.beyond(max(0.5, 0.5 * (1.0 + self.feedthrough)))
-        return _crossings_of_one(self, loop_grid(self, end, per_decade=PER_DECADE))
+        return crossings_of_one(self, loop_grid(self, end, per_decade=PER_DECADE))
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which sum |L_i(i w)| provably stays below ``level``."""
@@ -258,7 +258,9 @@ class SumTransfer(LoopTransfer):
         raise ImproperLoopError(msg)
 
 
-def _crossings_of_one(transfer: LoopTransfer, w: Array) -> Array:
+def crossings_of_one(transfer: LoopTransfer, w: Array) -> Array:
+    """Return the frequencies between those given, ascending, at which |L(i w)| = 1."""
+
     def excess(x: float) -> float:
         return float(np.log(np.abs(complex(transfer(1j * x)))))
 

@@ -50,7 +50,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     elif transfer.num.size == 0:  # no feedback: what is left are the poles of the open loop
         starts = transfer.open_loop_poles
     elif plant.parts:
-        starts = _generator_eigenvalues(plant, controller, transfer)
+        starts = generator_eigenvalues(plant, controller, transfer)
     else:
         starts = _starts_on_grid(transfer)
     if starts.size == 0 and (transfer.is_polynomial or transfer.num.size == 0):  # a static loop
@@ -67,6 +67,13 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         msg = "no closed-loop pole was found"
         raise LoopError(msg)
     return np.array(found[:count])
+
+
+def merged(first: ComplexArray, second: ComplexArray, count: int) -> ComplexArray:
+    """Return the rightmost of two sets of poles in the order of `rightmost_poles`, equal ones once."""
+    found = [complex(p) for p in first]
+    found += [complex(p) for p in second if all(abs(p - q) > 1e-8 * abs(p) for q in first)]
+    return np.array(_ordered(found)[:count], dtype=complex)
 
 
 def _ordered(poles: list[complex]) -> list[complex]:
@@ -180,7 +187,8 @@ def _count_right_of(transfer: LoopTransfer, line: float) -> int | None:
     return None if turn is None else round(turn / np.pi)
 
 
-def _generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer) -> ComplexArray:
+def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer) -> ComplexArray:
+    """Return approximate poles, Im >= 0: where to look for the exact ones."""
     chain = build_chain(plant, controller, integral=controller.ki != 0.0, derivative=controller.kd != 0.0)
     chain = chain.balanced(gains(controller))
     # the set-point filter's states are outside the loop

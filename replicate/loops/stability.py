@@ -147,12 +147,13 @@ def _inverse_at_rest(transfer: LoopTransfer) -> complex:
 
 
 def argument_change(f: Callable[[ComplexArray], ComplexArray], path: ComplexArray) -> float | None:
-    """Return the continuous change of arg f along a path, or None if a zero lies on the way."""
+    """Return the continuous change of arg f along a path, or None if a zero lies on the way or f overflows."""
     value = f(path)
     for _ in range(DEEPEST):
-        if np.any(value == 0.0):
+        if np.any(value == 0.0) or not np.isfinite(value).all():
             return None
-        turns = np.angle(value[1:] / value[:-1])
+        # of the angles themselves: a ratio of two values can overflow
+        turns = np.mod(np.diff(np.angle(value)) + np.pi, 2.0 * np.pi) - np.pi
         coarse = np.nonzero(np.abs(turns) > LARGEST_TURN)[0]
         if coarse.size == 0:
             return float(np.sum(turns))

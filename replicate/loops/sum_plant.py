@@ -275,6 +275,11 @@ def _difference(roots: Sequence[complex], taken: Sequence[complex]) -> list[comp
     return left
 
 
+def roots_without(roots: ComplexArray, taken: ComplexArray) -> ComplexArray:
+    """Return the roots that are left when others, each one of them up to rounding, are taken away."""
+    return np.array(_difference(roots.tolist(), taken.tolist()), dtype=complex)
+
+
 def _union(roots: Sequence[complex], more: Sequence[complex]) -> list[complex]:
     """Return the least common multiple of two sets of roots."""
     free, union = list(roots), list(roots)
