@@ -58,6 +58,10 @@ torture: $(VENV)/.developed ## attack every promise and count what held: killed,
 bench: $(VENV)/.developed ## measure speed and accuracy against python-control
 	set -e; for script in benchmarks/*.py; do $(BIN)/python "$$script"; done
 
+.PHONY: scaling
+scaling: $(VENV)/.developed ## how sweeps of up to a million loops grow, on a cluster of one and of two workers
+	$(BIN)/python tools/sweep_scaling.py
+
 .PHONY: units
 units: $(VENV)/.developed ## try 1,000 random loops in other units of time and gain (about 20 minutes)
 	$(BIN)/python tests/loops/equivariance.py 1000
