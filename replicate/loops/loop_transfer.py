@@ -8,6 +8,8 @@ controller. The zeros of the *characteristic function* f are the closed loop's p
 
 from __future__ import annotations
 
+import cmath
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -74,27 +76,44 @@ class LoopTransfer:
     @property
     def open_loop_poles(self) -> ComplexArray:
         """The poles of the open loop's rational part: the zeros of f where L is negligible."""
-        return np.asarray(np.roots(self.den), dtype=complex)
+        return roots_of(self.den)
 
     @property
     def is_rational(self) -> bool:
         """Whether L is a rational function times one dead time."""
         return True
 
+    @cached_property
+    def _coefficients(self) -> tuple[list[float], list[float]]:
+        return self.num.tolist(), self.den.tolist()
+
     def __call__(self, s: Any) -> ComplexArray:
         """Evaluate L(s) at complex ``s``."""
+        num, den = self._coefficients
+        if isinstance(s, complex):  # root finders ask for one point after the other
+            try:
+                return np.asarray(horner(num, s) / horner(den, s) * cmath.exp(-s * self.dead_time))
+            except (ZeroDivisionError, OverflowError):
+                pass
         s = np.asarray(s, dtype=complex)
-        return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s) * np.exp(-s * self.dead_time))
+        return np.asarray(horner(num, s) / horner(den, s) * np.exp(-s * self.dead_time))
 
     def characteristic(self, s: Any) -> ComplexArray:
         """Evaluate f(s) = D(s) + N(s) g(s) exp(-s dead_time)."""
+        num, den = self._coefficients
         s = np.asarray(s, dtype=complex)
-        return np.asarray(np.polyval(self.den, s) + np.polyval(self.num, s) * np.exp(-s * self.dead_time))
+        return np.asarray(horner(den, s) + horner(num, s) * np.exp(-s * self.dead_time))
 
     def characteristic_slope(self, s: ComplexArray) -> ComplexArray:
         """Evaluate f'(s)."""
-        top = np.polyval(np.polyder(self.num), s) - self.dead_time * np.polyval(self.num, s)
-        return np.asarray(np.polyval(np.polyder(self.den), s) + top * np.exp(-s * self.dead_time))
+        return self.characteristic_with_slope(s)[1]
+
+    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Evaluate f(s) and f'(s) together."""
+        num, den = self._coefficients
+        (n, n_slope), (d, d_slope) = horner_with_slope(num, s), horner_with_slope(den, s)
+        delay = np.exp(-s * self.dead_time)
+        return np.asarray(d + n * delay), np.asarray(d_slope + (n_slope - self.dead_time * n) * delay)
 
     def size(self, s: ComplexArray) -> Array:
         """Return the sum of the moduli of f's terms: its rounding error is this times the relative precision."""
@@ -104,11 +123,17 @@ class LoopTransfer:
 
     def log_derivative(self, s: Any) -> ComplexArray:
         """Evaluate L'(s)/L(s), as exact as the plant's own `Plant.log_derivative`."""
-        s = np.asarray(s, dtype=complex)
-        rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(
-            np.polyder(self.den), s
-        ) / np.polyval(self.den, s)
-        return np.asarray(rational - self.dead_time)
+        if isinstance(s, complex):
+            try:
+                return np.asarray(self._log_derivative(s))
+            except (ZeroDivisionError, OverflowError):
+                pass
+        return np.asarray(self._log_derivative(np.asarray(s, dtype=complex)))
+
+    def _log_derivative(self, s: Any) -> Any:
+        num, den = self._coefficients
+        (n, n_slope), (d, d_slope) = horner_with_slope(num, s), horner_with_slope(den, s)
+        return n_slope / n - d_slope / d - self.dead_time
 
     @cached_property
     def feedthrough(self) -> float:
@@ -152,7 +177,7 @@ class LoopTransfer:
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
         """Nonzero poles and zeros of L's rational part: where its frequency response bends."""
-        roots = np.concatenate([np.roots(self.num), np.roots(self.den)]).astype(complex)
+        roots = np.concatenate([roots_of(self.num), roots_of(self.den)])
         return np.asarray(roots[np.abs(roots) > 0.0])
 
     def beyond(self, level: float) -> float:
@@ -175,6 +200,43 @@ class LoopTransfer:
         raise ImproperLoopError(msg)
 
 
+def roots_of(polynomial: Array) -> ComplexArray:
+    """Return the roots of a polynomial, descending powers; up to the second degree in closed form."""
+    degree = polynomial.size - 1
+    if degree <= 0:
+        return np.zeros(0, dtype=complex)
+    if degree == 1:
+        return np.array([-polynomial[1] / polynomial[0]], dtype=complex)
+    if degree == 2:
+        a, b, c = polynomial.tolist()
+        root = cmath.sqrt(b * b - 4.0 * a * c)
+        large = -0.5 * (b + root if b >= 0.0 else b - root)
+        return np.array([large / a, c / large if large else 0.0], dtype=complex)
+    return np.asarray(np.roots(polynomial), dtype=complex)
+
+
+def horner(coefficients: Sequence[float], s: Any) -> Any:
+    """Evaluate a polynomial, descending powers, at a number or an array; zero without coefficients."""
+    if not coefficients:
+        return 0.0 * s
+    value = coefficients[0] + 0.0 * s
+    for c in coefficients[1:]:
+        value = value * s + c
+    return value
+
+
+def horner_with_slope(coefficients: Sequence[float], s: Any) -> tuple[Any, Any]:
+    """Evaluate a polynomial and its derivative."""
+    slope = 0.0 * s
+    if not coefficients:
+        return slope, slope
+    value = coefficients[0] + slope
+    for c in coefficients[1:]:
+        slope = slope * s + value
+        value = value * s + c
+    return value, slope
+
+
 def stationary_frequencies(num: Array, den: Array) -> Array:
     """Return the positive frequencies at which |num/den| is stationary on the imaginary axis, ascending."""
     n, d = _squared_magnitude(num), _squared_magnitude(den)
@@ -191,7 +253,12 @@ def _near_positive_axis(found: ArrayLike) -> Array:
 
 def _roots(left: Array, right: Array) -> ComplexArray:
     """Return the roots of the difference of two polynomials."""
-    return np.asarray(np.roots(np.trim_zeros(np.polysub(left, right), "f")), dtype=complex)
+    size = max(left.size, right.size)
+    difference = np.zeros(size)
+    difference[size - left.size :] += left
+    difference[size - right.size :] -= right
+    nonzero = np.nonzero(difference)[0]
+    return roots_of(difference[nonzero[0] :]) if nonzero.size else np.zeros(0, dtype=complex)
 
 
 def _slope(polynomial: Array) -> Array:

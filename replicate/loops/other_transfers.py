@@ -53,6 +53,10 @@ class FunctionTransfer(LoopTransfer):
         value = np.polyval(self.num, s) * np.exp(-s * self.dead_time) * self.plant.delay_free(s)
         return np.asarray(slope + value * (self.log_derivative(s) + slope / den))
 
+    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Evaluate f(s) and f'(s)."""
+        return self.characteristic(s), self.characteristic_slope(s)
+
     def log_derivative(self, s: Any) -> ComplexArray:
         """Evaluate L'(s)/L(s)."""
         s = np.asarray(s, dtype=complex)
@@ -192,6 +196,10 @@ class SumTransfer(LoopTransfer):
     def open_loop_poles(self) -> ComplexArray:
         """The poles of the open loop."""
         return np.concatenate([self.plant.poles(), np.roots(self._controller[1])])
+
+    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Evaluate f(s) and f'(s)."""
+        return self.characteristic(s), self.characteristic_slope(s)
 
     def log_derivative(self, s: Any) -> ComplexArray:
         """Evaluate L'(s)/L(s)."""

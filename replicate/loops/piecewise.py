@@ -208,11 +208,28 @@ class Piecewise:
             place = int(np.argmax(highest[tail]))
             at = int(np.argmax(samples[tail[place]]))
             best = Peak(float(highest[tail[place]]), self._time(int(tail[place]), chebyshev.nodes(SAMPLES - 1)[at]))
-        for piece in candidates[~flat]:
-            for value, time in self._piece_extrema(int(piece)):
-                if sign * value > best:
-                    best = Peak(sign * value, time)
+        for value, time in self._summits(candidates[~flat], sign, highest.max() - margin):
+            if sign * value > best:
+                best = Peak(sign * value, time)
         return Peak(sign * float(best), best.time)
+
+    def _summits(self, pieces: NDArray[np.intp], sign: float, level: float) -> list[tuple[float, float]]:
+        """Return (value, time) of the local extrema in some pieces whose samples reach a level, ends included."""
+        samples, nodes = sign * self._samples[pieces], chebyshev.nodes(SAMPLES - 1)
+        padded = np.pad(samples, ((0, 0), (1, 1)), constant_values=-np.inf)
+        top = (samples >= padded[:, :-2]) & (samples >= padded[:, 2:]) & (samples >= level)
+        rows, places = np.nonzero(top)
+        series = self.coefficients[pieces[rows]]
+        slopes = sign * (series @ chebyshev.differentiation(self.degree))
+        left, right = nodes[np.maximum(places - 1, 0)], nodes[np.minimum(places + 1, SAMPLES - 1)]
+        inside = (chebyshev.evaluate(slopes, left) > 0.0) & (chebyshev.evaluate(slopes, right) < 0.0)
+        x = nodes[places].copy()
+        if inside.any():
+            x[inside] = chebyshev.bracketed_roots(slopes[inside], left[inside], right[inside])
+        values = np.maximum(sign * chebyshev.evaluate(series, x), samples[rows, places])
+        return [
+            (sign * float(v), self._time(int(piece), at)) for v, piece, at in zip(values, pieces[rows], x, strict=True)
+        ]
 
     def peak(self) -> Peak:
         """Return the largest value on [0, horizon]; its ``.time`` is where it is reached."""

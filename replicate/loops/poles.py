@@ -9,6 +9,8 @@ whether it is complete.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import scipy.linalg
 from numpy.polynomial import chebyshev as cheb
@@ -27,6 +29,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 NEWTON_STEPS = 40
+SOON = 8  # steps after which a simple zero has been found to rounding
+SETTLED = 1e-12  # relative size of the step at such a zero: what is left is rounding
+SPARE = 3  # zeros that are found besides those asked for before the others are given up
 MOST_STARTS = 24
 EPS = float(np.finfo(float).eps)
 CLOSE = 0.03  # distance, relative to the modulus, of points that may be one multiple pole
@@ -57,7 +62,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         return starts
     starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]
     starts = starts.real + 1j * np.abs(starts.imag)
-    polished, converged = _newton(transfer, starts)
+    polished, converged = _newton(transfer, starts, count)
     # a multiple root has no slope for Newton: there the eigenvalue is as good as it gets
     points = np.where(converged, polished, starts) if transfer.is_polynomial else polished[converged]
     found = _ordered(_distinct(transfer, points, count))
@@ -224,6 +229,7 @@ def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer)
     return eigenvalues[eigenvalues.imag >= 0.0]
 
 
+@cache
 def _differentiation_matrix(degree: int) -> Array:
     slopes = cheb.chebval(chebyshev.nodes(degree), cheb.chebder(np.eye(degree + 1), axis=0))  # (degree+1 basis, nodes)
     return np.asarray(slopes.T @ chebyshev.values_to_coefficients(degree))
@@ -243,22 +249,28 @@ def _starts_on_grid(transfer: LoopTransfer) -> ComplexArray:
     return np.asarray(s[1:-1][low])
 
 
-def _newton(transfer: LoopTransfer, s: ComplexArray) -> tuple[ComplexArray, NDArray[np.bool_]]:
+def _newton(transfer: LoopTransfer, s: ComplexArray, count: int) -> tuple[ComplexArray, NDArray[np.bool_]]:
     """Polish zeros of the characteristic function by Newton's method with limited steps, all at once.
 
-    Returns the points and whether each has converged; a multiple zero stops at the root of the rounding error.
+    Returns the points and whether each has converged; a multiple zero stops at the root of the rounding error. A point
+    that is still far from a zero when enough others have converged to the right of it is not followed any longer.
     """
     s = np.array(s, dtype=complex)
     step = np.full(s.shape, np.inf, dtype=complex)
     with np.errstate(all="ignore"):
-        for _ in range(NEWTON_STEPS):
+        for done in range(NEWTON_STEPS):
             moving = (np.abs(step) > 4e-16 * np.abs(s)) & np.isfinite(s) & (s != 0.0)
+            if done >= SOON:
+                settled = np.abs(step) <= SETTLED * np.abs(s)
+                reals = np.sort(s.real[settled])
+                left = reals[-count - SPARE] if reals.size >= count + SPARE else -np.inf
+                moving &= ~settled & (s.real > left)
             if not moving.any():
                 break
             at = s[moving]
-            change = transfer.characteristic(at) / transfer.characteristic_slope(at)
-            longest = 0.3 * np.maximum(np.abs(at), 1e-300)
-            change *= np.minimum(1.0, longest / np.abs(change))
+            value, slope = transfer.characteristic_with_slope(at)
+            change = value / slope
+            change *= np.minimum(1.0, 0.3 * np.maximum(np.abs(at), 1e-300) / np.abs(change))
             step[moving] = change
             s[moving] = at - change
     return s, np.isfinite(s) & (s != 0.0) & (np.abs(step) <= 1e-6 * np.abs(s))

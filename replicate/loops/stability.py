@@ -24,7 +24,7 @@ from scipy.optimize import brentq
 
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
-from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.loop_transfer import LoopTransfer, roots_of
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -79,7 +79,7 @@ def is_stable(transfer: LoopTransfer) -> bool:
 
 def _from_crossovers(transfer: LoopTransfer) -> int:
     """Return the number of unstable poles of a rational loop with dead time."""
-    poles, zeros = np.roots(transfer.den).astype(complex), np.roots(transfer.num).astype(complex)
+    poles, zeros = roots_of(transfer.den), roots_of(transfer.num)
     if transfer.num.size == 0:
         return int(np.sum(poles.real >= -ON_AXIS * np.abs(poles)))
     if transfer.den[-1] + transfer.num[-1] == 0.0:
