@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -76,9 +76,9 @@ class Loop(LoopViews):
     0.25
     """
 
-    def __new__(cls, *arguments: Any, **named: Any) -> Self:
+    # a loop that is read back from a file or sent to another process is made without arguments
+    def __new__(cls, plant: Plant | None = None, controller: PID | SmithPredictor | None = None) -> Self:  # noqa: ARG004
         """Make the loop of a Smith predictor where the controller is one."""
-        controller = named.get("controller", arguments[1] if len(arguments) > 1 else None)
         if cls is Loop and isinstance(controller, SmithPredictor):
             from replicate.loops.predictor_loop import PredictorLoop
 
@@ -87,7 +87,7 @@ class Loop(LoopViews):
 
     def __init__(self, plant: Plant, controller: PID | SmithPredictor) -> None:
         checks.instance("the plant of a loop", plant, Plant, "a Plant (Plant.from_control makes one)")
-        checks.instance("the controller of a loop", controller, PID, "a PI, PID or SmithPredictor")
+        checks.instance("the controller of a loop", controller, PID, "a PI or PID")
         assert isinstance(controller, PID)  # noqa: S101  -- just checked
         self.plant = plant
         self.controller = controller
