@@ -63,14 +63,15 @@ def docx_words(content: bytes) -> str:
 
 def test_a_latex_document_asks_for_the_figures_beside_it(sheet: Document) -> None:
     files = tex(sheet)
-    assert set(files) == {".tex", "toy-fig-1.pdf"}
+    picture = f"toy-{Form.of('toy', '1', 'Ada').key}-fig-1.pdf"
+    assert set(files) == {".tex", picture}
     source = files[".tex"].decode()
-    assert re.findall(r"\\includegraphics\[[^]]*\]\{([^}]*)\}", source) == ["toy-fig-1.pdf"]
+    assert re.findall(r"\\includegraphics\[[^]]*\]\{([^}]*)\}", source) == [picture]
     assert r"\[\frac{1}{1 + s}\]" in source
     assert source.index(r"\begin{document}") < source.index("Exercise 1") < source.index(r"\end{document}")
     opened, closed = (re.findall(rf"\\{word}\{{(\w+)\}}", source) for word in ("begin", "end"))
     assert sorted(opened) == sorted(closed)
-    assert files["toy-fig-1.pdf"].startswith(b"%PDF-")
+    assert files[picture].startswith(b"%PDF-")
     assert files == tex(sheet)
 
 

@@ -106,12 +106,13 @@ def test_a_cloze_question_has_a_field_for_each_answer(toy: ClassSet) -> None:
 def test_an_essay_has_its_figure_inside_and_the_solution_for_those_who_grade(toy: ClassSet) -> None:
     (question,) = questions(moodle(toy), "essay")
     asked = text(question, "questiontext/text")
-    assert 'src="@@PLUGINFILE@@/fig-1.png" alt="y from 0 to 1 over t from 0 to 1."' in asked
+    assert re.search(r'src="@@PLUGINFILE@@/fig-1-\w{12}\.png" alt="y from 0 to 1 over t from 0 to 1\."', asked)
     assert r"\[\frac{1}{1 + s}\]" in asked
     assert "figure &amp; say" in asked
     assert "<pre>number = 6</pre>" in asked
     (embedded,) = question.iter("file")
     assert base64.b64decode(embedded.text or "") == toy_class.PNG
+    assert f'src="@@PLUGINFILE@@/{embedded.get("name")}"' in asked
     assert "print(7 * number)" in text(question, "graderinfo/text")
     assert "42" in text(question, "generalfeedback/text")
     assert "42" not in asked
@@ -192,7 +193,8 @@ def test_the_manifest_lists_every_file_and_nothing_else(toy: ClassSet) -> None:
     for resource in resources.values():
         assert resource.get("href") in {file.get("href") for file in resource}
     assert {dependency.get("identifierref") for dependency in manifest.iter(f"{CP}dependency")} == set(items(made))
-    assert made.read("images/fig-1.png") == toy_class.PNG
+    (picture,) = [name for name in made.namelist() if name.startswith("images/fig-1-")]
+    assert made.read(picture) == toy_class.PNG
 
 
 def test_the_test_selects_one_form_of_each_exercise(toy: ClassSet) -> None:

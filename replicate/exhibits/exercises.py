@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.drawn import Figure
-from replicate.exhibits.variants import Answers, Inputs, Variation
+from replicate.exhibits.variants import Answers, Inputs, Variation, VariedFigure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
@@ -81,6 +81,8 @@ class Exercises:
         requires: Mapping[str, Callable[[Inputs], bool]],
         shown: Callable[[Inputs], Values] = lambda _: {},
         stated: str = "",
+        figures: Mapping[str, VariedFigure] | None = None,
+        files: Callable[[Inputs], Mapping[str, str]] = lambda _: {},
     ) -> Callable[[Callable[[Inputs], Answers]], Callable[[Inputs], Answers]]:
         """Register the decorated function as the answers to an exercise whose numbers vary.
 
@@ -98,18 +100,28 @@ class Exercises:
             Computes what else the text says about inputs, for ``answer(name)``.
         stated
             A sentence for sheets that are marked by the key: how to round, for ``stated(name)``.
+        figures
+            Figures of the inputs, by name.
+        files
+            Computes files that go with a sheet, by the ends of their names, say ``step-test.csv``.
 
         Raises
         ------
         PaperDefinitionError
-            If the name is taken.
+            If a name is taken.
         """
 
         def register(compute: Callable[[Inputs], Answers]) -> Callable[[Inputs], Answers]:
             if name in self.answers or name in self.variations:
                 msg = f"handout: answer '{name}' is defined twice"
                 raise PaperDefinitionError(msg)
-            self.variations[name] = Variation(name, original, variant, compute, requires, shown, stated)
+            taken = [one for one in figures or () if one in self._figure_names()]
+            if taken:
+                msg = f"handout: figure '{taken[0]}' is defined twice"
+                raise PaperDefinitionError(msg)
+            self.variations[name] = Variation(
+                name, original, variant, compute, requires, shown, stated, figures or {}, files
+            )
             return compute
 
         return register
@@ -137,10 +149,13 @@ class Exercises:
         """
 
         def register(draw: Callable[[MatplotlibFigure], None]) -> Callable[[MatplotlibFigure], None]:
-            if name in self.figures:
+            if name in self._figure_names():
                 msg = f"handout: figure '{name}' is defined twice"
                 raise PaperDefinitionError(msg)
             self.figures[name] = Figure(name, "figure", title, draw, alt=alt, size=size)
             return draw
 
         return register
+
+    def _figure_names(self) -> set[str]:
+        return {*self.figures, *(name for variation in self.variations.values() for name in variation.figures)}

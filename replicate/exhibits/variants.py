@@ -98,6 +98,24 @@ Answers = Mapping[str, Answer]
 
 
 @dataclass(frozen=True)
+class VariedFigure:
+    """A figure that shows the numbers of a form.
+
+    Attributes
+    ----------
+    title, alt, size
+        As of `replicate.exhibits.Figure`.
+    draw
+        Draws on an empty matplotlib figure: ``draw(fig, inputs=...)``.
+    """
+
+    title: str
+    alt: str
+    draw: Callable[..., None]
+    size: tuple[float, float] = (6.4, 3.0)
+
+
+@dataclass(frozen=True)
 class Variation:
     """An exercise whose numbers vary.
 
@@ -117,6 +135,10 @@ class Variation:
         Computes what else the text says about inputs.
     stated
         A sentence for sheets that are marked by the key: how to round, in Markdown.
+    figures
+        Figures of the inputs, by the name by which the text places them.
+    files
+        Computes files that go with a sheet, say measured data, by the ends of their names.
     """
 
     name: str
@@ -126,6 +148,9 @@ class Variation:
     requires: Mapping[str, Callable[[Inputs], bool]] = field(default_factory=dict)
     shown: Callable[[Inputs], Mapping[str, float | str]] = lambda _: {}
     stated: str = ""
+    figures: Mapping[str, VariedFigure] = field(default_factory=dict)
+    files: Callable[[Inputs], Mapping[str, str]] = lambda _: {}
+    _drawn: dict[str, Inputs] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def drawn(self, key: str) -> Inputs:
         """Return the inputs of one form.
@@ -140,6 +165,11 @@ class Variation:
         PaperDefinitionError
             If no draw satisfies what is required.
         """
+        if key not in self._drawn:
+            self._drawn[key] = self._draw(key)
+        return self._drawn[key]
+
+    def _draw(self, key: str) -> Inputs:
         digest = hashlib.sha256(f"{key}\0{self.name}".encode()).digest()
         rng = random.Random(int.from_bytes(digest, "big"))  # noqa: S311  -- numbers of an exercise, no secret
         failures = dict.fromkeys(self.requires, 0)

@@ -56,6 +56,9 @@ def build_handouts(
     """
     made: dict[str, bytes] = {}
     for paper in papers:
+        for variation in exercises_of(paper).variations.values():
+            files = variation.files(variation.original)
+            made |= {f"{paper.id}-{name}": text.encode() for name, text in files.items()}
         if file_format in BANKS:
             document = edition(paper, results, verdicts, solutions=True, sheet=sheet)
             questions = list(questions_of(document, exercises_of(paper), None))

@@ -11,6 +11,7 @@ from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import Results
+from replicate.exhibits.variants import Variation
 from replicate.handout.edition import AT_ONCE, Document, editions, without_solutions
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, EDITIONS, named
@@ -66,6 +67,8 @@ class ClassSet:
         exercises = varying(self.paper)
         forms = {student: Form.of(self.paper.id, seed, student, self.sheet.select) for student in students}
         yield from self._key(exercises, forms, seed)
+        for student, form in forms.items():
+            yield from self._data(exercises, file_stem(student), form)
         questions: list[Question] = []
         stems = [file_stem(student) for student in students]
         if self.file_format in EDITIONS:
@@ -78,14 +81,12 @@ class ClassSet:
 
     def again(self, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the name and content of one sheet, made again from its id."""
-        yield from self._sheets([form.key], self._documents([form], varying(self.paper), None))
+        exercises = varying(self.paper)
+        yield from self._data(exercises, form.key, form)
+        yield from self._sheets([form.key], self._documents([form], exercises, None))
 
     def _key(self, exercises: Exercises, forms: Mapping[str, Form], seed: str) -> Iterator[tuple[str, bytes]]:
-        chosen = exercises.variations
-        if self.sheet.select and forms:
-            (some,) = self._batch([next(iter(forms.values()))])
-            on_sheet = {question.exercise for question in questions_of(some, exercises, None)}
-            chosen = {name: variation for name, variation in chosen.items() if name in on_sheet}
+        chosen = self._on_sheet(exercises, next(iter(forms.values()), None))
         rows: list[KeyRow] = []
         for student, form in forms.items():
             try:
@@ -95,6 +96,22 @@ class ClassSet:
                 raise PaperDefinitionError(msg) from error
         yield f"{self.paper.id}-key.csv", key_csv(rows)
         yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed)
+
+    def _data(self, exercises: Exercises, stem: str, form: Form) -> Iterator[tuple[str, bytes]]:
+        """Yield the files that go with a sheet."""
+        for variation in self._on_sheet(exercises, form).values():
+            for name, text in variation.files(variation.drawn(form.draw)).items():
+                yield f"{self.paper.id}-{stem}-{name}", text.encode()
+
+    def _on_sheet(self, exercises: Exercises, form: Form | None) -> Mapping[str, Variation]:
+        """Return the exercises with numbers that are selected."""
+        if not self.sheet.select or form is None:
+            return exercises.variations
+        if "on sheet" not in self._shared:
+            (some,) = self._batch([form])
+            self._shared["on sheet"] = {question.exercise for question in questions_of(some, exercises, None)}
+        names = self._shared["on sheet"]
+        return {name: variation for name, variation in exercises.variations.items() if name in names}
 
     def _documents(
         self, forms: Iterable[Form], exercises: Exercises, questions: list[Question] | None

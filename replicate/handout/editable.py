@@ -52,7 +52,8 @@ def tex(document: Document) -> dict[str, bytes]:
     TemplateError
         If pandoc cannot write it.
     """
-    figures = {f"{document.paper.id}-{name}.pdf": figure_pdf(one.svg) for name, one in document.drawings.items()}
+    stem = f"{document.paper.id}-{document.form.split(':')[1]}" if document.form else document.paper.id
+    figures = {f"{stem}-{name}.pdf": figure_pdf(one.svg) for name, one in document.drawings.items()}
     made = _pandoc(document, "latex", figures, "--standalone", "-V", "geometry:margin=25mm", "-V", "papersize:a4")
     return {".tex": made, **figures}
 

@@ -20,7 +20,8 @@ def with_heads(blocks: Blocks, source: str, exercises: Exercises, sheet: Sheet) 
     """Write into the heading of each exercise its number, its points and its tool.
 
     What a program needs to know of an exercise becomes attributes of its Div: ``number``, ``title``, ``vary`` (the
-    name under which its numbers vary), ``plot`` (the figure of the solution that is to be drawn) and ``points``.
+    name under which its numbers vary), ``plot`` (the figure of the solution that is to be drawn), ``fixed`` (why
+    nothing varies) and ``points``.
 
     Raises
     ------
@@ -45,6 +46,7 @@ def with_heads(blocks: Blocks, source: str, exercises: Exercises, sheet: Sheet) 
         points = sheet.points_of(selected.index(number), len(selected)) if number in selected else None
         about = {"number": str(number), "title": " ".join(text_of(heading["c"][2]).split())}
         about |= {"vary": name} if name else {}
+        about |= {"fixed": given["fixed"]} if "fixed" in given else {}
         about |= {"plot": given["plot"]} if "plot" in given else {}
         about |= {"points": f"{points:g}"} if points is not None else {}
         element["c"][0][2] = [list(pair) for pair in about.items()]

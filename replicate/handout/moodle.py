@@ -16,7 +16,7 @@ from decimal import ROUND_CEILING
 
 from replicate.exhibits.variants import Answer
 from replicate.handout.marking_key import plain_decimals
-from replicate.handout.question_texts import Texts, texts_of
+from replicate.handout.question_texts import Texts, picture_name, texts_of
 from replicate.handout.questions import Question, different, drawings_in
 from replicate.handout.tree import Blocks
 
@@ -42,7 +42,9 @@ def moodle_xml(questions: Iterable[Question]) -> bytes:
     chosen = different(questions)
     quiz = ET.Element("quiz")
     category = ""
-    for question, texts in zip(chosen, texts_of(chosen, "@@PLUGINFILE@@/", "--mathjax"), strict=True):
+    for question, texts in zip(
+        chosen, texts_of(chosen, lambda _, name: f"@@PLUGINFILE@@/{name}", "--mathjax"), strict=True
+    ):
         course = f"$course$/top/{question.document.title.replace('/', '//')}"
         here = f"{course}/{question.number} {question.title.replace('/', '//')}"
         if here != category:
@@ -135,7 +137,9 @@ def _text(parent: ET.Element, tag: str, text: str, **attributes: str) -> ET.Elem
 
 
 def _files(parent: ET.Element, question: Question, blocks: Blocks) -> None:
-    """Put the figures of a text beside it."""
-    for name in dict.fromkeys(drawings_in(blocks)):
-        found = ET.SubElement(parent, "file", name=f"{name}.png", path="/", encoding="base64")
-        found.text = base64.b64encode(question.document.drawings[name].png).decode()
+    """Put the figures of a text beside it, and beside the question its files."""
+    pictures = {picture_name(one): one.png for one in drawings_in(blocks, question.document)}
+    data = {name: text.encode() for name, text in question.files.items()} if blocks is question.text else {}
+    for name, content in {**pictures, **data}.items():
+        found = ET.SubElement(parent, "file", name=name, path="/", encoding="base64")
+        found.text = base64.b64encode(content).decode()

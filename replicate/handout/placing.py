@@ -27,7 +27,7 @@ import importlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from replicate.display.addresses import TRIALS, trial_address, trial_label
@@ -200,6 +200,13 @@ class Placing:
     def figure(self, name: str, width: float = 1.0, size: tuple[float, float] | None = None) -> str:
         """Place a figure of the handout's own, or else one of the paper."""
         own, found = self.exercises.figures.get(name), self.paper.exhibits.get(name)
+        varied = self._varied(name)
+        if varied is not None:
+            if size is not None:
+                varied, width = replace(varied, size=size), min(1.0, size[0] / TEXT_WIDTH)
+            with _said_by(f"figure('{name}')"):
+                shown = drawing.capture(f"{self.paper.id}-handout", varied)
+            return self._mark(Drawing(name, shown.svg, shown.png, description(varied.alt, shown.axes), width))
         if own is not None or (size is not None and isinstance(found, Figure)):
             drawn = own or found
             assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker
@@ -214,12 +221,23 @@ class Placing:
         known = self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
             figures = [id for id, other in self.paper.exhibits.items() if isinstance(other, Figure)]
-            msg = f"figure('{name}'): no such figure; allowed: {_listed([*self.exercises.figures, *figures])}"
+            varied_names = [one for variation in self.exercises.variations.values() for one in variation.figures]
+            known_names = _listed([*self.exercises.figures, *varied_names, *figures])
+            msg = f"figure('{name}'): no such figure; allowed: {known_names}"
             raise TemplateError(msg)
         if known.error:
             msg = f"figure('{name}'): could not be drawn: {known.error}"
             raise TemplateError(msg)
         return self._mark(Drawing(name, known.svg, known.png, description(found.alt, known.axes), width))
+
+    def _varied(self, name: str) -> Figure | None:
+        """Return a figure that shows the numbers of this form."""
+        for variation in self.exercises.variations.values():
+            figure = variation.figures.get(name)
+            if figure is not None:
+                draw = partial(figure.draw, inputs=self.inputs(variation.name))
+                return Figure(name, "figure", figure.title, draw, alt=figure.alt, size=figure.size)
+        return None
 
     def _mark(self, thing: Drawing | Placed) -> str:
         self.things.append(thing)

@@ -17,7 +17,7 @@ from itertools import groupby
 
 from replicate.exhibits.variants import Answer
 from replicate.handout.marking_key import plain_decimals
-from replicate.handout.question_texts import Texts, texts_of
+from replicate.handout.question_texts import Texts, picture_name, texts_of
 from replicate.handout.questions import Question, different, drawings_in
 from replicate.handout.spoken_math import spoken
 
@@ -65,12 +65,14 @@ def qti_package(questions: Iterable[Question]) -> bytes:
     chosen = different(questions)
     files: dict[str, bytes] = {}
     resources: list[tuple[str, str, list[str]]] = []
-    for question, texts in zip(chosen, texts_of(chosen, "../images/", "--mathml"), strict=True):
+    for question, texts in zip(chosen, texts_of(chosen, _place, "--mathml"), strict=True):
         item = f"items/{question.id}.xml"
         files[item] = _xml(_item(question, texts), QTI)
-        images = sorted(set(drawings_in([*question.text, *question.solution])))
-        files |= {f"images/{name}.png": question.document.drawings[name].png for name in images}
-        resources.append((question.id, item, [f"images/{name}.png" for name in images]))
+        shown = drawings_in([*question.text, *question.solution], question.document)
+        beside = {f"images/{picture_name(one)}": one.png for one in shown}
+        beside |= {f"data/{question.id}-{name}": text.encode() for name, text in question.files.items()}
+        files |= beside
+        resources.append((question.id, item, sorted(beside)))
     files["test.xml"] = _xml(_test(chosen), QTI)
     files["imsmanifest.xml"] = _xml(_manifest(resources), PACKAGE)
     out = io.BytesIO()
@@ -80,6 +82,11 @@ def qti_package(questions: Iterable[Question]) -> bytes:
             about.compress_type, about.external_attr = zipfile.ZIP_DEFLATED, 0o644 << 16
             package.writestr(about, content)
     return out.getvalue()
+
+
+def _place(question: Question, name: str) -> str:
+    """Return where an item finds a file, from its own folder."""
+    return f"../data/{question.id}-{name}" if name in question.files else f"../images/{name}"
 
 
 def _manifest(resources: Sequence[tuple[str, str, list[str]]]) -> ET.Element:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import html
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from replicate.handout.pandoc import written
+from replicate.handout.placing import Drawing
 from replicate.handout.questions import Question
 from replicate.handout.tree import Blocks, Element, attribute, classes, inlines, plain, raw_block, transform
 
@@ -26,30 +28,36 @@ class Texts:
     labels: dict[str, str]
 
 
-def texts_of(questions: Sequence[Question], images: str, *options: str) -> Iterator[Texts]:
+def texts_of(questions: Sequence[Question], place: Callable[[Question, str], str], *options: str) -> Iterator[Texts]:
     """Yield the texts of questions.
 
     Parameters
     ----------
-    images
-        Where the platform finds the figures, before their names.
+    place
+        Returns where the platform finds a figure or a file of a question by its name.
     options
         Of pandoc: how formulas are to be written.
     """
     pieces: list[Blocks] = []
     for question in questions:
-        pieces += [_with_images(part, question, images) for part in (question.text, question.solution)]
+        pieces += [_with_images(part, question, place) for part in (question.text, question.solution)]
         pieces += [[plain(inlines(answer.asked or name))] for name, answer in question.answers.items()]
     made = iter(written(pieces, "html", *options))
     for question in questions:
-        yield Texts(next(made), next(made), {name: next(made).strip() for name in question.answers})
+        links = "".join(f'<p><a href="{place(question, name)}">{name}</a></p>\n' for name in question.files)
+        yield Texts(next(made) + links, next(made), {name: next(made).strip() for name in question.answers})
 
 
-def _with_images(blocks: Blocks, question: Question, images: str) -> Blocks:
+def picture_name(drawing: Drawing) -> str:
+    """Return a name for the file of a drawing: the same for the same picture only."""
+    return f"{drawing.name}-{hashlib.sha256(drawing.png).hexdigest()[:12]}.png"
+
+
+def _with_images(blocks: Blocks, question: Question, place: Callable[[Question, str], str]) -> Blocks:
     def changed(element: Element) -> list[Element] | None:
         if element["t"] == "Div" and "drawing" in classes(element):
             drawing = question.document.drawings[attribute(element, "name")]
-            image = f'<p><img src="{images}{drawing.name}.png" alt="{html.escape(drawing.alt)}" /></p>'
+            image = f'<p><img src="{place(question, picture_name(drawing))}" alt="{html.escape(drawing.alt)}" /></p>'
             return [raw_block("html", image), *element["c"][1]]
         if element["t"] == "CodeBlock":
             return [raw_block("html", f"<pre>{html.escape(element['c'][1], quote=False)}</pre>")]

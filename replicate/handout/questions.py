@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answers
 from replicate.handout.edition import Document
 from replicate.handout.form import Form
+from replicate.handout.placing import Drawing
 from replicate.handout.tree import Blocks, attribute, classes, elements
 
 
@@ -28,6 +29,8 @@ class Question:
         Pandoc's tree, without the heading.
     answers
         What is asked for, by name; nothing if the exercise is answered in words.
+    files
+        That go with it, by name.
     points
         For the whole exercise, if it has any.
     document
@@ -41,6 +44,7 @@ class Question:
     text: Blocks
     solution: Blocks
     answers: Answers
+    files: Mapping[str, str]
     points: float | None
     document: Document
 
@@ -64,9 +68,11 @@ def questions_of(document: Document, exercises: Exercises, form: Form | None) ->
             continue
         name = attribute(block, "vary")
         answers: Answers = {}
+        files: Mapping[str, str] = {}
         if name:
             variation = exercises.variations[name]
-            answers = variation.answers(variation.drawn(form.draw) if form else variation.original)
+            inputs = variation.drawn(form.draw) if form else variation.original
+            answers, files = variation.answers(inputs), variation.files(inputs)
         content = block["c"][1][1:]
         number, points = int(attribute(block, "number")), attribute(block, "points")
         yield Question(
@@ -77,14 +83,16 @@ def questions_of(document: Document, exercises: Exercises, form: Form | None) ->
             text=[inner for inner in content if "solution" not in classes(inner)],
             solution=[part for inner in content if "solution" in classes(inner) for part in inner["c"][1]],
             answers=answers,
+            files=files,
             points=float(points) if points else None,
             document=about,
         )
 
 
-def drawings_in(blocks: Blocks) -> list[str]:
-    """Return the names of the drawings in a text."""
-    return [attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)]
+def drawings_in(blocks: Blocks, document: Document) -> list[Drawing]:
+    """Return the drawings in a text, each once."""
+    found = [attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)]
+    return [document.drawings[name] for name in dict.fromkeys(found)]
 
 
 def different(questions: Iterable[Question]) -> list[Question]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
@@ -11,29 +12,80 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from replicate.exhibits.exercises import Exercises, Values
-from replicate.loops import Loop
+from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
+from replicate.loops import PI, Loop, Plant
 from replicate.papers.ali.structures import Settings, plant, series
 from replicate.papers.ali.tuning import gain_product, integral_time, smallest_sensitivity
+from replicate.teaching import nyquist_reading, sketch
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 exercises = Exercises()
 
+FIRST = 1.2  # of the values that the search tries
 HARD = Fraction(9, 10)  # theta/T of the last row of Table 1
 FULL, REDUCED = Fraction(1, 2), Fraction(2, 5)  # exponents of the two tables
 
 
-@exercises.answer("means")
-def means() -> Values:
+@exercises.vary(
+    "means",
+    original={"x": float(HARD)},
+    variant=lambda rng: {"x": rng.randint(30, 150) / 100},
+    requires={"the ends are not near each other": lambda inputs: float(inputs["x"]) < 1.5},
+    stated="State three significant digits.",
+)
+def means(inputs: Inputs) -> Answers:
     """Return geometric and arithmetic mean of 1 and 2T/theta."""
-    return {"geometric": gain_product(HARD), "arithmetic": float(1 + 2 / HARD) / 2}
+    x = float(inputs["x"])
+    geometric, arithmetic = gain_product(Fraction(str(inputs["x"]))), (1 + 2 / x) / 2
+    return {
+        "geometric": Answer(
+            geometric,
+            digits=3,
+            mistakes={"not the root": 2 / x, "arithmetic": arithmetic},
+            asked="geometric mean",
+        ),
+        "arithmetic": Answer(
+            arithmetic,
+            digits=3,
+            mistakes={"not halved": 1 + 2 / x, "geometric": geometric},
+            asked="arithmetic mean",
+        ),
+    }
 
 
-@exercises.answer("smallest")
-def smallest() -> Values:
-    """Return the maximum sensitivity below which the design loop cannot go."""
-    return {"0.2": smallest_sensitivity(Fraction(1, 5))}
+@exercises.vary(
+    "smallest",
+    original={"x": 0.2},
+    variant=lambda rng: {"x": rng.randint(5, 45) / 100},
+    requires={"no tie": lambda inputs: 0.01 < (smallest_sensitivity(_ratio(inputs)) * 10) % 1 < 0.99},
+    stated="State the bound with three significant digits.",
+)
+def smallest(inputs: Inputs) -> Answers:
+    """Return the maximum sensitivity below which the design loop cannot go, and where the search stops."""
+    x = float(inputs["x"])
+    least = smallest_sensitivity(_ratio(inputs))
+    stops = max(FIRST, math.ceil(10 * least) / 10)
+    return {
+        "least": Answer(
+            least,
+            digits=3,
+            carried=(1 / (1 - rounded(math.sqrt(x / 2), 3)),),
+            mistakes={"half forgotten": 1 / (1 - math.sqrt(x)), "not inverted": 1 - math.sqrt(x / 2)},
+            asked="bound",
+        ),
+        "stops at": Answer(
+            stops,
+            tolerance=0.001,
+            mistakes={"one step too early": stops - 0.1, "one step too late": stops + 0.1},
+            asked="the search stops at",
+        ),
+    }
+
+
+def _ratio(inputs: Inputs) -> Fraction:
+    return Fraction(str(inputs["x"]))
 
 
 def _loop(gain: float) -> Loop:
@@ -91,3 +143,30 @@ def window(fig: Figure) -> None:
         axes.plot([gain], [peak], "o", color=colour)
         axes.annotate(name, (gain, peak), (offset, 3), textcoords="offset points", ha="right", va="bottom")
     axes.set(xlabel="$KK_p$", ylabel="$M_s$", ylim=(0.0, 40.0))
+
+
+def _nyquist_loop(inputs: Inputs) -> Loop:
+    plant = Plant([1.0], [1.0, -1.0], dead_time=float(inputs["theta"]))
+    return Loop(plant, PI(k=float(inputs["k"]), ki=float(inputs["ki"])))
+
+
+nyquist_reading(
+    exercises,
+    "nyquist",
+    {"theta": 0.2, "k": 2.2, "ki": 0.2},
+    loop=_nyquist_loop,
+    variant=lambda rng: {
+        "theta": rng.randint(5, 30) / 100,
+        "k": rng.randint(14, 45) / 10,
+        "ki": rng.randint(5, 60) / 100,
+    },
+)
+sketch(
+    exercises,
+    "sketch",
+    {"p": 0.2, "g": 1.0, "L": 0.6, "k": 0.8, "ki": 0.09},
+    pole=(0.1, 0.3),
+    gain=(0.3, 0.9),
+    integral=(0.02, 0.09),
+    top=2.4,
+)

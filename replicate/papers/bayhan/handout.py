@@ -19,6 +19,7 @@ from replicate.papers.bayhan.evidence import in_steps, six_digits
 from replicate.papers.bayhan.processes import EXAMPLE_41, competing_rules, controllers
 from replicate.papers.bayhan.readings import AUTHORS
 from replicate.papers.bayhan.toolchain import sampled_response, sampled_specifications
+from replicate.teaching import control_effort, sketch
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -215,3 +216,13 @@ def settling_over_a(fig: Figure) -> None:
     axes.annotate("second inequality fails", (limit, 0.95 * top), (4, 0), textcoords="offset points")
     axes.set_xlabel("$a$")
     axes.set_ylabel("settling time")
+
+
+sketch(
+    exercises,
+    "sketch",
+    {"p": -0.5, "g": 1.0, "L": 0.8, "k": 0.6, "ki": 0.4},
+    pole=(-0.9, -0.2),
+    gain=(0.3, 0.9),
+)
+control_effort(exercises, "effort", {"K": 0.8, "T": 3.0, "L": 1.0, "k": 1.9, "ki": 0.5, "U": 5.0})

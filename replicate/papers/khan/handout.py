@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from random import Random
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,22 +12,86 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from replicate.exhibits.exercises import Exercises, Values
+from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import PRINTED, RESTORED, case_gains, loop, plant, settling_after_load
+from replicate.teaching import sketch, step_test
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 exercises = Exercises()
 
+PH_OF_BOTH = 0.2  # where both pairs of formulas are valid
+DEAD_TIMES = tuple(n / 10 for n in range(1, 201) if 20000 % n == 0)  # 0.2/h has few digits
 LOAD_AT = 100.0  # when the load of Table I enters
 
 
-@exercises.answer("double-root")
-def double_root() -> Values:
-    """Return K_b h, at which two real poles of proportional control meet, by ph."""
-    return {str(ph): math.exp(-(1 + ph)) for ph in (0, 1, 3)}
+def _frame(rng: Random) -> Inputs:
+    """Draw a dead time and a pole with ph = 0.2, both of few digits."""
+    return {"p": round(PH_OF_BOTH / (h := rng.choice(DEAD_TIMES)), 4), "h": h}
+
+
+def _terms(p: float, h: float) -> dict[str, tuple[float, ...]]:
+    """Return the terms of both pairs as printed: (7b), (7a)."""
+    return {
+        "first KP": (0.404 / h, 0.256 * p, -0.1275 * math.sqrt(p / h)),
+        "first KI": (0.0808 / h**2, 0.719 * p / h, -0.324 * math.sqrt(p / h**3)),
+        "second KP": (-0.404 * p**2 * h, 0.723 * p, 0.3852 / h),
+        "second KI": (-0.525 * p**2, 0.4104 * p / h, -0.00024 / h**2),
+    }
+
+
+def _restored(inputs: Inputs) -> Values:
+    p, h = float(inputs["p"]), float(inputs["h"])
+    kp, ki = case_gains("7a", p, h, RESTORED)
+    return {"restored KP": float(kp), "restored KI": float(ki)}
+
+
+@exercises.vary(
+    "jump",
+    original={"p": 0.2, "h": 1.0},
+    variant=_frame,
+    requires={"h is not one": lambda inputs: float(inputs["h"]) != 1.0},
+    shown=_restored,
+    stated="Carry on with at least three significant digits of each term, and state the gains with three.",
+)
+def jump(inputs: Inputs) -> Answers:
+    """Return the gains of both pairs where they meet, and with terms of three digits."""
+    found: dict[str, Answer] = {}
+    p, h = float(inputs["p"]), float(inputs["h"])
+    for name, terms in _terms(p, h).items():
+        pair, gain = name.split()
+        found[name] = Answer(
+            sum(terms),
+            digits=3,
+            carried=(sum(rounded(term, 3) for term in terms),),
+            mistakes={"all signs plus": sum(map(abs, terms)), "as if h were 1": sum(_terms(p, 1.0)[name])},
+            asked=f"{pair} pair, $K_{gain[1]}$",
+        )
+    return found
+
+
+@exercises.vary(
+    "double-root",
+    original={"a": 1.0, "b": 3.0},
+    variant=lambda rng: {"a": rng.randint(4, 19) / 10, "b": rng.randint(21, 45) / 10},
+    requires={"neither is one": lambda inputs: abs(float(inputs["a"]) - 1.0) > 0.05},
+    shown=lambda _: {"0": math.exp(-1.0)},
+    stated="State three significant digits.",
+)
+def double_root(inputs: Inputs) -> Answers:
+    """Return K_b h, at which two real poles of proportional control meet, at two values of ph."""
+    return {
+        name: Answer(
+            math.exp(-(1 + float(ph))),
+            digits=3,
+            mistakes={"one forgotten": math.exp(-float(ph)), "ph forgotten": math.exp(-1.0)},
+            asked=rf"$K_b h$ for $ph = {float(ph):g}$",
+        )
+        for name, ph in inputs.items()
+    }
 
 
 @exercises.answer("wrong-digit")
@@ -88,3 +153,13 @@ def printed_and_restored(fig: Figure) -> None:
     panels[0].set_ylim(2.0, 4.6)
     panels[1].set_ylim(1.2, 2.1)
     panels[0].legend(loc="lower left")
+
+
+step_test(exercises, "step-test", {"K": 0.8, "T": 5.0, "L": 3.0, "u": 2.0, "seed": 2026.0})
+sketch(
+    exercises,
+    "sketch",
+    {"p": -0.5, "g": 1.0, "L": 0.8, "k": 0.6, "ki": 0.4},
+    pole=(-0.9, -0.2),
+    gain=(0.3, 0.9),
+)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -10,11 +12,13 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from replicate.exhibits.exercises import Exercises, Values
-from replicate.loops import Signal
+from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
+from replicate.loops import PI, Loop, Plant, Signal
 from replicate.papers.krajewski.chart_values import TAUS
 from replicate.papers.krajewski.normalised_loop import lag, loop, point
 from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, hyperbola_fit, printed_coefficients, upper_ends
 from replicate.papers.krajewski.table_1_errors import residuals, single_digit_slips
+from replicate.teaching import control_effort, nyquist_reading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -119,3 +123,58 @@ def along_the_arc(fig: Figure) -> None:
     right.plot(margins, [_step(float(m)).settling_time() for m in margins])
     left.set(xlabel="phase margin (degrees)", ylabel="overshoot (%)")
     right.set(xlabel="phase margin (degrees)", ylabel="settling time", ylim=(0.0, 40.0))
+
+
+@exercises.vary(
+    "diagonal",
+    original={"m": 60.0},
+    variant=lambda rng: {"m": float(rng.randint(25, 80))},
+    requires={"far from 45 degrees": lambda inputs: abs(float(inputs["m"]) - 45.0) > 3.0},
+    shown=lambda inputs: {"as pi": _as_pi(90 - round(float(inputs["m"])))},
+    stated=r"State $a\tau$ and the gain margin with three significant digits.",
+)
+def diagonal(inputs: Inputs) -> Answers:
+    """Return what is left of the phase on the diagonal, and the gain margin that goes with a phase margin."""
+    margin = math.radians(float(inputs["m"]))
+    left = math.pi / 2 - margin
+    return {
+        "a tau": Answer(
+            left,
+            digits=3,
+            mistakes={"in degrees": math.degrees(left), "the margin itself": margin},
+            asked=r"$a\tau$",
+        ),
+        "gain margin": Answer(
+            math.pi / (2 * left),
+            digits=3,
+            carried=(math.pi / (2 * rounded(left, 3)),),
+            mistakes={"not inverted": 2 * left / math.pi, "half a turn": math.pi / left},
+            asked="gain margin",
+        ),
+    }
+
+
+def _as_pi(degrees: int) -> str:
+    """Return an angle as a fraction of pi, in LaTeX."""
+    found = Fraction(degrees, 180)
+    numerator = r"\pi" if found.numerator == 1 else rf"{found.numerator}\pi"
+    return f"{numerator}/{found.denominator}"
+
+
+def _nyquist_loop(inputs: Inputs) -> Loop:
+    plant = Plant.foptd(gain=1.0, time_constant=1.0, dead_time=float(inputs["tau"]))
+    return Loop(plant, PI(k=float(inputs["b"]), ki=float(inputs["a"])))
+
+
+nyquist_reading(
+    exercises,
+    "nyquist",
+    {"a": 1.2, "b": 1.1, "tau": 0.5},
+    loop=_nyquist_loop,
+    variant=lambda rng: {
+        "a": rng.randint(5, 25) / 10,
+        "b": rng.randint(5, 25) / 10,
+        "tau": rng.randint(2, 9) / 10,
+    },
+)
+control_effort(exercises, "effort", {"K": 0.8, "T": 3.0, "L": 1.0, "k": 1.9, "ki": 0.5, "U": 5.0})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -10,12 +11,14 @@ from numpy.typing import NDArray
 from scipy import optimize
 
 from replicate.exhibits.exercises import Exercises, Values
-from replicate.loops import Loop, Signal, design_pi
+from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
+from replicate.loops import PI, Loop, Plant, Signal, design_pi
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design, load_response
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
 from replicate.papers.panagopoulos.part_1.settling_evidence import levels
+from replicate.teaching import nyquist_reading, step_test
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,11 +44,54 @@ def late() -> Values:
     return {"least": float(chosen["late"].min()), "most": float(chosen["late"].max()), "factor": factor}
 
 
-@exercises.answer("dead-time")
-def dead_time() -> Values:
-    """Return the design for a pure dead time, Ms = 2."""
-    found = design("G7", 2.0)
-    return {"w": found.frequency, "k": found.k, "ki": found.ki}
+def _pure(inputs: Inputs) -> tuple[float, float, float]:
+    """Return frequency, k and ki of the design for a pure dead time."""
+    L, ms = float(inputs["L"]), float(inputs["Ms"])
+    if (L, ms) == (1.0, 2.0):
+        printed = design("G7", 2.0)
+        return printed.frequency, printed.k, printed.ki
+    found = design_pi(Plant([1.0], [1.0], dead_time=L), ms=ms)
+    return found.frequency, found.k, found.ki
+
+
+def _worded(inputs: Inputs) -> Values:
+    L, ms = float(inputs["L"]), float(inputs["Ms"])
+    return {
+        "G": "e^{-s}" if L == 1.0 else rf"e^{{-{L:g}s}}",
+        "x": r"\omega" if L == 1.0 else rf"({L:g}\omega)",
+        "R": r"\tfrac{1}{2}" if ms == 2.0 else rf"1/{ms:g}",
+    }
+
+
+@exercises.vary(
+    "dead-time",
+    original={"L": 1.0, "Ms": 2.0},
+    variant=lambda rng: {"L": rng.randint(3, 60) / 10, "Ms": rng.randint(13, 24) / 10},
+    requires={"L is not one": lambda inputs: abs(float(inputs["L"]) - 1.0) > 0.1},
+    shown=_worded,
+    stated="Carry on with at least four significant digits, and state the answers with three.",
+)
+def dead_time(inputs: Inputs) -> Answers:
+    """Return frequency and gains of the design for a pure dead time, carried on with a frequency of four digits."""
+    L, ms = float(inputs["L"]), float(inputs["Ms"])
+    w, k, ki = _pure(inputs)
+    x, early = w * L, rounded(w, 4) * L
+    return {
+        "w": Answer(
+            w,
+            digits=3,
+            mistakes={"where the gain vanishes": (np.pi - np.arcsin(1 / ms)) / L, "dead time forgotten": x},
+            asked=r"$\omega$",
+        ),
+        "k": Answer(k, digits=3, carried=(-math.cos(early),), mistakes={"sign": -k, "sine": math.sin(x)}, asked="$k$"),
+        "ki": Answer(
+            ki,
+            digits=3,
+            carried=(early / L * (math.sin(early) - 1 / ms),),
+            mistakes={"1/Ms forgotten": w * math.sin(x), "dead time forgotten": ki * L},
+            asked="$k_i$",
+        ),
+    }
 
 
 @exercises.figure(
@@ -106,3 +152,22 @@ def draw_settling(fig: Figure) -> None:
     axes.plot(grid, [one_sided(response) for response in responses], "--", label="last above +5 %")
     axes.set(xlabel="$M_s$", ylabel="settling time", ylim=(0.0, None))
     axes.legend()
+
+
+def _nyquist_loop(inputs: Inputs) -> Loop:
+    plant = Plant([1.0], np.polymul([float(inputs["T"]), 1.0], [1.0, 2.0, 1.0]))
+    return Loop(plant, PI(k=float(inputs["k"]), ki=float(inputs["ki"])))
+
+
+nyquist_reading(
+    exercises,
+    "nyquist",
+    {"T": 1.0, "k": 1.6, "ki": 0.6},
+    loop=_nyquist_loop,
+    variant=lambda rng: {
+        "T": rng.randint(3, 20) / 10,
+        "k": rng.randint(8, 35) / 10,
+        "ki": rng.randint(2, 15) / 10,
+    },
+)
+step_test(exercises, "step-test", {"K": 1.7, "T": 6.0, "L": 2.5, "u": 1.4, "seed": 1998.0})
