@@ -13,9 +13,11 @@ import toy_class
 from typer.testing import CliRunner
 
 from replicate.cli import app
-from replicate.errors import PaperDefinitionError, ReplicateError
+from replicate.errors import PaperDefinitionError, ReplicateError, TemplateError
+from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Variation, rounded
 from replicate.handout import ClassSet, Form, read_roster, stressed
+from replicate.handout import class_set as class_set_module
 from replicate.handout.edition import edition
 from replicate.handout.printout import markup, pdf
 from replicate.papers.bayhan.handout import exercises as bayhan
@@ -115,9 +117,11 @@ def test_the_error_of_pade_by_hand() -> None:
         assert answer.accepts(round(by_formula, 2))
 
 
-@pytest.mark.parametrize("name", sorted(bayhan.variations))
-def test_exercises_stand_the_stress(name: str) -> None:
-    assert list(stressed(bayhan.variations[name], 120))
+def test_a_paper_without_exercises_that_vary(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    toy = toy_class.class_set(tmp_path, monkeypatch, TEXT)
+    monkeypatch.setattr(class_set_module, "exercises_of", lambda _: Exercises())
+    with pytest.raises(TemplateError, match=r"toy/handout\.py: no exercise has numbers that vary"):
+        list(toy.files(["Ada"], "1"))
 
 
 def test_stress_finds_a_mistake_that_is_accepted() -> None:
@@ -199,12 +203,11 @@ def test_the_handout_that_all_share_has_the_original_numbers(toy: ClassSet) -> N
     [
         (["bayhan", "--variants", "2", "--form", "bayhan:0123456789ab:1"], "do not go together"),
         (["bayhan", "khan", "--variants", "2"], "about one paper"),
-        (["khan", "--variants", "2"], "no exercise has numbers that vary"),
         (["--form", "bayhan:0123456789ab:1", "--format", "moodle"], "about a class"),
-        (["bayhan", "--variants", "2", "--select", "7"], "no exercise 7; allowed: 1 to 6"),
+        (["bayhan", "--variants", "2", "--select", "9"], "no exercise 9; allowed: 1 to 8"),
         (["bayhan", "--variants", "2", "--select", "2,2"], "--select is '2,2', allowed"),
         (["bayhan", "--points", "4,five"], "--points is '4,five', allowed: positive numbers"),
-        (["bayhan", "--points", "4,5"], "--points has 2 numbers, the sheet has 6 exercises; give one, or 6"),
+        (["bayhan", "--points", "4,5"], "--points has 2 numbers, the sheet has 8 exercises; give one, or 8"),
         (["bayhan", "--language", "xx"], "--language is 'xx', allowed: de, en"),
         (["bayhan", "--roster", "nobody.csv"], "nobody.csv: cannot be read"),
     ],

@@ -16,7 +16,7 @@ import numpy as np
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure, rounded
-from replicate.loops import PI, Loop, Plant
+from replicate.loops import PI, Loop, Plant, Signal
 from replicate.teaching.drawing_numbers import number, two_digits
 
 if TYPE_CHECKING:
@@ -31,6 +31,11 @@ def _loop(inputs: Inputs) -> Loop:
     p, g = number(inputs, "p"), number(inputs, "g")
     plant = Plant([g], [1.0, -p], dead_time=number(inputs, "L"))
     return Loop(plant, PI(number(inputs, "k"), number(inputs, "ki")))
+
+
+def _shown(inputs: Inputs) -> Signal:
+    """Return the part of the response that the axes have room for."""
+    return _loop(inputs).step(until=1.01 * SHOWN * number(inputs, "L"))
 
 
 def sketch(
@@ -78,7 +83,7 @@ def sketch(
             "the integral part counts, and the pole": _parts_count,
             "neither too fast for the dead time nor too slow for the pole": _moderate,
             "the loop is stable": lambda x: _loop(x).is_stable(),
-            "its peak lies on the axes": lambda x: _loop(x).step().peak().value < top - 0.2,
+            "its peak lies on the axes": lambda x: _shown(x).peak().value < top - 0.2,
         },
         figures=figures,
         stated="Carry on with at least three significant digits, and state $y(2L)$ with three.",
@@ -126,7 +131,9 @@ def _answers(inputs: Inputs) -> Answers:
     }
 
 
-_AXES = "Blank axes with a grid: output over time in dead times, from 0 to 8, for a sketch."
+_AXES = (
+    "Axes with a grid, blank but for the dashed set point: output over time in dead times, from 0 to 8, for a sketch."
+)
 _CURVE = "The response: zero for one dead time, a rise, and a swing about the set point, which is dashed."
 
 
@@ -136,8 +143,8 @@ def _draw(top: float, *, curve: bool) -> Callable[..., None]:
         if curve:
             L = number(inputs, "L")
             times = np.linspace(0.0, SHOWN, 401)
-            axes.plot(times, _loop(inputs).step(until=1.01 * SHOWN * L)(times * L))
-            axes.axhline(1.0, color="0.4", linestyle="--", linewidth=1.0)
+            axes.plot(times, _shown(inputs)(times * L))
+        axes.axhline(1.0, color="0.4", linestyle="--", linewidth=1.0)
         axes.set(xlabel="$t/L$", ylabel="output $y$", xlim=(0.0, SHOWN), ylim=(0.0, top))
         axes.grid(visible=True)
 
