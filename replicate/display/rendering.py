@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import base64
 import re
 from collections.abc import Mapping
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import jinja2
@@ -79,9 +80,16 @@ _STYLE, _POLICY = "\ue006style\ue007", "\ue006policy\ue007"
 
 def style_sheet(theme: Mapping[str, str]) -> str:
     """Return the style sheet of all pages, in the colours of a project where it names some."""
-    style = (templates_dir() / "style.css").read_text(encoding="utf-8")
+    style = (templates_dir() / "style.css").read_text(encoding="utf-8") + _math_font()
     colours = "".join(f"--{_COLOURS[name]}: {colour}; " for name, colour in theme.items())
     return f"{style}@media not (prefers-color-scheme: dark) {{ :root {{ {colours}}} }}\n" if colours else style
+
+
+@cache
+def _math_font() -> str:
+    """Return the rule that gives a page the font of its formulas."""
+    font = base64.b64encode((templates_dir() / "fonts" / "math.woff").read_bytes()).decode()
+    return f'@font-face {{ font-family: "Replicate Math"; src: url(data:font/woff;base64,{font}); }}\n'
 
 
 _COLOURS = {"accent": "link", "paper": "bg", "ink": "ink"}
