@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 from gallery import GALLERY, NOISE, T, Z
+from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
-from matplotlib.transforms import Bbox
+from matplotlib.patheffects import withSimplePatchShadow
+from matplotlib.transforms import Affine2D, Bbox
 
 from replicate.figures import Record, capture, compare
 
@@ -117,6 +119,12 @@ def swapped_handles(axes: Any) -> None:
     axes.legend([second, first], ["ZN", "PA"])
 
 
+def other_colour_steps(axes: Any) -> None:
+    mesh = collection(axes)
+    ends = mesh.norm.boundaries
+    mesh.set_norm(BoundaryNorm([ends[0], *(0.5 * (ends[1:-1] + ends[2:])), ends[-1]], mesh.norm.Ncmap))
+
+
 def other_steps(axes: Any) -> None:
     line(axes).set_drawstyle("steps-pre")
 
@@ -164,6 +172,9 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("lines", "legend removed", axes(lambda ax: ax.get_legend().remove()), "legend is gone"),
     ("lines", "legend frame", axes(lambda ax: ax.get_legend().set_frame_on(False)), "legend"),
     ("lines", "legend columns", axes(lambda ax: ax.legend(ncols=2)), "columns of legend is now 2"),
+    ("lines", "legend spacing", axes(lambda ax: ax.legend(labelspacing=2)), "spacing of legend is now 2"),
+    ("lines", "legend corners", axes(lambda ax: ax.legend(fancybox=False)), "frame of legend is now Square"),
+    ("lines", "title pad", axes(lambda ax: ax.set_title("Step", pad=40)), "pad of title is now 40"),
     ("lines", "legend order", axes(lambda ax: ax.legend(ax.lines[::-1], ["PA", "ZN"])), "legend entries"),
     ("lines", "legend text colour", axes(lambda ax: ax.legend(labelcolor="red")), "colour of legend entry 'ZN'"),
     ("lines", "size", lambda figure: figure.set_size_inches(8.0, 4.8), "the figure is now 8 × 4.8 in"),
@@ -176,6 +187,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("markers", "face", on(lambda ax: ax.lines[1], markerfacecolor="red"), "curve 'model' has a fill now"),
     ("markers", "edge", on(line, markeredgecolor="black"), "line colour of curve 'measured' changed from blue"),
     ("markers", "edge width", on(line, markeredgewidth=3), "line of curve 'measured' is 3 pt wide"),
+    ("markers", "some of them", on(lambda ax: ax.lines[1], markevery=2), "choice of markers of curve 'model' is now 2"),
     ("markers", "legend title", axes(lambda ax: ax.get_legend().set_title("Else")), "title of the legend now reads 'Else'"),
     ("mark_every", "markevery", on(line, markevery=50), "line 1"),
     ("step_line", "where", axes(other_steps), "curve 'u'"),
@@ -216,6 +228,9 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("bars", "colour", on(patch, facecolor="red"), "colour of curve 'shape 1' changed"),
     ("bars_across", "hatch", on(patch, hatch="x"), "hatch of curve 'shape 1' is now x"),
     ("bar_labels", "label", on(words, text="3.1"), "text '3.0' now reads '3.1'"),
+    ("bar_labels", "pad", on(words, position=(0, 30)), "offset of text '3.0' is now"),
+    ("bars_across", "hatch width", axes(lambda ax: setattr(patch(ax), "_hatch_linewidth", 4.0)), "hatch of curve 'shape 1' is now .*4 pt"),
+    ("bars_across", "hatch colour", axes(lambda ax: setattr(patch(ax), "_hatch_color", (1.0, 0.0, 0.0, 1.0))), "hatch of curve 'shape 1' is now .*#ff0000"),
     ("broken_bars", "colours", on(collection, facecolor=["C2", "C1"]), "one colour of curve 'area 1'"),
     ("histogram", "bin", on(patch, height=40.0), "shape 1"),
     ("histogram_steps", "colour", on(patch, edgecolor="red"), "colour of curve 'b' changed"),
@@ -233,6 +248,8 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("image", "colour map", on(picture, cmap="gray"), "colour map of image 1 is now gray"),
     ("image", "limits", on(picture, clim=(0, 0.5)), "colours of image 1 now run from 0 to 0.5"),
     ("image", "alpha", on(picture, alpha=0.5), "opacity of image 1 is now 0.5"),
+    ("image", "opacities", on(picture, alpha=np.linspace(0, 1, 525).reshape(21, 25)), "opacities of image 1"),
+    ("image", "turned", axes(lambda ax: picture(ax).set_transform(Affine2D().rotate_deg(3) + ax.transData)), "transform of image 1"),
     ("image", "interpolation", on(picture, interpolation="bilinear"), "interpolation of image 1 is now bilinear"),
     ("image_large", "one pixel", one_pixel, "values of image 1"),
     ("image_colours", "values", on(picture, data=np.zeros((21, 25, 3))), "values of image 1"),
@@ -244,6 +261,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("mesh_smooth", "values", on(collection, array=Z * 1.1), "values of mesh 1"),
     ("pcolor", "values", on(collection, array=Z[1:8, 1:8]), "values of"),
     ("pcolorfast", "values", on(picture, data=Z * 0.9), "values of image 1"),
+    ("colour_steps", "steps", axes(other_colour_steps), "colour scale of mesh 1 runs otherwise"),
     ("colour_steps", "colours", on(collection, cmap="viridis"), "colour map of mesh 1"),
     ("contours", "width", on(collection, linewidth=3), "line of contours is 3 pt wide"),
     ("contours", "colours", on(collection, cmap="gray"), "contours"),
@@ -266,6 +284,8 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("clipped", "image", axes(lambda ax: picture(ax).set_clip_path(Circle((0.5, 0.5), 0.4, transform=ax.transData))), "image 1 is clipped"),
     ("clipped", "line", axes(lambda ax: line(ax).set_clip_path(ax.patch)), "line 1' is clipped to its axes now"),
     # Texts.
+    ("texts", "wrapped", on(words, wrap=True), "line breaks of text 'peak' is now"),
+    ("texts", "effects", on(words, path_effects=[withSimplePatchShadow()]), "effects of text 'peak'"),
     ("texts", "words", on(words, text="dip"), "text 'peak' now reads 'dip'"),
     ("texts", "place", on(words, position=(0.3, 0.3)), "text 'peak' moved from"),
     ("texts", "rotation", on(words, rotation=60), "text 'peak' is turned by 60"),
@@ -381,3 +401,20 @@ def test_a_figure_drawn_again_is_the_same(name: str) -> None:
     assert compare(accepted(name), new).changes == []
     assert new.to_json() == accepted(name).to_json()
     assert len(new.to_json()) < 60_000
+
+
+@pytest.mark.parametrize(
+    ("words", "properties", "said"),
+    [
+        ("one\nlonger", {"linespacing": 3.0}, "line spacing of text 'one longer' is now 3"),
+        ("one\nlonger", {"multialignment": "right"}, "alignment of the lines of text 'one longer' is now right"),
+        ("$x^2$", {"parse_math": False}, "mathematics of text '.x.2.' is now as it is written"),
+    ],
+)
+def test_how_a_text_is_set_is_said(words: str, properties: dict[str, Any], said: str) -> None:
+    def shown(**given: Any) -> Record:
+        figure = Figure()
+        figure.subplots().text(0.2, 0.5, words, **given)
+        return capture(figure)
+
+    assert any(re.search(said, text) for text in compare(shown(), shown(**properties)).changes)

@@ -84,6 +84,17 @@ def test_rounding_and_other_samples_do_not_show() -> None:
     assert compare(fast(150_000), fast(220_000)).changes == []
 
 
+def test_an_opaque_image_is_one_with_or_without_opacity() -> None:
+    def shown(*opacity: float) -> Record:
+        figure = Figure()
+        grey = np.linspace(0.0, 1.0, 60).reshape(6, 10)
+        figure.subplots().imshow(np.dstack([grey, grey, grey, *(np.full_like(grey, part) for part in opacity)]))
+        return capture(figure)
+
+    assert compare(shown(), shown(1.0)).changes == []
+    assert compare(shown(), shown(0.5)).changes
+
+
 @pytest.mark.parametrize("name", ["image_large", "scatter_many", "noise", "quiver", "solid_surface", "hexbin"])
 def test_a_perturbation_of_1e_10_does_not_show(name: str) -> None:
     figure = drawn(name)

@@ -17,6 +17,7 @@ from replicate.figures.parts import Namer, Part
 from replicate.figures.readback import read_panel
 from replicate.figures.record import Record
 from replicate.figures.recorder import Drawn
+from replicate.figures.uncommon import uncommon
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from replicate.figures.polylines import Points
 
 _LONGEST_NAME = 24
+_TITLE_PAD = 6.0
 _TITLES = {"title": "title", "_left_title": "left title", "_right_title": "right title"}
 
 
@@ -125,7 +127,7 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
     entry |= {flag: True for flag in ("told", "loose") if getattr(part, flag)}
     if not part.named:
         entry["net"] = True
-    properties = dict(part.properties) | _placed_by_hand(part)
+    properties = dict(part.properties) | _placed_by_hand(part) | uncommon(part.owner)
     if properties:
         entry["properties"] = properties
     field = read_field(part.owner) or next(
@@ -187,11 +189,19 @@ def _placed_by_hand(part: Part) -> dict[str, Any]:
     if part.name.endswith("title") and part.told and hasattr(text, "get_position"):
         x, y = text.get_position()
         fixed = getattr(text.axes, "_autotitlepos", True) is False if text.axes is not None else True
-        return {"across": round(float(x), 4)} | ({"up": round(float(y), 4)} if fixed else {})
+        pad = _title_pad(text)
+        return {"across": round(float(x), 4)} | ({"up": round(float(y), 4)} if fixed else {}) | pad
     if part.name.startswith("label of the ") and hasattr(text, "get_position") and part.name[13] in "xy":
         along = part.name[13] == "y"
         return {"along": round(float(text.get_position()[along]), 4)}
     return {}
+
+
+def _title_pad(text: Any) -> dict[str, Any]:
+    """Return how far above the axes a title was put, where that is not matplotlib's own."""
+    shift = getattr(getattr(text.axes, "titleOffsetTrans", None), "_t", None)
+    pad = _TITLE_PAD if shift is None else 72.0 * float(shift[1])
+    return {} if abs(pad - _TITLE_PAD) < 1e-6 else {"pad": round(pad, 2)}
 
 
 def _position(axes: Axes, figure: Figure) -> list[float]:

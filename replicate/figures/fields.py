@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import Collection, QuadMesh
+from matplotlib.colors import BoundaryNorm
 from matplotlib.contour import ContourSet
 from matplotlib.image import AxesImage, _ImageBase
 
@@ -15,6 +16,9 @@ from replicate.figures.digests import Array, rounded, sign_sums
 _MOST = 400
 _BLOCKS = 12
 _LUT = 9
+_STEPS = 41
+#: Scales of colours that the limits determine.
+_PLAIN = {"Normalize", "LogNorm", "NoNorm"}
 
 
 def read_field(artist: Any) -> dict[str, Any]:
@@ -34,9 +38,14 @@ def read_field(artist: Any) -> dict[str, Any]:
     if array is None:
         return {}
     values: Array = np.ma.filled(np.ma.asarray(array, dtype=float), np.nan)
+    if values.ndim == 3 and values.shape[2] == 4 and np.all(values[..., 3] == (255.0 if values.max() > 1.0 else 1.0)):
+        values = values[..., :3]  # opaque
     found: dict[str, Any] = {"shape": list(values.shape)}
     if isinstance(artist.get_alpha(), float):
         found["alpha"] = float(f"{artist.get_alpha():.4g}")
+    elif isinstance(artist.get_alpha(), np.ndarray):
+        opacities = np.atleast_2d(np.asarray(artist.get_alpha(), dtype=float))
+        found["opacities"] = [rounded(row, 4) for row in _plain(_blocks(opacities))]
     if isinstance(artist, AxesImage):
         found["extent"] = [float(f"{float(end):.9g}") for end in artist.get_extent()]
     if isinstance(artist, _ImageBase):
@@ -81,4 +90,11 @@ def _colours(artist: ScalarMappable) -> dict[str, Any]:
     cmap = artist.get_cmap()
     colours = [hexed(np.asarray(cmap(float(share)))) for share in np.linspace(0.0, 1.0, _LUT)]
     ends = [hexed(np.asarray(colour)) for colour in (cmap.get_under(), cmap.get_over(), cmap.get_bad())]
-    return {"map": [str(cmap.name), *colours, *ends], "scale": type(artist.norm).__name__}
+    found: dict[str, Any] = {"map": [str(cmap.name), *colours, *ends], "scale": type(artist.norm).__name__}
+    if found["scale"] in _PLAIN:
+        return found
+    low, high = (float(end) for end in artist.get_clim())
+    shares: Array = np.ma.filled(np.ma.asarray(artist.norm(np.linspace(low, high, _STEPS)), dtype=float), -9.0)
+    if isinstance(artist.norm, BoundaryNorm):  # it counts colours
+        shares = shares / cmap.N
+    return found | {"steps": rounded(shares, 4)}

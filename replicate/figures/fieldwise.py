@@ -15,6 +15,7 @@ TOLERANCE = 5e-4
 _SIGNS = 2e-5
 
 _LIMITS = 1e-6
+_STEP = 2e-3  # of the range of the colours
 Field = Mapping[str, Any]
 
 
@@ -51,8 +52,15 @@ def _simple(one: Field, other: Field) -> Iterator[str]:
     for name, words in (("interpolation", "interpolation"), ("origin", "origin"), ("scale", "colour scale")):
         if one.get(name) != other.get(name):
             yield f"{words} of {{}} is now {other.get(name)} (was {one.get(name)})"
+    steps = [np.asarray(side.get("steps", [])) for side in (one, other)]
+    same = one.get("scale") == other.get("scale") and steps[0].shape == steps[1].shape
+    if same and np.abs(steps[1] - steps[0]).max(initial=0.0) > _STEP:
+        yield "colour scale of {} runs otherwise now"
     if abs(one.get("alpha", 1.0) - other.get("alpha", 1.0)) > 2e-3:
         yield f"opacity of {{}} is now {other.get('alpha', 1.0):.3g} (was {one.get('alpha', 1.0):.3g})"
+    opacities = np.asarray(one.get("opacities", [])), np.asarray(other.get("opacities", []))
+    if opacities[0].shape != opacities[1].shape or np.abs(opacities[1] - opacities[0]).max(initial=0.0) > 2e-3:
+        yield "opacities of {} changed"
     if one.get("map", [])[1:] != other.get("map", [])[1:]:
         names = [side.get("map", ["nothing"])[0] for side in (other, one)]
         yield f"colour map of {{}} is now {names[0]} (was {names[1]})"

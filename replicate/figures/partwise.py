@@ -14,6 +14,8 @@ Part = Mapping[str, Any]
 
 _NAMED_TOGETHER = 3
 _PLACES = {"outline", "places", "at", "texts"}
+#: Properties that every part of their kind has; records of earlier releases do not have them.
+_ALWAYS = {"offset", "choice of markers"}
 _PLURALS = ("labels", "marks", "lines")
 
 
@@ -113,6 +115,8 @@ def _ticks_of(name: str, axes: Collection[str]) -> bool:
 def _differ(one: Part, other: Part, frame: Frame, *, follows: bool) -> Iterator[tuple[str, float | None]]:
     before, after = one.get("properties", {}), other.get("properties", {})
     for name in dict.fromkeys((*before, *after)):
+        if name in _ALWAYS and not (name in before and name in after):
+            continue  # an older record does not say
         if not _same(before.get(name), after.get(name)):
             yield f"{name} of {{}} is now {_shown(after.get(name))} (was {_shown(before.get(name))})", None
     fields = one.get("field", {}), other.get("field", {})

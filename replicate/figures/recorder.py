@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.backend_bases import GraphicsContextBase, RendererBase
+from matplotlib.colors import to_hex, to_rgba
 from matplotlib.path import Path
 from matplotlib.text import Text
 from matplotlib.transforms import Transform
@@ -24,6 +25,9 @@ Array = NDArray[np.float64]
 
 #: Pixels per inch of every recording, whatever the figure's own resolution is.
 DPI = 100.0
+
+_HATCH_WIDTH = 1.0  # points
+_DARK = 0.25
 
 # Width, height and depth of a letter, as fractions of the font size.
 _WIDTH, _ASCENT, _DESCENT = 0.6, 0.75, 0.2
@@ -136,7 +140,7 @@ class RecordingRenderer(RendererBase):
         linewidths: Any,
         linestyles: Any,
         *_: Any,
-        hatchcolors: Any = None,  # noqa: ARG002  -- as in edgecolors
+        hatchcolors: Any = None,
         **__: Any,
     ) -> None:
         if not self.recording or not len(paths):
@@ -164,6 +168,7 @@ class RecordingRenderer(RendererBase):
             faces=_colours(facecolors),
             widths=[float(width) for width in np.ravel(linewidths)],
             dashes=list(linestyles),
+            hatch_colours=() if hatchcolors is None else hatchcolors,
         )
 
     def draw_quad_mesh(  # noqa: D102
@@ -240,7 +245,7 @@ class RecordingRenderer(RendererBase):
                 tuple(self._groups[-1]),
                 cap=str(gc.get_capstyle()),
                 join=str(gc.get_joinstyle()),
-                hatch=str(gc.get_hatch() or ""),
+                hatch=_hatch(gc, fields["edges"], parts.pop("hatch_colours", ())),
                 sketch=tuple(gc.get_sketch_params() or ()),
                 clip_box=None if box is None else [float(end) for end in box.extents],
                 clip_path=None if clip[0] is None else _moved(*clip),
@@ -287,6 +292,18 @@ def _vertices(points: Any) -> Array:
 def _colours(colours: Any) -> Array:
     array: Array = np.ma.filled(np.ma.asarray(colours, dtype=float), 0.0)
     return array.reshape(-1, 4) if array.size else np.empty((0, 4))
+
+
+def _hatch(gc: GraphicsContextBase, edges: Array, colours: Sequence[Any]) -> str:
+    """Return a hatch; width and colour of its lines are said where they are uncommon: neither dark nor the edge's."""
+    hatch, width = str(gc.get_hatch() or ""), float(gc.get_hatch_linewidth())
+    if not hatch:
+        return ""
+    given = colours[0] if len(colours) else gc.get_hatch_color()
+    colour = (0.0, 0.0, 0.0, 1.0) if given is None else to_rgba(given)
+    usual = [max(colour[:3]) < _DARK, *(np.allclose(colour[:3], edge[:3], atol=1e-2) for edge in edges[:1])]
+    words = ([f"{width:g} pt"] if width != _HATCH_WIDTH else []) + ([] if any(usual) else [to_hex(colour)])
+    return ", ".join([hatch, *words])
 
 
 def _edge(gc: GraphicsContextBase) -> Array:

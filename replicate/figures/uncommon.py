@@ -1,0 +1,80 @@
+"""Settings that change a picture, but nothing that a renderer is asked to draw: said only where they are uncommon."""
+
+from __future__ import annotations
+
+import zlib
+from typing import Any
+
+import numpy as np
+from matplotlib.image import AxesImage
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.text import Annotation, Text
+
+#: matplotlib's own, so that records hold only what differs from them.
+_LINE_SPACINGS = (1.2, "normal")  # until 3.10, and since
+_LABEL_SPACING = 0.5
+_FRAME = "Round"
+_NO_MARKERS = {"None", "none", " ", "", None}
+_LONGEST = 40
+
+
+def uncommon(artist: Any) -> dict[str, Any]:
+    """Return such settings of a line, a text, a legend or an image by their names; most artists have none."""
+    match artist:
+        case Text():
+            return _of_text(artist)
+        case Legend():
+            return _of_legend(artist)
+        case AxesImage():
+            return _of_image(artist)
+        case Line2D() if artist.get_marker() not in _NO_MARKERS:
+            every = artist.get_markevery()
+            return {"choice of markers": "all" if every is None else _shortened(str(every))}
+    return {}
+
+
+def _shortened(text: str) -> str:
+    words = " ".join(text.split())
+    return words if len(words) <= _LONGEST else f"{words[:_LONGEST]}… ({zlib.crc32(words.encode()):08x})"
+
+
+def _of_text(text: Text) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    words = text.get_text()
+    if "\n" in words:  # how the lines of one text stand to each other
+        lines = getattr(text, "_multialignment", None)
+        spacing = getattr(text, "_linespacing", "normal")
+        found |= {"alignment of the lines": str(lines)} if lines else {}
+        found |= {"line spacing": round(float(spacing), 3)} if spacing not in _LINE_SPACINGS else {}
+    if text.get_wrap():
+        found["line breaks"] = "where there is no room"
+    if words.count("$") > 1 and not text.get_parse_math():
+        found["mathematics"] = "as it is written"
+    if text.get_usetex():
+        found["typesetting"] = "TeX"
+    if isinstance(text, Annotation) and text.arrow_patch is None and str(text.anncoords).startswith("offset"):
+        found["offset"] = [round(float(part), 2) for part in text.xyann]  # in points; an arrow tells it otherwise
+    effects = [type(effect).__name__ for effect in text.get_path_effects() or ()]
+    return found | ({"effects": effects} if effects else {})
+
+
+def _of_legend(legend: Legend) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    if abs(legend.labelspacing - _LABEL_SPACING) > 1e-9:
+        found["spacing"] = round(float(legend.labelspacing), 3)
+    frame = type(legend.get_frame().get_boxstyle()).__name__  # type: ignore[attr-defined]
+    return found | ({"frame": frame} if frame != _FRAME else {})
+
+
+def _of_image(image: AxesImage) -> dict[str, Any]:
+    axes: Any = image.axes
+    if axes is None or image.get_transform() == axes.transData:
+        return {}
+    moved = image.get_transform() - axes.transData
+    if not moved.is_affine:
+        return {"transform": type(image.get_transform()).__name__}
+    matrix = np.asarray(moved.get_matrix(), dtype=float)[:2]
+    return (
+        {} if np.allclose(matrix, np.eye(3)[:2]) else {"transform": [float(f"{part:.4g}") for part in matrix.ravel()]}
+    )
