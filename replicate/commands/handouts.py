@@ -48,6 +48,10 @@ def handout(
     language: Annotated[
         str, typer.Option("--language", help="Of the words besides the text: en, de, or a file like en.toml.")
     ] = "en",
+    exercises: Annotated[
+        list[Path] | None,
+        typer.Option("--exercises", metavar="DIR", help="Add exercises of your own: exercise.md and exercise.py."),
+    ] = None,
 ) -> None:
     """Build teaching handouts, or a class set with a key.
 
@@ -61,6 +65,7 @@ def handout(
         build_handouts,
         check_sheet,
         checked_format,
+        own_exercises,
         read_points,
         read_roster,
         read_selection,
@@ -74,7 +79,8 @@ def handout(
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
-    sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language))
+    own = tuple(one for folder in exercises or () for one in own_exercises(folder))
+    sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language), own)
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
     chosen = with_handout(run.within.papers(given), all_needed=bool(given))
     file_format = checked_format(format)
@@ -82,11 +88,11 @@ def handout(
     kinds = [name for name, value in class_options.items() if value is not None]
     if kinds:
         _check_class_options(kinds, len(chosen), again is not None and file_format in BANKS, papers)
-        varying(chosen[0])
+        varying(chosen[0], own)
     for paper in chosen:
         check_sheet(paper, sheet)
     if stress is not None:
-        for variation in varying(chosen[0]).variations.values():
+        for variation in varying(chosen[0], own).variations.values():
             for line in stressed(variation, stress):
                 echo(line)
         return

@@ -5,6 +5,7 @@ from replicate.handout.class_set import ClassSet, varying
 from replicate.handout.exercise_heads import check_sheet
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, checked_format
+from replicate.handout.own_exercises import own_exercises
 from replicate.handout.roster import read_roster
 from replicate.handout.sheet import Sheet, language, read_points, read_selection
 from replicate.handout.stress import stressed
@@ -18,6 +19,7 @@ __all__ = [
     "check_sheet",
     "checked_format",
     "language",
+    "own_exercises",
     "read_points",
     "read_roster",
     "read_selection",

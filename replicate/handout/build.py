@@ -10,6 +10,7 @@ from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.handout.edition import FILE, edition
 from replicate.handout.formats import BANKS, EDITIONS, named
+from replicate.handout.own_exercises import with_own
 from replicate.handout.placing import exercises_of
 from replicate.handout.questions import questions_of
 from replicate.handout.sheet import Sheet
@@ -55,13 +56,14 @@ def build_handouts(
         If a text asks for something that does not exist, or cannot be converted or set.
     """
     made: dict[str, bytes] = {}
+    own = sheet.own if sheet else ()
     for paper in papers:
-        for variation in exercises_of(paper).variations.values():
+        for variation in with_own(exercises_of(paper), own).variations.values():
             files = variation.files(variation.original)
             made |= {f"{paper.id}-{name}": text.encode() for name, text in files.items()}
         if file_format in BANKS:
             document = edition(paper, results, verdicts, solutions=True, sheet=sheet)
-            questions = list(questions_of(document, exercises_of(paper), None))
+            questions = list(questions_of(document, with_own(exercises_of(paper), own), None))
             made |= named(BANKS[file_format](questions), paper.id)
             continue
         for with_solutions in solutions:

@@ -16,6 +16,7 @@ from replicate.handout.edition import AT_ONCE, Document, editions, without_solut
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, EDITIONS, named
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
+from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.placing import exercises_of
 from replicate.handout.questions import Question, questions_of
 from replicate.handout.roster import file_stem
@@ -64,7 +65,7 @@ class ClassSet:
         TemplateError
             If a sheet cannot be set.
         """
-        exercises = varying(self.paper)
+        exercises = varying(self.paper, self.sheet.own)
         forms = {student: Form.of(self.paper.id, seed, student, self.sheet.select) for student in students}
         yield from self._key(exercises, forms, seed)
         for student, form in forms.items():
@@ -81,7 +82,7 @@ class ClassSet:
 
     def again(self, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the name and content of one sheet, made again from its id."""
-        exercises = varying(self.paper)
+        exercises = varying(self.paper, self.sheet.own)
         yield from self._data(exercises, form.key, form)
         yield from self._sheets([form.key], self._documents([form], exercises, None))
 
@@ -141,15 +142,15 @@ class ClassSet:
             yield from named(made, f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}").items()
 
 
-def varying(paper: Paper) -> Exercises:
-    """Return the exercises of a paper.
+def varying(paper: Paper, own: tuple[OwnExercise, ...] = ()) -> Exercises:
+    """Return the exercises of a paper, and a lecturer's own.
 
     Raises
     ------
     TemplateError
         If the numbers of none of them vary.
     """
-    exercises = exercises_of(paper)
+    exercises = with_own(exercises_of(paper), own)
     if not exercises.variations:
         msg = f"{paper.id}/handout.py: no exercise has numbers that vary, so all sheets would be the same"
         raise TemplateError(msg)

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
@@ -17,9 +18,10 @@ from replicate.exhibits.results import Results
 from replicate.handout.exercise_heads import selected, with_heads
 from replicate.handout.form import Form
 from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, located
+from replicate.handout.own_exercises import OwnExercise
 from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
 from replicate.handout.programs import run_programs
-from replicate.handout.reading import read
+from replicate.handout.reading import Lines, read
 from replicate.handout.sheet import Language, Sheet, language
 from replicate.handout.tree import Blocks, Element, attribute, classes, div, elements, plain, string, text_of, transform
 from replicate.verdicts.prose import Prose
@@ -125,22 +127,28 @@ def editions(
     if not file.is_file():
         msg = f"{source}: the paper has no handout"
         raise TemplateError(msg)
-    text = read_text(file, source, TemplateError)
-    placings = [Placing(paper, results, verdicts, form.draw if form else "", shared) for form in forms]
-    filled = [Prose(paper, results, verdicts, one.functions()).render_lines(text, source) for one in placings]
+    content = read_text(file, source, TemplateError)
+    placings = [Placing(paper, results, verdicts, form.draw if form else "", shared, sheet.own) for form in forms]
+    prose = partial(Prose, paper, results, verdicts)
+    filled = [prose(one.functions()).render_lines(content, source) for one in placings]
+    texts = [_Text(source, filled, read(filled, source)), *(_own_text(one, prose, placings) for one in sheet.own)]
     found: list[tuple[str, Blocks]] = []
-    for blocks, placing, lines in zip(read(filled, source), placings, filled, strict=True):
-        title, kept = _title(blocks if solutions else _unsolved(blocks), source)
-        kept = with_heads(kept, source, placing.exercises, sheet)
-        found.append((title, selected(run_programs(_placed(kept, placing), lines, source, shared), sheet)))
+    for number, placing in enumerate(placings):
+        title, main = _title(texts[0].blocks[number], source)
+        parts = [main, *(text.blocks[number] for text in texts[1:])]
+        parts = parts if solutions else [_unsolved(part) for part in parts]
+        with_heads([block for part in parts for block in part], source, placing.exercises, sheet)
+        done: Blocks = []
+        for part, text in zip(parts, texts, strict=True):
+            done += run_programs(_placed(part, placing), text.lines[number], text.source, shared)
+        found.append((title, selected(done, sheet)))
     formulas = [formulas_in(blocks) for _, blocks in found]
     try:
         known = convert([one for some in formulas for one in some], shared.setdefault("formulas", {}))
     except FormulaError as error:
-        lines = next(
-            lines for lines, some in zip(filled, formulas, strict=True) if error.tex in {tex for _, tex in some}
-        )
-        raise located(error, lines, source) from error
+        number = next(number for number, some in enumerate(formulas) if error.tex in {tex for _, tex in some})
+        text = next(text for text in reversed(texts) if text.source == source or _holds(text, number, error.tex))
+        raise located(error, text.lines[number], text.source) from error
     return [
         Document(
             paper,
@@ -155,6 +163,33 @@ def editions(
         )
         for form, placing, (title, blocks), some in zip(forms, placings, found, formulas, strict=True)
     ]
+
+
+@dataclass(frozen=True)
+class _Text:
+    """One file, filled in and read for each form."""
+
+    source: str
+    lines: Sequence[Lines]
+    blocks: Sequence[Blocks]
+
+
+def _own_text(own: OwnExercise, prose: Callable[..., Prose], placings: Sequence[Placing]) -> _Text:
+    """Fill in and read a lecturer's own exercise; its Div has the name under which its numbers vary."""
+    filled = [prose(one.functions_of(own)).render_lines(own.text, own.source) for one in placings]
+    found: list[Blocks] = []
+    for blocks in read(filled, own.source):
+        content = blocks[0]["c"][1] if blocks and "exercise" in classes(blocks[0]) else blocks
+        if not content or content[0]["t"] != "Header":
+            msg = f"{own.source}:1: an exercise must begin with its title, a heading"
+            raise TemplateError(msg)
+        content[0]["c"][1][2].append(["vary", own.name])
+        found.append([div(content, "exercise")])
+    return _Text(own.source, filled, found)
+
+
+def _holds(text: _Text, number: int, tex: str) -> bool:
+    return tex in {found for _, found in formulas_in(list(text.blocks[number]))}
 
 
 def _unsolved(blocks: Blocks) -> Blocks:

@@ -82,7 +82,7 @@ def check_sheet(paper: Paper, sheet: Sheet) -> None:
     """
     text = (paper.folder() / "handout.md").read_text(encoding="utf-8")
     if not _LOOP.search(text):
-        chosen(sheet, len(_FENCE.findall(text)), f"{paper.id}/handout.md")
+        chosen(sheet, len(_FENCE.findall(text)) + len(sheet.own), f"{paper.id}/handout.md")
 
 
 def _head(title: list[Element], number: int, tool: str, points: float | None, sheet: Sheet) -> list[Any]:

@@ -83,7 +83,7 @@ def _cells(document: Document) -> Iterator[tuple[str, Any]]:
         questions = [part for part in block["c"][1] if "solution" not in classes(part)]
         yield from _split(questions, document)
         name = attribute(block, "vary")
-        if name:
+        if name in exercises.variations:  # a lecturer's own are not where the notebook runs
             asked = exercises.variations[name].answers(exercises.variations[name].original)
             lines = "".join(f"    {part!r}: None,\n" for part in asked)
             yield "code", f"# {words['answer']}\nanswers = {{\n{lines}}}\ncheck({name!r}, answers)"

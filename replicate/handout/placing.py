@@ -39,6 +39,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.key_table import Choice, key_table, legend
+from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.tree import Element
 from replicate.run import drawing
 from replicate.verdicts.rows import VerdictRow
@@ -79,6 +80,8 @@ class Placing:
         The key of the form whose numbers are drawn; empty for the numbers that all share.
     shared
         Drawings and answers that no form changes; one dict for all the sheets of a class.
+    own
+        Exercises of a lecturer's own.
     """
 
     paper: Paper
@@ -86,6 +89,7 @@ class Placing:
     verdicts: Sequence[VerdictRow]
     form: str = ""
     shared: dict[str, Any] = field(default_factory=dict)
+    own: tuple[OwnExercise, ...] = ()
     things: list[Drawing | Placed] = field(default_factory=list)
     _answers: dict[str, Values] = field(default_factory=dict)
 
@@ -106,7 +110,7 @@ class Placing:
     @cached_property
     def exercises(self) -> Exercises:
         """The answers and figures of the handout."""
-        return exercises_of(self.paper)
+        return with_own(exercises_of(self.paper), self.own)
 
     def __post_init__(self) -> None:
         """Compute the answers of a form before its text is filled in, which traces each call of a function."""
@@ -115,6 +119,12 @@ class Placing:
         for name in self.exercises.variations:
             with suppress(Exception):  # the text that asks for it says where
                 self.answer(name)
+
+    def functions_of(self, own: OwnExercise) -> dict[str, Any]:
+        """Return the fields that the text of a lecturer's own exercise has; what is its own needs no name."""
+        with _said_by("answers(inputs)"):
+            fields = {"inputs": self.inputs(own.name), "answer": self.answer(own.name), "stated": self.stated(own.name)}
+        return {**fields, "figure": self.figure, "tex": tex, "fixed": fixed, "percent": percent}
 
     def answer(self, name: str) -> Values:
         """Return the answer of that name; it is computed once."""

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 from replicate.errors import ReplicateError
+from replicate.handout.own_exercises import OwnExercise
 from replicate.resources import templates_dir
 
 FOLDER = "languages"
@@ -100,6 +101,8 @@ class Sheet:
         The numbers of the exercises, as the whole handout counts them; nothing for all.
     language
         Of the words besides the text.
+    own
+        Exercises of the lecturer's own, behind those of the paper.
     """
 
     title: str = ""
@@ -107,6 +110,7 @@ class Sheet:
     points: tuple[float, ...] = ()
     select: tuple[int, ...] = ()
     language: Language = field(default_factory=lambda: language("en"))
+    own: tuple[OwnExercise, ...] = ()
 
     def points_of(self, place: int, count: int) -> float | None:
         """Return the points of the exercise at a place (from 0) among so many of the sheet.

@@ -1,0 +1,136 @@
+"""A lecturer's own exercises: the example of the documentation, and what is said where one is wrong."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+from pathlib import Path
+
+import pytest
+import toy_class
+
+from replicate.errors import ReplicateError
+from replicate.handout import Sheet, own_exercises, stressed
+from replicate.handout.edition import edition
+from replicate.handout.printout import markup
+
+ROOT = Path(__file__).parents[1]
+EXAMPLE = ROOT / "examples" / "exercises"
+TEXT = "## Title\nWhat is ${{ inputs['x'] }}$?\n\n::: solution\n${{ answer['answer'] }}$\n:::\n"
+PROGRAM = """from replicate.exhibits.variants import Answer
+
+
+def variant(rng):
+    return {"x": rng.randint(20, 90)}
+
+
+def answers(inputs):
+    return Answer(inputs["x"] / 7, digits=3)
+"""
+
+
+def exercise(folder: Path, text: str = TEXT, program: str = PROGRAM) -> Path:
+    home = folder / "mine"
+    home.mkdir()
+    (home / "exercise.md").write_text(text, encoding="utf-8")
+    (home / "exercise.py").write_text(program, encoding="utf-8")
+    return home
+
+
+def test_the_example_of_the_documentation_is_the_one_that_is_tested() -> None:
+    page = (ROOT / "docs" / "own-exercises.md").read_text(encoding="utf-8")
+    for name in ("exercise.md", "exercise.py"):
+        assert (EXAMPLE / "integral-gain" / name).read_text(encoding="utf-8").strip() in page
+
+
+def test_the_example_is_on_the_sheets_and_in_the_key(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    own = tuple(own_exercises(EXAMPLE))
+    assert [one.name for one in own] == ["integral-gain"]
+    assert list(stressed(own[0].variation, 200))
+    toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=own, select=(4,)))
+    files = dict(toy.files(["Ada"], "1", "moodle"))
+    (row,) = csv.DictReader(io.StringIO(files["toy-key.csv"].decode()))
+    assert (row["exercise"], row["part"]) == ("integral-gain", "answer")
+    from replicate.handout import Form
+
+    sheet = edition(toy.paper, toy.results, (), solutions=True, form=Form.read(row["form"]), sheet=toy.sheet)
+    source = markup(sheet)
+    assert re.findall(r"Exercise (\d)", source) == ["4"]
+    k, ti = (float(tex.split("=")[1]) for _, tex in sheet.formulas if re.fullmatch(r"(k|T_i) = [\d.]+", tex))
+    assert float(row["answer"]) == pytest.approx(k / ti, rel=1e-6)
+    assert f"{k / ti:.3g}" in source
+    assert "The integral gain" in files["toy-moodle.xml"].decode()
+
+
+def test_without_original_numbers_the_shared_handout_has_drawn_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = tuple(own_exercises(exercise(tmp_path)))
+    toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=own))
+    document = edition(toy.paper, toy.results, (), solutions=True, sheet=toy.sheet)
+    x = float(own[0].variation.original["x"])
+    assert f"{x / 7}"[:5] in markup(document)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("def variant(rng):", "def variante(rng):"), r"mine/exercise\.py: defines no function 'variant'"),
+        (("return Answer(", "return ("), r"mine/exercise\.py:9: the program fails: SyntaxError"),
+        (("digits=3", "digits=0"), r"mine/exercise\.py:9: answers\(inputs\) fails: .*digits=0"),
+        (('inputs["x"] / 7', 'inputs["y"]'), r"mine/exercise\.py:9: answers\(inputs\) fails: KeyError: 'y'"),
+        (('{"x": rng.randint(20, 90)}', '{"x": [1]}'), r"mine/exercise\.py:4: variant\(rng\) fails: .*'x' is \[1\]"),
+        (("Answer(inputs", "dict(ki=inputs"), r"mine/exercise\.py:8: answers\(inputs\) fails|mine/exercise\.py:9"),
+        (("def variant", "stated = 3\n\n\ndef variant"), r"mine/exercise\.py:4: 'stated' is 3, allowed: a text"),
+        (("def variant", "requires = 3\n\n\ndef variant"), r"mine/exercise\.py:4: 'requires' is 3, allowed: a dict"),
+        (("def variant", "1 / 0\n\n\ndef variant"), r"mine/exercise\.py:4: the program fails: ZeroDivisionError"),
+        (("def variant", "raise SystemExit\n\n\ndef variant"), r"mine/exercise\.py:4: the program fails: SystemExit"),
+        (
+            ("def variant", "requires = {'never': lambda x: False}\n\n\ndef variant"),
+            r"no draw of 1000 .*1000 fail 'never'",
+        ),
+    ],
+)
+def test_what_is_wrong_in_the_program_is_one_line(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+    with pytest.raises(ReplicateError, match=message) as found:
+        own_exercises(exercise(tmp_path, program=PROGRAM.replace(*change)))
+    assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("No heading.\n", r"mine/exercise\.md:1: an exercise must begin with its title"),
+        ("## T\n\nOf {{ inputs['y'] }}\n", r"mine/exercise\.md:3: .*'y'"),
+        ("## T\n\n$\\unheardof{x}$\n", r"mine/exercise\.md:3: pandoc cannot convert"),
+        ("## T\n\n<b>x</b>\n", r"mine/exercise\.md:3: raw text"),
+        ("## T\n\n```{.python .run}\nx = 1\ny = 1 / 0\n```\n", r"mine/exercise\.md:5: the program fails"),
+        ("## T\n\n::: solution\nx\n", r"mine/exercise\.md:\d: pandoc cannot read"),
+    ],
+)
+def test_what_is_wrong_in_the_text_is_named_with_its_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, text: str, message: str
+) -> None:
+    own = tuple(own_exercises(exercise(tmp_path, text)))
+    toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=own))
+    with pytest.raises(ReplicateError, match=message):
+        edition(toy.paper, toy.results, (), solutions=True, sheet=toy.sheet)
+
+
+def test_a_folder_that_is_none(tmp_path: Path) -> None:
+    with pytest.raises(ReplicateError, match="there is no folder nowhere"):
+        own_exercises(tmp_path / "nowhere")
+    with pytest.raises(ReplicateError, match="holds no exercise"):
+        own_exercises(tmp_path)
+    (tmp_path / "exercise.md").write_text(TEXT, encoding="utf-8")
+    with pytest.raises(ReplicateError, match=r"exercise\.py: there is no such file"):
+        own_exercises(tmp_path)
+
+
+def test_two_exercises_of_one_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    home = exercise(tmp_path)
+    home.rename(tmp_path / "division")
+    toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=tuple(own_exercises(tmp_path / "division"))))
+    with pytest.raises(ReplicateError, match=r"division/exercise\.md: an exercise 'division' exists already"):
+        list(toy.files(["Ada"], "1"))
