@@ -1,9 +1,10 @@
-"""The example projects do what the documentation says: every command, in a copy of the project."""
+"""The example projects do what the documentation says: every command, with an installed wheel, in a copy elsewhere."""
 
 import os
 import shutil
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -12,16 +13,28 @@ EXAMPLES = Path(__file__).parent.parent / "examples"
 PROJECTS = sorted(file.parent for file in EXAMPLES.glob("*/replicate.toml"))
 
 
-def test_there_are_examples() -> None:
-    assert PROJECTS
+@pytest.fixture(scope="module")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder in which the project's wheel is installed."""
+    dist, site = tmp_path_factory.mktemp("dist"), tmp_path_factory.mktemp("site")
+    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(dist)]
+    subprocess.run(build, cwd=EXAMPLES.parent, capture_output=True, check=True)
+    (wheel,) = dist.glob("*.whl")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(site)
+    return site
+
+
+def test_there_are_three_examples() -> None:
+    assert [project.name for project in PROJECTS] == ["balmer", "simc", "student"]
 
 
 @pytest.mark.parametrize("project", PROJECTS, ids=lambda project: project.name)
-def test_report_check_diff_and_handout_succeed(project: Path, tmp_path: Path) -> None:
+def test_report_check_diff_and_handout_succeed(project: Path, site: Path, tmp_path: Path) -> None:
     copy = tmp_path / project.name
     shutil.copytree(project, copy, ignore=shutil.ignore_patterns("build", "__pycache__"))
     for command in ("report", "check", "diff", "handout"):
-        done = _replicate(copy, command, "-j1")
+        done = _replicate(site, copy, command, "-j1")
         assert done.returncode == 0, f"{command}: {done.stdout}{done.stderr}"
 
     papers = [folder.name for folder in (copy / "papers").iterdir() if (folder / "__init__.py").is_file()]
@@ -37,10 +50,23 @@ def test_nothing_of_the_scaffold_is_left(project: Path) -> None:
             assert "TODO" not in file.read_text(encoding="utf-8"), file
 
 
-def _replicate(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {"NO_COLOR": "1", "XDG_CACHE_HOME": str(folder.parent / "user-cache")}
+@pytest.mark.parametrize("project", PROJECTS, ids=lambda project: project.name)
+def test_its_own_tests_pass(project: Path) -> None:
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "papers"]
+    done = subprocess.run(command, cwd=project, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def _replicate(site: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    environment = os.environ | {
+        "NO_COLOR": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "PYTHONPATH": str(site),
+        "XDG_CACHE_HOME": str(folder.parent / "user-cache"),
+    }
+    code = f"import replicate.cli as c; assert c.__file__.startswith({str(site)!r}); c.main()"
     return subprocess.run(
-        [sys.executable, "-m", "replicate", *arguments],
+        [sys.executable, "-c", code, *arguments],
         cwd=folder,
         env=environment,
         capture_output=True,

@@ -111,7 +111,10 @@ def _run(script: Path, base: str, timeout: float) -> ScriptRun:
                 return ScriptRun(script, problem=problem)
             finally:
                 with contextlib.suppress(ProcessLookupError, PermissionError):
-                    os.killpg(process.pid, signal.SIGKILL)  # and whatever it has started
+                    if sys.platform != "win32":
+                        os.killpg(process.pid, signal.SIGKILL)  # and whatever it has started
+                    else:
+                        process.kill()
                 process.wait()
             said.seek(0)
             words = said.read().decode(errors="replace")

@@ -17,7 +17,6 @@ import time
 from collections import deque
 from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass, field
-from multiprocessing import forkserver
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
@@ -177,6 +176,8 @@ def _start(output: Path) -> _Worker:
 
 def _start_server() -> None:
     """Start the process that workers are forked from, if there is none: with what this process has imported, too."""
+    from multiprocessing import forkserver  # Windows has none
+
     forkserver.set_forkserver_preload([f"{__package__}.preload", *(name for name in _HEAVY if name in sys.modules)])
     before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"  # a numpy.py of the user's in the current folder is not numpy

@@ -112,6 +112,8 @@ class Prose:
             return self._environment.fill(text, **self._functions, **variables)
         except jinja2.TemplateSyntaxError as error:
             msg = f"{source}:{first_line + error.lineno - 1}: {error.message}"
+            if "No filter named" in msg:
+                msg += f" Known: {', '.join(sorted(self._environment.filters))}"
             raise TemplateError(msg) from error
         except (
             _MissingResultError,
