@@ -11,13 +11,17 @@ import typer
 from typer.main import get_command
 
 from replicate.cli import app
+from replicate.handout import build_handouts
+from replicate.new_paper import new_paper
+from replicate.run.library import Library
+from replicate.run.outcome import recompute
 from replicate.verdicts.ledger import CAUSES
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
 PAGES = sorted([*(ROOT / "docs").glob("*.md"), ROOT / "README.md", *(ROOT / "examples").glob("*/README.md")])
 hooks = runpy.run_path(str(DOCS / "site_hooks.py"))
-GUIDES = [ROOT / "docs" / name for name in ("start.md", "tutorial.md")]
+GUIDES = [ROOT / "docs" / name for name in ("start.md", "tutorial.md", "handouts.md", "class-sets.md")]
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
@@ -75,6 +79,21 @@ def test_commands_exist(page: Path) -> None:
     named = [name for block in blocks for name in re.findall(r"^replicate (\w+)", block, flags=re.MULTILINE)]
     assert named
     assert set(named) <= set(command.commands)
+
+
+def test_the_handout_of_the_guide_is_built(tmp_path: Path) -> None:
+    folder = new_paper("gauss", tmp_path)
+    guide = (DOCS / "handouts.md").read_text(encoding="utf-8")
+    (text,) = re.findall(r"^````markdown\n(.*?)^````", guide, flags=re.MULTILINE | re.DOTALL)
+    (folder / "handout.md").write_text(text, encoding="utf-8")
+    papers = Library(folders=[tmp_path]).papers()
+    outcome = recompute(papers, jobs=1, cache_dir=None)
+    made = build_handouts(
+        papers, outcome.results, outcome.judgement.verdicts, tmp_path / "made", solutions=[True], file_format="html"
+    )
+    page = made[0].read_text(encoding="utf-8")
+    for words in ("One degree of freedom", "1.9313", "1.931", "1.93"):
+        assert words in page
 
 
 def test_words_lists_exactly_the_causes() -> None:

@@ -92,7 +92,8 @@ def check_lists(what: str, **lists: object) -> None:
     """
     for name, values in lists.items():
         if isinstance(values, str) or not isinstance(values, Sequence):
-            refuse(f"{what}: {name} is {_typed(values)}; expected: a list of texts")
+            hint = f", as in ({values!r},)" if isinstance(values, str) else ""
+            refuse(f"{what}: {name} is {_typed(values)}; expected: a list of texts{hint}")
         for value in values:
             check_texts(what, **{f"an element of {name}": value})
 
