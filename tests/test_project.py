@@ -145,6 +145,10 @@ def test_one_broken_paper_breaks_nothing_else(replicate: Run) -> None:
         assert "<h1>Mine</h1>" in page
         assert "PID" not in page
         assert "dead time" not in page
+        stamp = page.partition('<ul class="versions">')[2].partition("</ul>")[0]
+        versions = set(re.findall(r"<li>([\w-]+) [\d.]+</li>", stamp))
+        assert {"numpy", "pandas"} <= versions
+        assert not {"control", "scipy", "schemdraw"} & versions
         assert not Path("build/report/methods.html").exists()
 
 

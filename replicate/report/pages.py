@@ -13,6 +13,7 @@ from pathlib import Path
 
 from replicate.display.addresses import address, page_name, pages_of, parts
 from replicate.display.consequences import consequential
+from replicate.display.environment import versions
 from replicate.display.rendering import render
 from replicate.errors import TemplateError
 from replicate.exhibits import Claims, Exhibit, Paper
@@ -27,6 +28,7 @@ from replicate.report.single_file import self_contained
 from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
+from replicate.run.modules import distributions_used
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
 
@@ -127,7 +129,9 @@ def build_report(
         (row, _address(site, row), _sentence(claims[row.paper, row.exhibit], row))
         for row in consequential(judgement.verdicts)[:_MOST_GRAVE]
     ]
-    texts = {INDEX: render("index.html", INDEX, site=site, papers=papers, advised=advised, grave=grave, **shared)}
+    stamp = versions(distributions_used(paper.package for paper in papers))
+    overview = {"stamp": stamp, "site": site, "papers": papers, "advised": advised, "grave": grave}
+    texts = {INDEX: render("index.html", INDEX, **overview, **shared)}
     name = METHODS if about.methods else VERDICTS
     verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")
     texts[name] = render("methods.html", name, verdicts=verdicts, **shared)

@@ -13,6 +13,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
+_ROOT = __name__.partition(".")[0]
+_NUMERICS = (f"{_ROOT}.loops", f"{_ROOT}.papers")
+
 
 def modules_of(package: str, others: Collection[str]) -> set[str]:
     """Return the loaded modules that code of a package may use.
@@ -84,6 +87,30 @@ def _imported(tree: ast.AST, package: str) -> Iterator[str]:
                 continue
             yield base
             yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def distributions_used(packages: Iterable[str]) -> set[str]:
+    """Return the distributions that packages import anywhere in their code, or in that of the modules of ours they use.
+
+    Only statements count, so the answer does not depend on what was run. The framework's rooms do not count: what they
+    import belongs to every report.
+    """
+    packages = tuple(packages)
+    found: set[str] = set()
+    seen: set[str] = set()
+    waiting = [name for name in sys.modules if any(_is_in(name, package) for package in packages)]
+    while waiting:
+        name = waiting.pop()
+        if name in seen or is_standard(name):
+            continue
+        seen.add(name)
+        top = name.partition(".")[0]
+        ours = top == _ROOT or any(_is_in(name, package) for package in packages) or top not in installed()
+        if not ours:
+            found.update(installed()[top])
+        elif top != _ROOT or any(_is_in(name, room) for room in (*_NUMERICS, *packages)):
+            waiting += imports_of(name)
+    return found
 
 
 def is_standard(name: str) -> bool:
