@@ -30,31 +30,37 @@ def judge_claims(paper: str, exhibit: Claims, result: ClaimsResult) -> Judgement
     Returns
     -------
     Judgement
-        One verdict per claim. A claim whose check failed is unexplained, and a problem.
+        One verdict per claim. A claim whose check failed has none, and is a problem.
     """
     judgement = Judgement()
     for id, claim in exhibit.claims.items():
         place = f"{paper} {exhibit.id}: claim '{id}'"
         finding = result.findings.get(id)
         wrong = _wrong(finding, result.errors.get(id))
-        row = VerdictRow(paper, exhibit.id, id, CLAIM_COLUMN, claim.printed, "unexplained", AS_WRITTEN, "")
         if finding is None or wrong:
             judgement.problems.append(f"{place}: {wrong}")
-        else:
-            evidence = " ".join(finding.evidence.split())
-            if not evidence and finding.verdict != "holds":
-                judgement.problems.append(f"{place}: {finding.verdict}, but its evidence is empty")
-            computed = computed_text(finding.value)
-            consequence = claim.consequence if finding.verdict in ERRORS else ""
-            row = replace(
-                row, verdict=finding.verdict, computed=computed, explanation=evidence, consequence=consequence
-            )
+            continue
+        evidence = " ".join(finding.evidence.split())
+        if not evidence and finding.verdict != "holds":
+            judgement.problems.append(f"{place}: {finding.verdict}, but its evidence is empty")
+        row = VerdictRow(
+            paper,
+            exhibit.id,
+            id,
+            CLAIM_COLUMN,
+            claim.printed,
+            finding.verdict,
+            AS_WRITTEN,
+            computed_text(finding.value),
+            explanation=evidence,
+            consequence=claim.consequence if finding.verdict in ERRORS else "",
+        )
         if claim.printed and parse_number(claim.printed) is None:
             judgement.problems.append(f"{place}: printed = '{claim.printed}' is not a number; allowed: {ALLOWED}")
         elif claim.printed:
-            number = None if finding is None or wrong else finding.value
             value = PrintedValue(claim.printed)
-            row = replace(row, value=value, values=(Computed(AS_WRITTEN, number, match(value, number)),))
+            computed = Computed(AS_WRITTEN, finding.value, match(value, finding.value))
+            row = replace(row, value=value, values=(computed,))
         judgement.verdicts.append(row)
     return judgement
 

@@ -31,7 +31,7 @@ def inventory_row(paper: str, exhibit: Exhibit, result: Result | None, verdicts:
         case Figure(), FigureResult():
             status, reason = _none(result.error) if result.error else ("done", "")
         case Claims(), ClaimsResult():
-            status, reason = _claims(verdicts)
+            status, reason = _claims(exhibit, verdicts)
         case _:
             status, reason = _none(NOT_COMPUTED)
     return ExhibitRow(paper, exhibit.id, exhibit.kind, exhibit.title, status, reason)
@@ -61,8 +61,9 @@ def _table(result: TableResult, verdicts: Sequence[VerdictRow]) -> tuple[Status,
     return status, "; ".join([reason, *failed])
 
 
-def _claims(verdicts: Sequence[VerdictRow]) -> tuple[Status, str]:
-    failed = [verdict.row for verdict in verdicts if verdict.verdict == "unexplained"]
+def _claims(exhibit: Claims, verdicts: Sequence[VerdictRow]) -> tuple[Status, str]:
+    judged = {verdict.row for verdict in verdicts}
+    failed = [id for id in exhibit.claims if id not in judged]
     if not failed:
         return "done", ""
-    return ("partly" if len(failed) < len(verdicts) else "not-computable"), f"not checked: {', '.join(failed)}"
+    return ("partly" if judged else "not-computable"), f"not checked: {', '.join(failed)}"
