@@ -6,6 +6,8 @@ pictures of a figure.
 
 from __future__ import annotations
 
+import os
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from replicate.diff.cells import CellChange
@@ -13,11 +15,18 @@ from replicate.diff.changes import relative
 from replicate.diff.comparison import Comparison, ExhibitDiff
 from replicate.diff.counts import summary
 from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
+from replicate.display.addresses import address, pages_of
 from replicate.display.labels import heading
 from replicate.display.rendering import render
 from replicate.exhibits import Paper
+from replicate.exhibits.numerals import parse_number
 from replicate.figures.differences import percent
 from replicate.run.outcome import Outcome
+from replicate.verdicts.rows import CLAIM_COLUMN
+
+#: Environment variables that name the commits compared; no clock and no repository decides what the page says.
+COMMITS = {"base": "REPLICATE_BASE_COMMIT", "head": "REPLICATE_HEAD_COMMIT"}
+_SHORT = 12
 
 # A change of a rule may move every value of a table.
 _MOST_CELLS = 200
@@ -34,6 +43,10 @@ class CellRow:
     size: str
     printed: tuple[str, str]  # empty where the print is as it was
     verdicts: tuple[str, str]  # empty where the verdict is as it was
+    print: str  # as it is
+    verdict: str
+    direction: str  # whether the value came nearer to the print or went away from it
+    address: str  # of the cell, relative to the report's folder
 
 
 @dataclass(frozen=True)
@@ -47,6 +60,7 @@ class DiffView:
     cells: list[CellRow] = field(default_factory=list)
     more_cells: int = 0
     too_many: bool = False
+    labels: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def id(self) -> str:
@@ -77,13 +91,22 @@ def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> s
             diff,
             *names[diff.name],
             drawings.get(diff.name),
-            [_row(cell) for cell in diff.cells[:_MOST_CELLS]],
+            [_row(cell, diff, papers.get(diff.paper)) for cell in diff.cells[:_MOST_CELLS]],
             max(0, len(diff.cells) - _MOST_CELLS),
             too_many=diff.name not in drawings and _has_pictures(diff),
+            labels=_labels(diff, papers.get(diff.paper)),
         )
         for diff in comparison.changed
     ]
-    return render("diff.html", "diff/index.html", comparison=comparison, summary=summary(comparison), views=views)
+    said = {name: os.environ.get(variable, "")[:_SHORT] for name, variable in COMMITS.items()}
+    return render(
+        "diff.html",
+        "diff/index.html",
+        comparison=comparison,
+        summary=summary(comparison),
+        views=views,
+        commits=[(name, commit) for name, commit in said.items() if commit],
+    )
 
 
 def _has_pictures(diff: ExhibitDiff) -> bool:
@@ -96,7 +119,33 @@ def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:
     return heading(diff.exhibit, exhibit.title if exhibit else "")
 
 
-def _row(cell: CellChange) -> CellRow:
+def _labels(diff: ExhibitDiff, paper: Paper | None) -> Mapping[str, str]:
+    return getattr(paper.exhibits.get(diff.exhibit), "labels", {}) if paper else {}
+
+
+def _address(cell: CellChange, diff: ExhibitDiff, paper: Paper | None) -> str:
+    page = pages_of(paper).get(diff.exhibit, "") if paper else ""
+    row, column = (*cell.key, CLAIM_COLUMN)[:2]
+    return address(page or f"{diff.paper}.html", diff.exhibit, row, column)
+
+
+def direction(printed: str, before: str, after: str) -> str:
+    """Return whether a computed value moved to the print or away from it; empty where that cannot be said.
+
+    Examples
+    --------
+    >>> direction("1.20", "1.3", "1.21"), direction("1.20", "1.21", "1.3"), direction("stable", "1", "2")
+    ('nearer to the print', 'further from the print', '')
+    """
+    number = parse_number(printed)
+    try:
+        old, new = (abs(float(text) - float(number)) for text in (before, after)) if number is not None else (0.0, 0.0)
+    except ValueError:
+        return ""
+    return "" if old == new else "nearer to the print" if new < old else "further from the print"
+
+
+def _row(cell: CellChange, diff: ExhibitDiff, paper: Paper | None) -> CellRow:
     before, after = cell.before or {}, cell.after or {}
     values = before.get("computed", ""), after.get("computed", "")
     size = relative(*values) if "computed" in cell.columns else None
@@ -110,4 +159,8 @@ def _row(cell: CellChange) -> CellRow:
         f"{'+' if size > 0 else '−'}{percent(abs(size))}" if small and size is not None else "",
         printed if "printed" in cell.columns else nothing,
         verdicts if "verdict" in cell.columns or not cell.columns else nothing,
+        printed[1] or printed[0],
+        verdicts[1] or verdicts[0],
+        direction(printed[1], *values) if "computed" in cell.columns else "",
+        _address(cell, diff, paper),
     )

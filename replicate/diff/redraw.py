@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from replicate.diff.accepted import FigureState
+from replicate.diff.curve_looks import look_of
 from replicate.figures import style as plotstyle
 from replicate.figures.axes import matched_panels, symbol
 from replicate.figures.distance import exact_distances
@@ -45,7 +46,8 @@ def picture(state: FigureState, salt: str, order: Sequence[tuple[str, str]]) -> 
     Parameters
     ----------
     order
-        All curves of both states, so that a curve has the same colour in both pictures.
+        All curves of both states, so that a curve has the same colour in both pictures. One whose look is recorded
+        has that of the paper's figure.
     """
 
     def draw(axes: Axes, panel: Description) -> None:
@@ -53,7 +55,7 @@ def picture(state: FigureState, salt: str, order: Sequence[tuple[str, str]]) -> 
         for place, name in enumerate(names):
             points = state.curves.get((panel["panel"], name))
             if points is not None:
-                _draw_curve(axes, panel, name, points, **_look(place))
+                _draw_curve(axes, panel, name, points, **(_look(place) | look_of(panel, name)))
         _draw_legend(axes, panel)
 
     return _drawn(state.axes, draw, salt)
