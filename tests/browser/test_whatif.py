@@ -197,6 +197,22 @@ def test_the_slider_multiplies_all_gains(page: Any) -> None:
     assert f"{float(loop.sensitivity_peak()):.4g}" in page.inner_text("#metrics-body")
 
 
+def test_how_far_a_printed_rule_may_be_sharpened(page: Any, address: str) -> None:
+    kp, ki = 0.404 + 0.256 - 0.1275, 0.0808 + 0.719 - 0.324  # Khan's rule (7b) at ph = 1
+    page.goto(f"{address}#plant=e%5E%7B-s%7D%2F(s%2B1)&controller=k%3D{kp}%2Cki%3D{ki}")
+    until(page, f"whatif.state.controller.k === {kp} && whatif.state.last.ms < 1.7")
+
+    def peak(factor: float) -> float:
+        page.locator("#sharpen").fill(str(factor))
+        until(page, f"document.getElementById('factor').textContent === '{factor:.3f}'")
+        found = float(page.evaluate("whatif.state.last.ms"))
+        loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PID(factor * kp, factor * ki))
+        assert found == pytest.approx(float(loop.sensitivity_peak()), rel=1e-9)
+        return found
+
+    assert peak(1.425) < 2.0 < peak(1.43)
+
+
 def test_the_rules_of_the_page_are_those_of_the_core(page: Any) -> None:
     for text, plant in (
         ("e^{-2s}/(3s+1)", Plant.foptd(1.0, 3.0, 2.0)),
