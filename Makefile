@@ -66,6 +66,15 @@ scaling: $(VENV)/.developed ## how sweeps of up to a million loops grow, on a cl
 units: $(VENV)/.developed ## try 1,000 random loops in other units of time and gain (about 20 minutes)
 	$(BIN)/python tests/loops/equivariance.py 1000
 
+.PHONY: conformance
+conformance: $(VENV)/.developed ## exact values of hard loops: ours must have nine digits, python-control's are shown
+	$(BIN)/python -m replicate.loops.conformance --library replicate --loops --require 9
+	$(BIN)/python -m replicate.loops.conformance --library python-control
+
+.PHONY: goldens
+goldens: $(VENV)/.developed ## compute the exact values of replicate/loops/goldens.json again (some minutes)
+	$(BIN)/python tools/goldens/make.py
+
 ##@ Working on it
 
 .PHONY: lint

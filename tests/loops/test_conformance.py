@@ -11,7 +11,10 @@ from replicate.loops.conformance import Quantity, digits, goldens, measure
 from replicate.loops.conformance.adapters.replicate_loops import library
 
 GOLDENS = {golden.id: golden for golden in goldens()}
-QUICK = ("foptd-simc", "foptd-critical", "dead-time-pi", "integrator-p", "lag-3-no-delay", "unstable-limit")
+QUICK = (
+    "foptd-simc", "foptd-critical", "foptd-tiny-delay-1e-5", "foptd-small-delay-slow-loop", "integrator-p-tiny-delay",
+    "dead-time-pi", "integrator-p", "lag-3-no-delay", "unstable-limit",
+)  # fmt: skip
 
 
 @pytest.mark.parametrize("name", QUICK)
@@ -30,6 +33,10 @@ def test_the_file_holds_its_closed_forms() -> None:
     assert simc["phase_margin"]["value"] == pytest.approx(90 - math.degrees(0.5), rel=1e-15)
     assert GOLDENS["foptd-critical"].record["poles"][0] == {"re": -1.0, "im": 0.0, "multiplicity": 3}
     assert GOLDENS["unstable-limit"].record["poles"][0]["re"] == pytest.approx(mp.lambertw(-2).real, rel=1e-15)
+    # e^{-1e-6 s}/s: margins pi/2 / 1e-6 and pi/2 - 1e-6, however far apart
+    tiny = GOLDENS["integrator-p-tiny-delay"].record
+    assert tiny["gain_margin"]["value"] == pytest.approx(math.pi / 2e-6, rel=1e-15)
+    assert tiny["delay_margin"]["value"] == pytest.approx(math.pi / 2 - 1e-6, rel=1e-15)
     # e^{-s}/s under k: y = k (t - 1) until t = 2
     integrator = GOLDENS["integrator-p"].record
     assert integrator["responses"]["step"][0] == 0.25

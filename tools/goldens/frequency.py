@@ -11,6 +11,9 @@ from case import Case, bracketed_root, evaluate
 
 Number = mp.mpf | None  # None: infinite, or there is none
 
+CLEAR = 0.02  # |L| at a phase crossover that may be the margin in any case
+NEXT = 8  # of the phase crossovers with smaller |L|, how many are looked at
+
 
 def quantities(case: Case) -> dict[str, dict[str, Number]]:
     """Return the peaks of |S| and |T| and the margins, with their frequencies."""
@@ -52,7 +55,8 @@ def _limit(case: Case) -> mp.mpf:
 
 def _grid(case: Case) -> np.ndarray:
     A, B = (_floats(case.polynomials[name]) for name in "AB")
-    corners = np.abs(np.concatenate([np.roots(A), np.roots(B)]))
+    # the roots of A + B, the poles without dead time, are about where the gain passes one
+    corners = np.abs(np.concatenate([np.roots(A), np.roots(B), np.roots(np.polyadd(A, B))]))
     corners = np.concatenate([corners[corners > 0.0], [1.0 / case.dead_time] if case.dead_time else []])
     low, high = 1e-4 * corners.min(), 1e3 * corners.max()
     parts = [np.geomspace(low, high, 60001)]
@@ -92,10 +96,14 @@ def _top(slope: Callable[[mp.mpf], mp.mpf], grid: np.ndarray, best: int) -> mp.m
 
 def _margins(case: Case, L: Callable[[Any], Any], grid: np.ndarray) -> dict[str, dict[str, Number]]:
     value = L(grid)
+    negative = [(low, high) for low, high in _brackets(value.imag, grid) if L(mp.mpf(low)).real < 0]
+    # beyond those with |L| near or above one, only the largest of the others can be the margin
+    size = {pair: float(abs(L(mp.mpf(pair[0])))) for pair in negative}
+    largest = sorted((pair for pair in negative if size[pair] <= CLEAR), key=lambda pair: -size[pair])[:NEXT]
     real_negative = [
         bracketed_root(lambda w: mp.im(L(w)), low, high)
-        for low, high in _brackets(value.imag, grid)
-        if L(mp.mpf(low)).real < 0 and abs(L(mp.mpf(low))) > 0.02
+        for low, high in negative
+        if size[low, high] > CLEAR or (low, high) in largest
     ]
     unit = [
         bracketed_root(lambda w: mp.log(abs(L(w))), low, high) for low, high in _brackets(np.abs(value) - 1.0, grid)
