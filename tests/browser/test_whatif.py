@@ -44,7 +44,7 @@ def page(browser: Any, address: str) -> Iterator[Any]:
 
 def until(page: Any, condition: str) -> None:
     """Wait until something holds; the page's policy forbids what Playwright does to wait by itself."""
-    for _ in range(100):
+    for _ in range(600):
         if page.evaluate(f"Boolean({condition})"):
             return
         page.wait_for_timeout(50)
