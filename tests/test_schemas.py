@@ -100,6 +100,13 @@ def test_new_files_name_their_schema_and_fit(tmp_path: Path) -> None:
         assert not list(jsonschema.Draft202012Validator(json.loads(schema)).iter_errors(tomllib.loads(text)))
 
 
+def test_the_schemas_of_the_examples_are_those_of_the_package() -> None:
+    copies = sorted(ROOT.glob("examples/*/.schemas/*.json"))
+    assert copies
+    for copy in copies:
+        assert copy.read_text(encoding="utf-8") == schemas()[copy.name.removesuffix(".schema.json")]
+
+
 def test_the_command_prints_them(replicate: Run) -> None:
     status, out, _ = replicate("schema")
     assert status == 0
