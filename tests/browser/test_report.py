@@ -49,6 +49,7 @@ UNFOLDED = """() => {
   const sheet = document.styleSheets[0];
   sheet.insertRule(".exhibit { content-visibility: visible !important; }", sheet.cssRules.length);
 }"""
+SETTLED = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50))))"
 # Where a page is wider than the window: what sticks out, and is in no region that scrolls by itself.
 SIDEWAYS = """() => document.documentElement.scrollWidth <= innerWidth ? [] :
   [...document.querySelectorAll("body *")]
@@ -121,12 +122,11 @@ def test_no_page_is_heavy(report: Path) -> None:
 def test_every_page_is_accessible_and_fits(report: Path, browser: Any, axe: str) -> None:
     found: dict[str, Any] = {}
     for path in pages(report):
-        with Sight(browser, path) as page:
+        with Sight(browser, path, width=360) as page:
             if page.evaluate("document.querySelectorAll('*').length") > MOST_ELEMENTS:
                 found[f"{path.name}: elements"] = page.evaluate("document.querySelectorAll('*').length")
             page.evaluate(UNFOLDED)
-            page.set_viewport_size({"width": 360, "height": 800})
-            page.wait_for_timeout(100)
+            page.evaluate(SETTLED)
             found[f"{path.name}: wider than a phone"] = page.evaluate(SIDEWAYS)
             found[f"{path.name}: tab stops that are none"] = page.evaluate(STOPS) if path.name != "whatif.html" else []
             page.evaluate(FOLD)
@@ -134,6 +134,7 @@ def test_every_page_is_accessible_and_fits(report: Path, browser: Any, axe: str)
             found[f"{path.name}: axe, 360 px, dark"] = violations(page, axe, BY_WIDTH + BY_COLOURS)
             page.set_viewport_size({"width": 1280, "height": 900})
             page.emulate_media(color_scheme="light")
+            page.evaluate(SETTLED)
             found[f"{path.name}: axe, 1280 px, light"] = violations(page, axe)
     assert {name: what for name, what in found.items() if what} == {}
 
