@@ -217,12 +217,13 @@ function characteristic(plant, controller) {
   return {
     free: trimmed(multiply(plant.den, multiply(integrator, lag))),
     delayed: trimmed(multiply(plant.num, feedback)),
+    corners: [...plant.poles, ...plant.zeros, ...roots(feedback), ...roots(lag)], // roots of both, the slow ones once
   };
 }
 
 // The number of closed-loop poles in the right half plane: the argument principle on the imaginary axis.
 function unstablePoles(plant, controller) {
-  const { free, delayed } = characteristic(plant, controller);
+  const { free, delayed, corners: all } = characteristic(plant, controller);
   const degree = free.length - 1, delay = plant.deadTime;
   if (delayed.length > free.length || (delayed.length === free.length && delay > 0 && Math.abs(delayed[0]) >= Math.abs(free[0]))) {
     return Infinity; // |L| does not fall below one at high frequencies
@@ -233,7 +234,7 @@ function unstablePoles(plant, controller) {
     return [fr + dr * c + di * s, fi + di * c - dr * s];
   };
   // Beyond `end` the argument can be read off the leading terms.
-  const corners = sizes([...roots(free), ...roots(delayed)]);
+  const corners = sizes(all);
   const ratio = (w) => Math.hypot(...onAxis(delayed, w)) / Math.hypot(...onAxis(free, w));
   let end = 4 * Math.max(1e-9, ...corners);
   for (let i = 0; i < 200 && ratio(end) > 0.25 * (1 + (delayed.length === free.length ? Math.abs(delayed[0] / free[0]) * 3 : 0)); i++) end *= 1.5;
@@ -565,8 +566,7 @@ function totalVariation(response) {
 
 // Frequencies dense enough for every resonance and turn of the dead time, up to where |L| stays small.
 function grid(plant, controller, floor) {
-  const corners = [...plant.poles, ...plant.zeros, ...roots(characteristic(plant, controller).delayed)];
-  if (controller.kd && controller.filter) corners.push([1 / controller.filter, 0]);
+  const { corners } = characteristic(plant, controller);
   const all = sizes(corners);
   if (controller.k && controller.ki) all.push(Math.abs(controller.ki / controller.k));
   if (plant.deadTime) all.push(1 / plant.deadTime);
