@@ -55,8 +55,8 @@ torture: $(VENV)/.developed ## attack every promise and count what held: killed,
 	$(BIN)/python -m pytest tests/torture --torture -n auto --dist load -q $(ARGS)
 
 .PHONY: bench
-bench: $(VENV)/.developed ## measure speed and accuracy against python-control
-	set -e; for script in benchmarks/*.py; do $(BIN)/python "$$script"; done
+bench: $(VENV)/.ready ## measure speed and error beside python-control and others: build/bench.md
+	$(BIN)/python -m benchmarks
 
 .PHONY: scaling
 scaling: $(VENV)/.developed ## how sweeps of up to a million loops grow, on a cluster of one and of two workers

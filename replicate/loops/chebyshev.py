@@ -91,9 +91,11 @@ def bracketed_roots(series: Array, left: Array, right: Array) -> Array:
     """Return one root of each series (rows) between points of opposite sign: bisection, then Newton's method."""
     low, high = np.array(left), np.array(right)
     sign = np.sign(evaluate(series, low))
-    for _ in range(8):
+    orders = np.arange(series.shape[1])
+    for _ in range(8):  # only the sign counts here
         middle = 0.5 * (low + high)
-        below = np.sign(evaluate(series, middle)) == sign
+        values = np.einsum("pk,pk->p", series, np.cos(np.arccos(middle)[:, None] * orders))
+        below = np.sign(values) == sign
         low, high = np.where(below, middle, low), np.where(below, high, middle)
     slopes = np.asarray(cheb.chebder(series, axis=1), dtype=float)
     root = 0.5 * (low + high)

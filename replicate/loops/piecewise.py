@@ -205,9 +205,10 @@ class Piecewise:
         flat = np.ptp(self._samples[candidates], axis=1) <= FLAT * float(np.max(np.abs(self._samples)))
         if flat.any():
             tail = candidates[flat]
-            place = int(np.argmax(highest[tail]))
-            at = int(np.argmax(samples[tail[place]]))
-            best = Peak(float(highest[tail[place]]), self._time(int(tail[place]), chebyshev.nodes(SAMPLES - 1)[at]))
+            # of values that are one to rounding the first counts, from the beginning of its piece on
+            same = highest[tail] >= highest[tail].max() - FLAT * float(np.max(np.abs(self._samples)))
+            place = int(tail[np.argmax(same)])
+            best = Peak(float(highest[place]), self._time(place, -1.0))
         for value, time in self._summits(candidates[~flat], sign, highest.max() - margin):
             if sign * value > best:
                 best = Peak(sign * value, time)

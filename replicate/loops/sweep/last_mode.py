@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
-SUSPECTED = 4e-12  # residual of the recurrence, of the largest deviation, with which a pole is looked for
-PROVEN = 1e-12  # residual of the fit with which it is the last one
+SUSPECTED = 1e-11  # residual of the recurrence, of the largest deviation, with which a pole is looked for
+PROVEN = 4e-12  # residual of the fit with which it is the last one
 
 
 @dataclass
@@ -117,7 +117,8 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
         recent[i] if splits == 1 else np.concatenate(recent[i * splits : (i + 1) * splits]) for i in range(3)
     )
     chosen = _in_sight(oldest, middle, newest, size)
-    oldest, middle, newest = (values[:, chosen] for values in (oldest, middle, newest))
+    # every second node is plenty: what is left of other modes is smooth
+    oldest, middle, newest = (values[::2, chosen] for values in (oldest, middle, newest))
     start, oscillates = _starts(oldest, middle, newest, size[chosen])
     # an oscillation that is still outside the band will be looked at again
     kept = np.nonzero(np.isfinite(start) & ~(oscillates & (np.abs(newest[-1]) > band[chosen])))[0]
@@ -127,11 +128,11 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
     if chosen.size == 0:
         return found
     s, part = start, loops.take(chosen)
+    nodes = np.concatenate([(i + 0.5 * (chebyshev.nodes(DEGREE) + 1.0)) / splits for i in range(splits)])[::2]
     with np.errstate(all="ignore"):
-        for _ in range(4):
+        for _ in range(3):
             s = s - part.newton_step(s)
         s = np.where(oscillates, s, s.real)
-        nodes = np.concatenate([(i + 0.5 * (chebyshev.nodes(DEGREE) + 1.0)) / splits for i in range(splits)])
         c, residual = _fit(s, nodes, middle, newest, oscillates)
         envelope = np.abs(c)
         proven = (residual <= PROVEN * size[chosen]) & (s.real < 0.0)

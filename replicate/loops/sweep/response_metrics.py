@@ -21,9 +21,9 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
-MARGIN = 0.02  # of the range in a piece: more than an extremum exceeds the values at the nodes
+MARGIN = 0.04  # of the range in a piece: more than an extremum exceeds the values at the nodes
 TOUCHING = 5e-3  # of the range in a piece: an extremum so close to a level may cross it between samples
-NEGLIGIBLE = 1e-14  # share of an integral below which a piece needs no care, thousands of them neither
+NEGLIGIBLE = 3e-11  # share of an integral that all pieces together may have which are looked at no further
 
 
 class ResponseMetrics:
@@ -147,15 +147,15 @@ class ResponseMetrics:
         last = outside.shape[0] - 1
         while column.size:
             piece = last - np.argmax(outside[::-1, column], axis=0)
-            series = batch_roots.series(self._gathered(piece, column))
-            dense = batch_roots.samples(series)
+            dense = self._gathered(piece, column)
+            series, nodes = batch_roots.series(dense), np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], dense.shape)
             size, sign = np.abs(dense), np.sign(dense)
-            touching = _summits(size, np.abs(size - width[column]) < TOUCHING * np.ptp(dense, axis=0))
-            nodes, dense = batch_roots.sharpened(series, _dense(column.size), dense, touching, sign)
+            touching = _summits(size, np.abs(size - width[column]) < MARGIN * np.ptp(dense, axis=0))
+            nodes, dense = batch_roots.sharpened(series, nodes, dense, touching, sign)
             beyond = np.abs(dense) > width[column]
             some = beyond.any(axis=0)
-            at = batch_roots.DENSE - 1 - np.argmax(beyond[::-1], axis=0)
-            at_end = some & (at == batch_roots.DENSE - 1)
+            at = DEGREE - np.argmax(beyond[::-1], axis=0)
+            at_end = some & (at == DEGREE)
             time[column[at_end]] = self._time(piece[at_end], np.ones(int(at_end.sum())))
             ended = at_end & (piece == self.responses.ends[column] - 1)
             unsettled[column[ended]] = True
@@ -246,7 +246,7 @@ class ResponseMetrics:
         total = np.abs(self._areas)
         span = high - low
         near = self._exists & (low - MARGIN * span < 0.0) & (high + MARGIN * span > 0.0) & (span > 0.0)
-        near &= span * self._lengths()[:, None] > NEGLIGIBLE * total.sum(axis=0)
+        near &= span * self._lengths()[:, None] > NEGLIGIBLE / len(self.pieces) * total.sum(axis=0)
         piece, column = np.nonzero(near)
         if piece.size:
             values = self._gathered(piece, column)

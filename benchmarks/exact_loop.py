@@ -1,0 +1,96 @@
+"""The loop of the benchmarks, (k + ki/s) e^{-s}/(s + 1), in closed form and by arithmetic of 50 digits.
+
+Nothing here uses the package: what is measured is compared with these values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+
+import mpmath as mp
+import numpy as np
+from numpy.polynomial import chebyshev
+
+K, KI, UNTIL = 0.6, 0.5, 60.0  # at the end the error has decayed to rounding
+TERMS = 50  # of a power series on one dead time: 1/50! is far below the arithmetic
+DEGREE = 20  # of the polynomials that stand for the exact response on one dead time: far below rounding
+
+mp.mp.dps = 50
+
+
+@cache
+def _series() -> list[list[mp.mpf]]:
+    """Return the response on each dead time as a power series from its left end, by the method of steps.
+
+    y' = -y + u(t - 1) and I' = 1 - y give each coefficient from the one before; the series are those of entire
+    functions.
+    """
+    y, integral, u = mp.mpf(0), mp.mpf(0), [mp.mpf(0)] * TERMS
+    found = []
+    for _ in range(int(UNTIL) + 1):
+        ys, integrals = [y], [integral]
+        for n in range(TERMS - 1):
+            ys.append((u[n] - ys[n]) / (n + 1))
+            integrals.append(((1 if n == 0 else 0) - ys[n]) / (n + 1))
+        found.append(ys)
+        u = [K * ((1 if n == 0 else 0) - ys[n]) + KI * integrals[n] for n in range(TERMS)]
+        y, integral = mp.fsum(ys), mp.fsum(integrals)
+    return found
+
+
+def response(t: float) -> mp.mpf:
+    """Return the step response."""
+    piece = int(t)
+    return mp.polyval(_series()[piece][::-1], mp.mpf(t) - piece)
+
+
+@cache
+def metrics() -> dict[str, float]:
+    """Return the metrics of the response, from polynomials through exact values on each dead time."""
+    x = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+    series = [
+        chebyshev.chebfit(x, [float(response(n + 0.5 * (v + 1.0))) - 1.0 for v in x], DEGREE)
+        for n in range(1, int(UNTIL))
+    ]
+    extrema, crossings, absolute = [], [0.0], 1.0  # the error is one during the dead time
+    for n, piece in enumerate(series, start=1):
+
+        def time(at: float, start: int = n) -> float:
+            return start + 0.5 * (at + 1.0)
+
+        extrema += [(chebyshev.chebval(v, piece), time(v)) for v in _roots(chebyshev.chebder(piece))]
+        for level in (0.02, -0.02):
+            crossings += [time(v) for v in _roots(chebyshev.chebsub(piece, [level]))]
+        integral = chebyshev.chebint(piece)
+        points = np.array([-1.0, *_roots(piece), 1.0])
+        absolute += 0.5 * float(np.sum(np.abs(np.diff(chebyshev.chebval(points, integral)))))
+    peak, at = max(extrema)
+    return {
+        "overshoot": float(peak), "peak_time": at, "settling_time": max(crossings), "iae": absolute, **margins(),
+    }  # fmt: skip
+
+
+def _roots(series: np.ndarray) -> list[float]:
+    found = chebyshev.chebroots(series)
+    return sorted(float(r.real) for r in found if abs(r.imag) < 1e-9 and -1.0 <= r.real <= 1.0)
+
+
+def margins() -> dict[str, float]:
+    """Return Ms, gain margin and phase margin, by Newton's method on the exact transfer function."""
+
+    def loop(w: mp.mpf) -> mp.mpc:
+        s = mp.mpc(0, w)
+        return (mp.mpf(K) + mp.mpf(KI) / s) * mp.exp(-s) / (s + 1)
+
+    def root(f: Callable[[mp.mpf], mp.mpf], near: float) -> mp.mpf:
+        return mp.findroot(f, (near, near * 1.001))
+
+    gain_crossover = root(lambda w: abs(loop(w)) - 1, 0.5)
+    phase_crossover = root(lambda w: mp.im(loop(w)), 1.5)
+    closest = root(lambda w: mp.diff(lambda v: abs(1 + loop(v)), w), 1.2)
+    return {
+        "ms": float(1 / abs(1 + loop(closest))),
+        "gain_margin": float(1 / abs(loop(phase_crossover))),
+        "phase_margin": float(mp.degrees(mp.arg(loop(gain_crossover)) + mp.pi)),
+    }
