@@ -28,7 +28,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Literal
 
 from replicate.display.addresses import TRIALS, trial_address, trial_label
 from replicate.display.inline_svg import description
@@ -58,6 +58,27 @@ class Drawing:
     png: bytes
     alt: str
     width: float
+
+
+class DrawnLater(Drawing):
+    """A figure of the numbers of one form, drawn when it is needed: a sheet without solutions needs fewer."""
+
+    def __init__(self, paper: str, figure: Figure, width: float) -> None:
+        self.__dict__.update(name=figure.id, alt=figure.alt, width=width, _paper=paper, _figure=figure)
+
+    @cached_property
+    def svg(self) -> str:
+        """The vector drawing."""
+        return self._drawn("svg").decode()
+
+    @cached_property
+    def png(self) -> bytes:
+        """The picture."""
+        return self._drawn("png")
+
+    def _drawn(self, kind: Literal["svg", "png"]) -> bytes:
+        with _said_by(f"figure('{self.name}')"):
+            return drawing.picture(self.__dict__["_paper"], self.__dict__["_figure"], kind)
 
 
 @dataclass(frozen=True)
@@ -214,9 +235,7 @@ class Placing:
         if varied is not None:
             if size is not None:
                 varied, width = replace(varied, size=size), min(1.0, size[0] / TEXT_WIDTH)
-            with _said_by(f"figure('{name}')"):
-                shown = drawing.capture(f"{self.paper.id}-handout", varied)
-            return self._mark(Drawing(name, shown.svg, shown.png, description(varied.alt, shown.axes), width))
+            return self._mark(DrawnLater(f"{self.paper.id}-handout", varied, width))
         if own is not None or (size is not None and isinstance(found, Figure)):
             drawn = own or found
             assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker

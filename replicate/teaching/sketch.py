@@ -9,7 +9,7 @@ of it yet, u = k + ki t. For dy/dt = p y + g u(t - L), with A = (e^{pL} - 1)/p:
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,9 +22,11 @@ from replicate.teaching.drawing_numbers import number, two_digits
 if TYPE_CHECKING:
     from random import Random
 
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 SHOWN = 8.0  # dead times
+_SIZE = (6.2, 2.3)
 
 
 def _loop(inputs: Inputs) -> Loop:
@@ -59,10 +61,8 @@ def sketch(
     top
         Of the axes.
     """
-    figures = {
-        f"{name}-axes": VariedFigure("Axes for a sketch", _AXES, _draw(top, curve=False), (6.2, 2.3)),
-        f"{name}-curve": VariedFigure("The response", _CURVE, _draw(top, curve=True), (6.2, 2.3)),
-    }
+    exercises.figure(f"{name}-axes", "Axes for a sketch", alt=_AXES, size=_SIZE)(lambda fig: _blank(fig, top))
+    figures = {f"{name}-curve": VariedFigure("The response", _CURVE, partial(_curve, top=top), _SIZE)}
 
     def variant(rng: Random) -> Inputs:
         sign, (low, high) = math.copysign(1.0, pole[1]), sorted(abs(end) for end in pole)
@@ -137,15 +137,18 @@ _AXES = (
 _CURVE = "The response: zero for one dead time, a rise, and a swing about the set point, which is dashed."
 
 
-def _draw(top: float, *, curve: bool) -> Callable[..., None]:
-    def draw(fig: Figure, inputs: Inputs) -> None:
-        axes = fig.subplots()
-        if curve:
-            L = number(inputs, "L")
-            times = np.linspace(0.0, SHOWN, 401)
-            axes.plot(times, _shown(inputs)(times * L))
-        axes.axhline(1.0, color="0.4", linestyle="--", linewidth=1.0)
-        axes.set(xlabel="$t/L$", ylabel="output $y$", xlim=(0.0, SHOWN), ylim=(0.0, top))
-        axes.grid(visible=True)
+def _blank(fig: Figure, top: float) -> None:
+    _axes(fig, top)
 
-    return draw
+
+def _axes(fig: Figure, top: float) -> Axes:
+    axes = fig.subplots()
+    axes.axhline(1.0, color="0.4", linestyle="--", linewidth=1.0)
+    axes.set(xlabel="$t/L$", ylabel="output $y$", xlim=(0.0, SHOWN), ylim=(0.0, top))
+    axes.grid(visible=True)
+    return axes
+
+
+def _curve(fig: Figure, inputs: Inputs, top: float) -> None:
+    times = np.linspace(0.0, SHOWN, 401)
+    _axes(fig, top).plot(times, _shown(inputs)(times * number(inputs, "L")))
