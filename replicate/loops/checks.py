@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from replicate.loops.errors import LoopError
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 def real(value: object) -> float:
@@ -68,6 +69,27 @@ def triple(name: str, value: object, allowed: str) -> tuple[Any, Any, Any]:
     if not isinstance(value, tuple | list) or len(value) != 3:
         raise LoopError(_message(name, value, allowed))
     return value[0], value[1], value[2]
+
+
+def times(name: str, values: object) -> Array:
+    """Return real numbers of any shape as an array of floats; LoopError otherwise."""
+    return np.asarray(_converted(name, values, float, "real numbers", kinds="biufO"), dtype=float)
+
+
+def points(name: str, values: object) -> ComplexArray:
+    """Return complex numbers of any shape as an array; LoopError otherwise."""
+    return np.asarray(_converted(name, values, complex, "complex numbers", kinds="biufcO"), dtype=complex)
+
+
+def _converted(name: str, values: object, to: type, allowed: str, *, kinds: str) -> NDArray[Any]:
+    try:
+        array: NDArray[Any] = np.asarray(values)
+        known = array.dtype.kind in kinds and not (array.dtype == object and any(item is None for item in array.flat))
+        if known:
+            return array.astype(to)
+    except (TypeError, ValueError):
+        pass
+    raise LoopError(_message(name, values, allowed))
 
 
 def whole(name: str, value: object) -> int:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 
 
@@ -37,9 +38,11 @@ class Circle:
             If neither bound is given or a bound is not finite and greater than one.
         """
         for name, bound in (("ms", ms), ("mp", mp)):
-            if bound is not None and not 1.0 < bound < float("inf"):
-                msg = f"{name} must be finite and greater than 1, not {bound}"
+            allowed = "finite and greater than 1"
+            if bound is not None and not checks.finite(name, bound, allowed=allowed) > 1.0:
+                msg = f"{name} must be {allowed}, not {bound}"
                 raise LoopError(msg)
+        ms, mp = (None if bound is None else float(bound) for bound in (ms, mp))
         if ms is not None and mp is not None:
             left, right = mp / (mp - 1.0), (ms - 1.0) / ms
             return cls(0.5 * (left + right), 0.5 * (left - right))

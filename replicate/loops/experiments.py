@@ -13,7 +13,7 @@ from functools import reduce
 
 import numpy as np
 
-from replicate.loops import chebyshev
+from replicate.loops import chebyshev, checks
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.inputs import Event, Input, Sine, Step
@@ -92,20 +92,13 @@ def _inputs(name: str, value: object) -> list[Input]:
         return [value]
     if isinstance(value, Sequence) and all(isinstance(item, Input) for item in value):
         return list(value)
-    try:
-        height = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        msg = f"the {name} must be a number or inputs such as Step, Ramp, Sine, not {value!r}"
-        raise LoopError(msg) from None
+    height = checks.finite(f"the {name}", value, allowed="a number or inputs such as Step, Ramp, Sine")
     return [Step(height)] if height else []
 
 
 def _end(loop: Loop, items: list[Input], until: float | None) -> float:
     if until is not None:
-        if not 0.0 < until < np.inf:
-            msg = f"the horizon must be positive and finite, not {until}"
-            raise LoopError(msg)
-        return float(until)
+        return checks.positive("the horizon", until, allowed="positive and finite")
     if any(isinstance(item, Sine) for item in items):
         msg = "the response to a sine does not end: give a horizon, until=..."
         raise LoopError(msg)

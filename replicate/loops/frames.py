@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from replicate.loops import checks
 from replicate.loops.piecewise import Piecewise
 
 if TYPE_CHECKING:
@@ -30,5 +31,7 @@ def signal_frame(signal: Piecewise, times: ArrayLike | None = None) -> pd.DataFr
     """
     import pandas as pd
 
-    t = np.linspace(0.0, signal.horizon, POINTS) if times is None else np.atleast_1d(np.asarray(times, dtype=float))
+    if times is None:
+        times = np.linspace(0.0, signal.horizon, POINTS)
+    t = np.atleast_1d(checks.times("the times of a data frame", times))
     return pd.DataFrame({"value": signal(t)}, index=pd.Index(t, name="t"))

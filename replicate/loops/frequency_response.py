@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 
 if TYPE_CHECKING:
@@ -86,11 +87,13 @@ def complementary(loop: Loop, s: ArrayLike) -> ComplexArray:
 
 def load_sensitivity(loop: Loop, s: ArrayLike) -> ComplexArray:
     """Return PS(s) = P/(1 + L), from a load at the plant input to the output."""
+    s = checks.points("s", s)
     return np.asarray(loop.plant(s) / (1.0 + loop(s)))
 
 
 def noise_sensitivity(loop: Loop, s: ArrayLike) -> ComplexArray:
     """Return CS(s) = C/(1 + L), C being the feedback part of the controller with its measurement filter."""
+    s = checks.points("s", s)
     return np.asarray(loop.controller.feedback(s) / (1.0 + loop(s)))
 
 

@@ -98,7 +98,7 @@ class Loop(LoopViews):
 
     def __call__(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the loop transfer function L(s) = C(s) G(s)."""
-        return self._transfer(np.asarray(s, dtype=complex) * self._units.time)
+        return self._transfer(checks.points("s", s) * self._units.time)
 
     @cached_property
     def transfer(self) -> LoopTransfer:
@@ -277,6 +277,7 @@ class Loop(LoopViews):
         setpoint, load
             Heights of the two steps.
         """
+        setpoint, load = checks.finite("the setpoint step", setpoint), checks.finite("the load step", load)
         return steady_state(self.plant, self.controller, setpoint, load)
 
     def open_loop(self) -> tuple[Units, OpenLoop]:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import stability
+from replicate.loops import checks, stability
 from replicate.loops.errors import LoopError
 from replicate.loops.frequency_grids import plants_grid
 from replicate.loops.gamma_norm import Weight
@@ -158,6 +158,7 @@ def _mirrored(polynomial: Array) -> Array:
 
 def _require_rational(*plants: Plant) -> None:
     for plant in plants:
+        checks.instance("a plant of the gap", plant, Plant, "a Plant")
         if not plant.is_rational:
             msg = f"the winding condition needs plants that are rational up to a dead time, not {plant!r}"
             raise LoopError(msg)

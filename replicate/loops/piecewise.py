@@ -144,6 +144,7 @@ class Piecewise:
 
     def delayed(self, delay: float) -> Self:
         """Return the signal shifted to start at t = ``delay`` >= 0, zero before."""
+        delay = checks.non_negative("the delay of a response", delay, allowed="a time >= 0")
         if delay == 0.0:
             return self
         zero = np.zeros((1, self.coefficients.shape[1]))
@@ -164,6 +165,7 @@ class Piecewise:
 
     def __mul__(self, factor: float) -> Self:
         """Scale the response."""
+        factor = checks.finite("the factor of a response", factor)
         return type(self)(self.breaks, self.coefficients * factor, final=self.final * factor, stable=self.stable)
 
     __rmul__ = __mul__
@@ -271,6 +273,7 @@ class Piecewise:
 
     def crossings(self, level: float) -> Array:
         """Return all times at which the response crosses ``level``, jumps included, ascending."""
+        level = checks.finite("the level", level)
         low, high = self._samples.min(axis=1), self._samples.max(axis=1)
         slack = MARGIN * (high - low)
         times: list[float] = []
@@ -299,6 +302,7 @@ class Piecewise:
         NotSettledError
             If the level is not reached inside the horizon.
         """
+        level = checks.finite("the level", level)
         sign = 1.0 if level >= 0.0 else -1.0
         target = sign * level
         samples = sign * self._samples

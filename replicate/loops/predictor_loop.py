@@ -158,6 +158,7 @@ class PredictorLoop(Loop):
         setpoint, load
             Heights of the two steps.
         """
+        setpoint, load = checks.finite("the setpoint step", setpoint), checks.finite("the load step", load)
         difference = self.predictor.difference
         inner = difference.gain if difference is not None else 0.0
         return steady_state(self.plant, self.predictor.controller, setpoint, load, inner_gain=inner)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from replicate.loops import checks
 from replicate.loops.controller import PI
-from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
 from replicate.loops.tune.models import exact_first_order
 
@@ -33,10 +33,7 @@ def lambda_(plant: Plant, tau_cl: float | None = None) -> PI:
     model = exact_first_order(plant, "lambda tuning")
     L = model.dead_time
     default = L if model.integrators else model.time_constants[0]
-    speed = default if tau_cl is None else tau_cl
-    if not 0.0 <= speed < float("inf"):
-        msg = f"tau_cl must be a time >= 0, not {tau_cl}"
-        raise LoopError(msg)
+    speed = default if tau_cl is None else checks.non_negative("tau_cl", tau_cl, allowed="a time >= 0")
     if model.integrators:
         integral = 2.0 * speed + L
         return PI.from_integral_time(integral / (model.gain * (speed + L) ** 2), integral)

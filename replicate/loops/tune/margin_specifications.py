@@ -7,6 +7,7 @@ import math
 import numpy as np
 from scipy.optimize import brentq
 
+from replicate.loops import checks
 from replicate.loops.controller import PI
 from replicate.loops.errors import LoopError
 from replicate.loops.loop import Loop
@@ -47,6 +48,9 @@ def gain_phase_margins(plant: Plant, gain_margin: float = 3.0, phase_margin: flo
     >>> round(margins.gain, 9), round(margins.phase, 9)
     (3.0, 60.0)
     """
+    gain_margin, phase_margin = (
+        checks.finite(name, value) for name, value in (("gain_margin", gain_margin), ("phase_margin", phase_margin))
+    )
     if not (1.0 < gain_margin < math.inf and 0.0 < phase_margin < 180.0):
         given = f"{gain_margin} and {phase_margin}"
         msg = f"the margins must be a factor > 1 and an angle between 0 and 180 degrees, not {given}"

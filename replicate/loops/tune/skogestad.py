@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from replicate.loops import checks
 from replicate.loops.controller import PI, PID
 from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
@@ -46,8 +47,8 @@ def simc(plant: Plant, tau_c: float | None = None, *, derivative: bool = False) 
     """
     double = lag_model(plant).integrators == 2
     model = half_rule(plant, 2 if derivative or double else 1)
-    chosen = model.dead_time if tau_c is None else tau_c
-    if not 0.0 <= chosen < float("inf") or chosen + model.dead_time <= 0.0:
+    chosen = model.dead_time if tau_c is None else checks.non_negative("tau_c", tau_c, allowed=">= 0")
+    if chosen + model.dead_time <= 0.0:
         msg = f"tau_c must be >= 0, and > 0 for a plant without dead time, not {tau_c}"
         raise LoopError(msg)
     speed = chosen + model.dead_time
