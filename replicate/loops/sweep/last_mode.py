@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
-SUSPECTED = 1e-11  # residual of the recurrence, of the largest deviation, with which a pole is looked for
-PROVEN = 4e-12  # residual of the fit with which it is the last one
+SUSPECTED = 4e-12  # residual of the recurrence, of the largest deviation, with which a pole is looked for
+PROVEN = 1e-12  # residual of the fit with which it is the last one
 
 
 @dataclass

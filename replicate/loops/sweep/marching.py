@@ -26,10 +26,10 @@ Flags = NDArray[np.bool_]
 POINTS = DEGREE + 1
 WEIGHTS = chebyshev.integration(DEGREE)[-1]
 LAST_ROWS = chebyshev.values_to_coefficients(DEGREE)[-2:]
-AT_REST = 4e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
+AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
 RESOLVED = 1e-12  # size of the last coefficients of a control signal, relative to its largest value
 STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
-MOST_PIECES = 2400  # a loop that is not at rest by then is left to the single loop
+MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
 FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
 WORTH = 0.1  # share of loops that must have left before the others move together
 
