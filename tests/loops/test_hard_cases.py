@@ -5,6 +5,7 @@ Expected values are closed forms, given with each test, or come from mpmath.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
@@ -28,7 +29,7 @@ NAN, INF = float("nan"), float("inf")
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
 def test_critically_damped_loop_has_its_double_pole(unit: float) -> None:
     # Ti = T leaves s + k e^{-s}, with k = 1/e a double zero at s = -1, on the cancelled pole of the plant
-    k = 1.0 / np.e
+    k = 1.0 / math.e
     loop = Loop(Plant.foptd(1.0, unit, unit), PI(k, k / unit))
     assert abs(loop.rightmost_pole() * unit + 1.0) < 1e-10
     assert loop.horizon() / unit == pytest.approx(38.0, rel=1e-3)
