@@ -29,7 +29,7 @@ def good(value=1.0):
     return pd.DataFrame({"x": [value]}, index=["a"])
 
 
-table = paper.table("table-1", "Numbers", rows=("a",), columns=("x",), printed=False)
+table = paper.table("table-1", "Numbers", rows=("a",), columns=(), printed=False)
 
 
 @table.reading("as-written", "As written")

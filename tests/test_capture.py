@@ -222,7 +222,7 @@ def test_the_svg_is_ready_for_a_page() -> None:
 
 def test_the_png_is_a_png_of_the_right_size() -> None:
     def draw(canvas: Canvas) -> None:
-        canvas.subplots()
+        canvas.subplots().plot([1, 2])
 
     png = capture("p", Figure("f", "figure", "t", draw, size=(3.0, 2.0))).png
     assert png.startswith(b"\x89PNG")

@@ -23,7 +23,7 @@ def formulas(text: str) -> str:
 
     Examples
     --------
-    >>> tex = '<annotation encoding="application/x-tex">a_{long} = b + \\\mathrm{something}</annotation>'
+    >>> tex = '<annotation encoding="application/x-tex">a_{long} = b + c, where c is something</annotation>'
     >>> math = "<mi>a</mi><mo>=</mo><mi>b</mi><mo>+</mo><mi>c</mi>"
     >>> formulas(f'<math display="inline"><semantics><mrow>{math}</mrow>{tex}</semantics></math>').count("<math")
     3

@@ -3,7 +3,7 @@
 >>> from replicate.handout.checking import Checker
 >>> check = Checker("bayhan")
 >>> check("pade-phase", {"low": 0.21})
-low: off by 130 %
+low: off by 180 %
 """
 
 from __future__ import annotations
@@ -122,4 +122,4 @@ def verdict(answer: Answer, stated: float) -> str:
     off = abs(stated - answer.value)
     if answer.value == 0.0:
         return f"off by {off:.2g}"
-    return f"off by {100.0 * off / abs(answer.value):.2g} %"
+    return f"off by {float(f'{100.0 * off / abs(answer.value):.2g}'):g} %"

@@ -33,7 +33,7 @@ class Form:
     >>> form = Form.of("bayhan", "2026 W", "Ada")
     >>> Form.read(str(form)) == form
     True
-    >>> print(Form.of("bayhan", "1", "Ada", (2, 4)))
+    >>> print(Form.of("bayhan", "1", "Ada Lovelace", (2, 4)))
     bayhan:2b6cdeb0ee62:1:2.4
     """
 

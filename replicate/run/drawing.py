@@ -43,8 +43,8 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     with style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = Canvas(figsize=exhibit.size)
         exhibit.draw(canvas)
-        _check_drawn(canvas)
         check_limits(canvas)
+        _check_drawn(canvas)
         rasterise_crowds(canvas)
         record = record_of(canvas)
         return FigureResult(
