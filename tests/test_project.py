@@ -98,6 +98,14 @@ def test_a_paper_with_the_name_of_a_library_is_refused(tmp_path: Path) -> None:
     ]
 
 
+def test_folders_one_after_the_other_have_papers_of_their_own(tmp_path: Path) -> None:
+    for folder, names in {"one": ("gauss", "euler"), "two": ("gauss",), "three": ("euler",)}.items():
+        for name in names:
+            new_paper(name, tmp_path / folder)
+        library = Library(folders=[tmp_path / folder])
+        assert (ids(library), library.broken) == (sorted(names), [])
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

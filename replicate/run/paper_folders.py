@@ -55,17 +55,18 @@ def _packages(folder: Path) -> list[Path]:
 
 
 def _forget(packages: list[Path]) -> None:
-    """Forget what was imported from these folders, or from another folder of papers under the name of one of them."""
+    """Forget what was imported from these folders, and from other folders of papers that have one of the same name."""
     names, roots = {package.name for package in packages}, {str(package.parent) for package in packages}
+    others = {root for root in _added - roots if any((Path(root) / name).is_dir() for name in names)}
     for name, module in list(sys.modules.items()):
         file = Path(getattr(module, "__file__", None) or "")
         root = next((root for root in _added if file.is_relative_to(root)), None)
-        if root is not None and (root in roots or name.partition(".")[0] in names):
+        if root is not None and (root in roots | others or name.partition(".")[0] in names):
             del sys.modules[name]
-    for root in _added - roots:
-        if any((Path(root) / name).is_dir() for name in names) and root in sys.path:
+    for root in others:
+        if root in sys.path:
             sys.path.remove(root)
-            _added.discard(root)
+        _added.discard(root)
 
 
 def _look_into(package: Path) -> Found | None:
