@@ -93,7 +93,7 @@ def _open_closed_streams() -> None:
     """Point streams that the caller has closed at nothing: else the next file that is opened would take their place."""
     if sys.stdin is None or sys.stdout is None or sys.stderr is None:
         while (descriptor := os.open(os.devnull, os.O_RDWR)) < 3:
-            pass
+            os.set_inheritable(descriptor, True)  # else they are closed again in the process that workers come from
         os.close(descriptor)
     if sys.stdout is None:
         sys.stdout = open(1, "w", encoding="utf-8", closefd=False)  # noqa: SIM115  -- for as long as the process
