@@ -41,11 +41,8 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
         Whatever the exhibit's own function raises.
     """
     with style(hashsalt=f"{paper}/{exhibit.id}"):
-        canvas = Canvas(figsize=exhibit.size)
-        exhibit.draw(canvas)
-        check_limits(canvas)
+        canvas = _drawn(exhibit)
         _check_drawn(canvas)
-        rasterise_crowds(canvas)
         record = record_of(canvas)
         return FigureResult(
             paper=paper,
@@ -56,6 +53,15 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
             axes=[dict(panel) for panel in record.panels],
             figure=dict(record.figure),
         )
+
+
+def _drawn(exhibit: Figure) -> Canvas:
+    """Let an exhibit draw; what is too large is refused, crowds of marks become pixels."""
+    canvas = Canvas(figsize=exhibit.size)
+    exhibit.draw(canvas)
+    check_limits(canvas)
+    rasterise_crowds(canvas)
+    return canvas
 
 
 def _check_drawn(canvas: Canvas) -> None:
@@ -86,10 +92,7 @@ def picture(paper: str, exhibit: Figure, kind: Literal["svg", "png"]) -> bytes:
         Whatever the exhibit's own function raises.
     """
     with style(hashsalt=f"{paper}/{exhibit.id}"):
-        canvas = Canvas(figsize=exhibit.size)
-        exhibit.draw(canvas)
-        check_limits(canvas)
-        rasterise_crowds(canvas)
+        canvas = _drawn(exhibit)
         return svg_text(canvas, exhibit.title).encode() if kind == "svg" else png_bytes(canvas)
 
 

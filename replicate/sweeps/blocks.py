@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from replicate.errors import OutputError
+from replicate.loops.sweep import sweep as compute
+from replicate.loops.sweep.sweep_result import GRID
 from replicate.sweeps.sweep_file import Block, SweepFile, as_axis
 
 if TYPE_CHECKING:
@@ -44,7 +46,7 @@ def file_name(block: Block, file_format: str) -> str:
 def rows_of(sweep: SweepFile, block: Block) -> int:
     """Return the number of loops in a block."""
     plants, controllers = block.plants[1] - block.plants[0], block.controllers[1] - block.controllers[0]
-    return plants * controllers if sweep.pairing == "grid" else plants
+    return plants * controllers if sweep.pairing == GRID else plants
 
 
 def compute_block(sweep: SweepFile, block: Block, file_format: str) -> bytes:
@@ -73,8 +75,6 @@ def _frame(sweep: SweepFile, block: Block) -> pd.DataFrame:
     import numpy as np
     import pandas as pd
 
-    from replicate.loops.sweep import sweep as compute
-
     plants, controllers = sweep.plants.members(*block.plants), sweep.controllers.members(*block.controllers)
     found = compute(
         as_axis(plants),
@@ -89,7 +89,7 @@ def _frame(sweep: SweepFile, block: Block) -> pd.DataFrame:
     for members, each, times in ((plants, wide, 1), (controllers, 1, high)):
         for name, values in members.items():
             array = np.array(values, dtype=object if isinstance(values[0], str) else float)
-            columns[name] = np.tile(np.repeat(array, each), times) if sweep.pairing == "grid" else array
+            columns[name] = np.tile(np.repeat(array, each), times) if sweep.pairing == GRID else array
     for name in dict.fromkeys((*sweep.metrics, "stable")):
         result = found[name].ravel()
         if np.iscomplexobj(result):

@@ -24,12 +24,16 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from replicate.errors import SweepFileError
+from replicate.loops.errors import LoopError
+from replicate.loops.sweep.axes import PLANT_COLUMNS, controller_axis, plant_axis
+from replicate.loops.sweep.metric_names import checked_metrics
+from replicate.loops.sweep.sweep_result import GRID, PAIRWISE
 from replicate.sweeps.sides import Refuse, Side, side_of
 
-PLANT = ("gain", "time_constant", "dead_time")
+PLANT = PLANT_COLUMNS[0]
 CONTROLLER = ("k", "ki", "kd", "b", "c", "derivative_filter", "setpoint_filter", "measurement_filter")
 METRICS = ("overshoot", "settling_time", "iae", "ms")
-PAIRINGS = ("grid", "pairwise")
+PAIRINGS = (GRID, PAIRWISE)
 BLOCK = 10_000
 _KEYS = ("plants", "controllers", "metrics", "pairing", "until", "band", "block")
 
@@ -63,7 +67,7 @@ class SweepFile:
     plants: Side
     controllers: Side
     metrics: tuple[str, ...]
-    pairing: str = "grid"
+    pairing: str = GRID
     until: float | None = None
     band: float = 0.02
     block: int = BLOCK
@@ -71,14 +75,14 @@ class SweepFile:
     @property
     def loops(self) -> int:
         """The number of loops."""
-        if self.pairing == "grid":
+        if self.pairing == GRID:
             return len(self.plants) * len(self.controllers)
         return max(len(self.plants), len(self.controllers))
 
     def blocks(self) -> Iterator[Block]:
         """Yield the blocks in order; each is a rectangle, so that plants and controllers are made once for each."""
         plants, controllers = len(self.plants), len(self.controllers)
-        if self.pairing == "pairwise":
+        if self.pairing == PAIRWISE:
             for number, first in enumerate(range(0, self.loops, self.block)):
                 last = min(first + self.block, self.loops)
                 yield Block(number, (first, last), (first, last))
@@ -112,9 +116,6 @@ def read_sweep_file(path: Path) -> SweepFile:
     SweepFileError
         If it cannot be read or is malformed; the message names file, line and what is allowed.
     """
-    from replicate.loops.errors import LoopError
-    from replicate.loops.sweep.metric_names import checked_metrics
-
     try:
         text = path.read_text(encoding="utf-8")
         data: dict[str, Any] = tomllib.loads(text)
@@ -146,7 +147,7 @@ def read_sweep_file(path: Path) -> SweepFile:
         side_of("plant", data["plants"], PLANT, refuse),
         side_of("controller", data["controllers"], CONTROLLER, refuse),
         checked,
-        data.get("pairing", PAIRINGS[0]),
+        data.get("pairing", GRID),
         data.get("until"),
         data.get("band", 0.02),
         data.get("block", BLOCK),
@@ -156,7 +157,7 @@ def read_sweep_file(path: Path) -> SweepFile:
 
 
 def _check_settings(data: dict[str, Any], refuse: Refuse) -> None:
-    if data.get("pairing", "grid") not in PAIRINGS:
+    if data.get("pairing", GRID) not in PAIRINGS:
         refuse("pairing", f"pairing is {data['pairing']!r}; allowed: {', '.join(PAIRINGS)}")
     for key in ("until", "band"):
         value = data.get(key, 1.0)
@@ -169,13 +170,10 @@ def _check_settings(data: dict[str, Any], refuse: Refuse) -> None:
 
 def _check_sides(sweep: SweepFile, refuse: Refuse) -> None:
     sizes = {len(sweep.plants), len(sweep.controllers)}
-    if sweep.pairing == "pairwise" and len(sizes) > 1:
+    if sweep.pairing == PAIRWISE and len(sizes) > 1:
         counts = f"{len(sweep.plants)} plants and {len(sweep.controllers)} controllers"
         refuse("pairing", f"pairs need as many plants as controllers, not {counts}")
     # A plant and a controller of each text, and the corners of each table, so that a slip is found at once.
-    from replicate.loops.errors import LoopError
-    from replicate.loops.sweep.axes import controller_axis, plant_axis
-
     for side, axis in ((sweep.plants, plant_axis), (sweep.controllers, controller_axis)):
         try:
             axis(as_axis(_corners(side)))
