@@ -102,6 +102,10 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
         tmp_path / "build/charts/krajewski-design-tau-0.35.svg"
     ).read_bytes()
     capsys.readouterr()
+    (tmp_path / "own.svg").write_text("mine", encoding="utf-8")
+    assert run("krajewski", "--out", "own.svg", "--chart=design", "--tau=0.35") == 2
+    assert "replicate: own.svg: is in the way" in capsys.readouterr().err
+    assert (tmp_path / "own.svg").read_text(encoding="utf-8") == "mine"
     assert run("krajewski", "--out", "mine.svg/a.svg", "--chart=design", "--tau=0.35") == 2
     assert capsys.readouterr().err.startswith("replicate: mine.svg: cannot be written: ")
     assert run("krajewski", "--tau", "0") == 2

@@ -79,7 +79,7 @@ def chart(
     Give them as --NAME VALUE; without any, the message lists those that the chart needs.
     """
     from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
-    from replicate.staging import replace_files, staged
+    from replicate.staging import signed, staged, write_signed
 
     within = library(papers_dir)
     owner = within.paper(paper)
@@ -91,9 +91,8 @@ def chart(
         folder = output_folder(within, None)
         with staged(folder, "charts", renews=lambda _: False) as fresh:  # earlier charts stay
             (fresh / "charts").mkdir()
-            (fresh / "charts" / file).write_bytes(content)
+            (fresh / "charts" / file).write_bytes(signed(content))
         out = folder / "charts" / file
     else:
-        place = out.resolve() if out.is_symlink() else out
-        replace_files(place.parent, {place.name: content})
+        write_signed(out, content)
     echo(f"chart: {out}")

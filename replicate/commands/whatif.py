@@ -19,7 +19,7 @@ def whatif(
     """Make a page in which a control loop can be tried out."""
     from replicate.loops.errors import LoopError
     from replicate.loops.notation import parse_controller, parse_plant
-    from replicate.staging import replace_files
+    from replicate.staging import write_signed
     from replicate.whatif import Row, whatif_page
 
     try:
@@ -28,5 +28,5 @@ def whatif(
         page = whatif_page([Row("as given", plant, controller)], title)
     except LoopError as error:
         raise ReplicateError(str(error)) from error
-    replace_files(out.parent, {out.name: page.encode()})
+    write_signed(out, page.encode())
     typer.echo(f"page: {out}")

@@ -5,13 +5,24 @@ journal is renamed into place: this one step decides. Before it everything can b
 carried out, by this run or, if it is killed, by the next one.
 
 `staged`            a part of an output folder, whose manifest tells which files earlier runs wrote
-`replace_files`     named files in any folder, for the accepted state, a chart, a new paper
+`replace_files`     named files in any folder, for the accepted state, a new paper
+`write_signed`      one file at a place that the user names: a chart, a page
 `keep_file`         one more file in a folder that a run holds with `locked_folder`, for sweeps
 `files_of`          what earlier runs wrote
 `finish_interrupted` before reading a folder that another run may have been killed in
 """
 
 from replicate.staging.kept import keep_file, locked_folder
+from replicate.staging.signatures import signed, write_signed
 from replicate.staging.stage import files_of, finish_interrupted, replace_files, staged
 
-__all__ = ["files_of", "finish_interrupted", "keep_file", "locked_folder", "replace_files", "staged"]
+__all__ = [
+    "files_of",
+    "finish_interrupted",
+    "keep_file",
+    "locked_folder",
+    "replace_files",
+    "signed",
+    "staged",
+    "write_signed",
+]
