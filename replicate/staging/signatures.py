@@ -51,7 +51,7 @@ def is_signed(content: bytes) -> bool:
         cut = len(content) - len(_END) - _CHUNK
         return cut > 0 and signed(content[:cut] + _END) == content
     found = _COMMENT.search(content)
-    return bool(found) and _digest(content[: found.start()]) == found[1]
+    return found is not None and _digest(content[: found.start()]) == found[1]
 
 
 def write_signed(path: Path, content: bytes) -> None:
