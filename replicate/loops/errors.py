@@ -33,6 +33,9 @@ class TuningRuleError(LoopError):
     """A tuning rule is incomplete, cannot be read, or lacks a parameter."""
 
 
+_AROUND = 100  # characters that are quoted on either side of a column
+
+
 class NotationError(LoopError):
     """A text that should name a plant or a controller does not; the message names the column.
 
@@ -54,4 +57,8 @@ class NotationError(LoopError):
 
     def __str__(self) -> str:
         what, text, column, reason = self.args
-        return f"{what} '{''.join(' ' if c.isspace() else c for c in text)}', column {column}: {reason}"
+        first, last = max(0, column - 1 - _AROUND), column + _AROUND
+        if first + len(text[last:]) <= len("……"):  # shortening would not make it shorter
+            first, last = 0, len(text)
+        quoted = "…" * (first > 0) + text[first:last] + "…" * (last < len(text))
+        return f"{what} '{''.join(' ' if c.isspace() else c for c in quoted)}', column {column}: {reason}"

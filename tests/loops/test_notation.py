@@ -174,6 +174,22 @@ def test_a_slip_in_a_plant_is_one_line_with_its_column(text: str, column: int, r
     assert str(caught.value).startswith(f"plant '{text}', column {column}: ")
 
 
+@pytest.mark.parametrize("text", ["e^{-s}" * 3000, "+".join(["1/(s+1)"] * 3000), "-" * 100_000, "s" * 100_000])
+def test_a_text_without_end_is_one_short_line(text: str) -> None:
+    with pytest.raises(NotationError) as caught:
+        parse_plant(text)
+    assert len(str(caught.value)) < 400
+    assert caught.value.text == text
+
+
+@pytest.mark.parametrize("column", [1, 150, 999])
+def test_of_a_long_text_the_surroundings_are_quoted(column: int) -> None:
+    text = "".join(chr(ord("a") + place % 26) for place in range(1000))
+    said = str(NotationError("plant", text, column, "no"))
+    assert text[column - 1 : column + 90] in said
+    assert len(said) < 250
+
+
 @pytest.mark.parametrize(
     ("text", "column", "reason"),
     [

@@ -20,6 +20,9 @@ from replicate.loops.notation.tokens import Token, refuse, tokens
 
 CLOSING = {"(": ")", "{": "}", "[": "]"}
 DEEPEST = 40
+LONGEST = 300  # operations: every later step calls itself once for each that is nested in another
+
+_OPERATIONS = {"+", "-", "*", "/", "^", "name", "\\frac"}
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,11 @@ def parse(text: str, what: str = "plant") -> Node:
     """
     if not isinstance(text, str):
         refuse(what, str(text), 1, f"a text is needed, not {type(text).__name__}")
-    return _Parser(text, what).whole()
+    found = _Parser(text, what)
+    count = sum(token.kind in _OPERATIONS for token in found.tokens)
+    if count > LONGEST:
+        found.fail(f"more than {LONGEST} operations and names")
+    return found.whole()
 
 
 class _Parser:
