@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import pandas as pd
 
 from replicate.figures import style
+from replicate.figures.one_layout import laid_out
 from replicate.figures.record import Record
 
 if TYPE_CHECKING:
@@ -30,12 +31,35 @@ def curves_frame(record: Record) -> pd.DataFrame:
 
 def svg_text(canvas: Canvas, title: str) -> str:
     """Return a drawn figure as a transparent SVG without date and versions."""
+    with laid_out(canvas):
+        return _svg(canvas, title)
+
+
+def png_bytes(canvas: Canvas) -> bytes:
+    """Return a drawn figure as a PNG on white, without versions."""
+    with laid_out(canvas):
+        return _png(canvas)
+
+
+def svg_and_png(canvas: Canvas, title: str) -> tuple[str, bytes]:
+    """Return what `svg_text` and `png_bytes` return, at the cost of little more than one of them."""
+    with laid_out(canvas):
+        return _svg(canvas, title), _png(canvas)
+
+
+def _svg(canvas: Canvas, title: str) -> str:
     buffer = io.StringIO()
     unknown = dict.fromkeys(("Date", "Creator", "Format", "Type"))
     canvas.savefig(buffer, format="svg", transparent=True, metadata={**unknown, "Title": title})
     svg = _safe(_settled_ids(buffer.getvalue())).replace("#000000", style.INK)
     # matplotlib writes no fill for black shapes and texts: let them inherit the ink colour.
     return svg.replace("<g ", f'<g fill="{style.INK}" ', 1)
+
+
+def _png(canvas: Canvas) -> bytes:
+    buffer = io.BytesIO()
+    canvas.savefig(buffer, format="png", dpi=style.PNG_DPI, facecolor="white", metadata={"Software": None})
+    return buffer.getvalue()
 
 
 def _safe(svg: str) -> str:
@@ -72,10 +96,3 @@ def _settled_ids(svg: str) -> str:
         return names.setdefault(match[0], match[0][0] + hashlib.sha256(order).hexdigest()[:10])
 
     return re.sub(r"(?<=[\"#])[a-z][0-9a-f]{10}(?=[\")])", settled, svg)
-
-
-def png_bytes(canvas: Canvas) -> bytes:
-    """Return a drawn figure as a PNG on white, without versions."""
-    buffer = io.BytesIO()
-    canvas.savefig(buffer, format="png", dpi=style.PNG_DPI, facecolor="white", metadata={"Software": None})
-    return buffer.getvalue()

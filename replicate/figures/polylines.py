@@ -13,11 +13,13 @@ Processing 1(3), 1972. Douglas and Peucker, Cartographica 10(2), 1973.
 from __future__ import annotations
 
 import heapq
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 Points = NDArray[np.float64]
+_Chord = tuple[float, int, int, int]  # minus the largest distance, start, index of the point that far off, end
 
 #: Of the curves that are stored, a dropped point lies within this fraction of the axes from the thinned curve.
 THINNING = 5e-5
@@ -56,22 +58,47 @@ def simplify(points: Points, tolerance: float, most: int) -> tuple[NDArray[np.in
         return np.arange(last + 1), 0.0
     kept = {0, last}
     # Ties are broken by position, so the choice does not depend on the order in which chords were split.
-    heap = [_worst(points, 0, last)]
+    heap = _worst(points, [(0, last)])
+    halves: dict[_Chord, list[_Chord]] = {}
     while heap and len(kept) < most and -heap[0][0] > tolerance:
-        _, start, split, end = heapq.heappop(heap)
-        kept.add(split)
-        for low, high in ((start, split), (split, end)):
-            if high - low > 1:
-                heapq.heappush(heap, _worst(points, low, high))
+        chord = heapq.heappop(heap)
+        kept.add(chord[2])
+        if chord not in halves:  # with those that will probably follow: many at once cost hardly more than one
+            halves |= _halves(points, [chord, *(one for one in heap if -one[0] > tolerance and one not in halves)])
+        for half in halves.pop(chord):
+            heapq.heappush(heap, half)
     return np.array(sorted(kept)), -heap[0][0] if heap else 0.0
 
 
-def _worst(points: Points, start: int, end: int) -> tuple[float, int, int, int]:
-    """Return (minus the largest distance from the chord, start, index of that point, end)."""
-    inner = points[start + 1 : end]
-    distance = distance_to_segments(inner, points[start : start + 1], points[end : end + 1])[:, 0]
-    worst = int(np.argmax(distance))
-    return -float(distance[worst]), start, start + 1 + worst, end
+def _halves(points: Points, chords: Sequence[_Chord]) -> dict[_Chord, list[_Chord]]:
+    """Return the two parts into which the worst point cuts each chord, without those that replace no point."""
+    parts = [
+        [(low, high) for low, high in ((start, split), (split, end)) if high - low > 1]
+        for _, start, split, end in chords
+    ]
+    worst = iter(_worst(points, [part for both in parts for part in both]))
+    return {chord: [next(worst) for _ in both] for chord, both in zip(chords, parts, strict=True)}
+
+
+def _worst(points: Points, chords: Sequence[tuple[int, int]]) -> list[_Chord]:
+    """Return (minus the largest distance from the chord, start, index of that point, end) of every chord."""
+    if not chords:
+        return []
+    starts, ends = np.array(chords).T
+    inner = ends - starts - 1
+    first = np.r_[0, np.cumsum(inner)[:-1]]
+    whose = np.repeat(np.arange(len(chords)), inner)
+    index = np.arange(len(whose)) + (starts + 1 - first)[whose]
+    along = points[ends] - points[starts]
+    squared = np.einsum("ij,ij->i", along, along)
+    offset = points[index] - points[starts][whose]
+    projection = np.einsum("ij,ij->i", offset, along[whose])
+    fraction = np.clip(projection / np.where(squared > 0.0, squared, 1.0)[whose], 0.0, 1.0)
+    distance = np.linalg.norm(offset - fraction[:, None] * along[whose], axis=-1)
+    largest = np.maximum.reduceat(distance, first)
+    at = np.flatnonzero(distance == largest[whose])
+    split = index[at[np.unique(whose[at], return_index=True)[1]]]
+    return list(zip((-largest).tolist(), starts.tolist(), split.tolist(), ends.tolist(), strict=True))
 
 
 def distance_to_segments(points: Points, starts: Points, ends: Points) -> Points:

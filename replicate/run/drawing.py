@@ -16,7 +16,7 @@ from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
 from replicate.figures import capture as record_of
 from replicate.figures.limits import check_limits, rasterise_crowds
-from replicate.figures.off_screen import curves_frame, png_bytes, svg_text
+from replicate.figures.off_screen import curves_frame, png_bytes, svg_and_png, svg_text
 from replicate.figures.style import style
 
 
@@ -44,11 +44,12 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
         canvas = _drawn(exhibit)
         _check_drawn(canvas)
         record = record_of(canvas)
+        svg, png = svg_and_png(canvas, exhibit.title)
         return FigureResult(
             paper=paper,
             exhibit=exhibit.id,
-            svg=svg_text(canvas, exhibit.title),
-            png=png_bytes(canvas),
+            svg=svg,
+            png=png,
             curves=curves_frame(record),
             axes=[dict(panel) for panel in record.panels],
             figure=dict(record.figure),

@@ -1,0 +1,129 @@
+"""Lay a figure out once and draw it twice, as shapes and as pixels.
+
+matplotlib lays a figure out anew for every file, because each kind measures texts in its own way: pixels with hinted
+letters, shapes with outlines. Here texts are outlines in both, so that their sizes are the same and one layout serves.
+What costs most in a layout is to read ``$...$``; what has been read is remembered for as long as the process lives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
+
+import matplotlib as mpl
+from matplotlib.backend_bases import RendererBase
+from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
+from matplotlib.backends.backend_mixed import MixedModeRenderer
+from matplotlib.backends.backend_svg import RendererSVG
+from matplotlib.figure import Figure
+from matplotlib.mathtext import MathTextParser
+from matplotlib.textpath import TextToPath
+
+if TYPE_CHECKING:
+    from matplotlib.mathtext import VectorParse
+
+    _PathParser = MathTextParser[VectorParse]
+else:
+    _PathParser = MathTextParser
+
+_POINTS = 72  # of an inch: the resolution of an SVG
+_MOST_REMEMBERED = 20_000
+_SETTINGS = ("mathtext.", "font.", "text.")
+
+
+class _RememberingParser(_PathParser):
+    """Reads mathematical text once, however often it is asked for and at whatever size."""
+
+    def __init__(self) -> None:
+        super().__init__("path")
+        self._settings: tuple[str, ...] = ()
+        self._read: dict[tuple[Any, ...], Any] = {}
+
+    def parse(self, s: str, dpi: float = _POINTS, prop: Any = None, **options: Any) -> Any:
+        key = (s, dpi, None if prop is None else prop.copy(), *options.values())
+        if key not in self._read:
+            self._read[key] = super().parse(s, dpi, prop, **options)
+        return self._read[key]
+
+    def settle(self) -> None:
+        """Forget what was read with other settings."""
+        settings = tuple(f"{name}: {value}" for name, value in mpl.rcParams.items() if name.startswith(_SETTINGS))
+        if settings != self._settings or len(self._read) > _MOST_REMEMBERED:
+            self._settings = settings
+            self._read.clear()
+
+
+_PARSER = _RememberingParser()
+_OUTLINES = TextToPath()
+_OUTLINES.mathtext_parser = _PARSER
+
+
+class _Pixels(RendererAgg):
+    """Draws pixels, texts as the outlines of their letters."""
+
+    def __init__(self, width: float, height: float, dpi: float) -> None:
+        super().__init__(width, height, dpi)  # type: ignore[no-untyped-call]
+        self._text2path = _OUTLINES
+
+    def draw_text(self, *arguments: Any, **options: Any) -> None:
+        RendererBase.draw_text(self, *arguments, **options)
+
+    def draw_tex(self, *arguments: Any, **options: Any) -> None:
+        RendererBase.draw_tex(self, *arguments, **options)
+
+    def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> tuple[float, float, float]:
+        width, height, descent = _OUTLINES.get_text_width_height_descent(s, prop, ismath)
+        scale = self.dpi / _POINTS
+        return width * scale, height * scale, descent * scale
+
+
+class _Shapes(RendererSVG):
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)  # type: ignore[no-untyped-call]
+        self._text2path = _OUTLINES
+
+
+class _Canvas(FigureCanvasAgg):
+    """Writes PNG and SVG."""
+
+    _pixels: _Pixels | None = None
+
+    def get_renderer(self) -> _Pixels:
+        width, height = self.get_width_height(physical=True)
+        here, dpi = self._pixels, self.figure.dpi
+        if here is None or (here.width, here.height, here.dpi) != (width, height, dpi):
+            self._pixels = here = _Pixels(width, height, dpi)
+        return here
+
+    def print_svg(self, file: Any, *, metadata: Any = None, **_: Any) -> None:
+        """Write to an open text file; as matplotlib's own, but for the renderer."""
+        dpi, self.figure.dpi = self.figure.dpi, _POINTS
+        width, height = self.figure.get_size_inches()
+        shapes = _Shapes(width * _POINTS, height * _POINTS, file, image_dpi=dpi, metadata=metadata)
+        renderer: Any = MixedModeRenderer(self.figure, width, height, dpi, shapes)  # type: ignore[no-untyped-call]
+        self.figure.draw(renderer)
+        renderer.finalize()
+
+
+@contextmanager
+def laid_out(figure: Figure) -> Iterator[None]:
+    """Place the parts of a figure; inside the ``with`` block, saving it as SVG or PNG only draws."""
+    engine, canvas, dpi = figure.get_layout_engine(), figure.canvas, figure.dpi
+    _PARSER.settle()
+    _Canvas(figure)  # which makes itself the figure's
+    try:
+        # A file that has been saved leaves the figure with the layout engine of the settings: none, for this while.
+        with mpl.rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
+            if engine is not None:
+                figure.dpi = _POINTS
+                with suppress(ValueError):  # as `Figure.draw` does
+                    engine.execute(figure)
+                figure.dpi = dpi
+                figure.set_layout_engine(None)
+            yield
+    finally:
+        figure.dpi = dpi
+        figure.set_canvas(canvas)
+        if engine is not None:
+            figure.set_layout_engine(engine)
