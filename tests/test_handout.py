@@ -20,6 +20,7 @@ from replicate.handout.edition import Document, edition
 from replicate.handout.formulas import convert
 from replicate.handout.printout import markup, pdf
 from replicate.handout.row_heads import with_row_heads
+from replicate.handout.slides import slides
 from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
 from replicate.run.library import Library
@@ -100,7 +101,7 @@ def make(tmp_path: Path) -> Make:
 
 # What each handout asks for; computing the other exhibits of the papers would take minutes.
 ASKED = {
-    "ali": ("table-1", "ms-count", "stability", "fig-1"),
+    "ali": ("table-1", "table-2", "ms-count", "stability", "fig-1"),
     "bayhan": ("table-2", "fig-2", "sample-grid", "match-count", "claims"),
     "khan": ("table-1", "table-2", "eq-7", "lost-zeros", "fig-8a"),
     "krajewski": ("table-1", "table-1-errors", "table-1-residuals", "fig-5"),
@@ -170,6 +171,16 @@ def test_pdfs_are_accessible_and_say_where_they_come_from(made: Made) -> None:
         spoken = re.findall(rb"/Type/StructElem/S/(?:Figure|Formula)\b.*?endobj", content, re.DOTALL)
         assert len(spoken) > 20
         assert all(re.search(rb"/Alt[(<]", element) for element in spoken)
+
+
+def test_slides_tell_the_story_with_numbers_of_the_results(made: Made) -> None:
+    outcome = made.outcome
+    document = edition(outcome.papers[0], outcome.results, outcome.judgement.verdicts, solutions=False, kind="slides")
+    content = slides(document)
+    headings = [element for element in elements(document.blocks) if element["t"] == "Header"]
+    assert pages(content) == 1 + len(headings) == len(document.drawings)
+    assert b"<pdfuaid:part>1</pdfuaid:part>" in content
+    assert all(drawing.alt for drawing in document.drawings.values())
 
 
 def test_tables_have_heads_for_columns_and_rows(made: Made) -> None:

@@ -140,7 +140,14 @@ def test_failures_are_not_kept(paper: Paper, tmp_path: Path, monkeypatch: pytest
 
 @pytest.mark.parametrize(
     ("name", "kept"),
-    [("ledger.toml", True), ("notes.md", True), ("exhibits.py", False), ("printed/table-1.csv", False)],
+    [
+        ("ledger.toml", True),
+        ("notes.md", True),
+        ("slides.md", True),
+        ("handout.de.md", True),
+        ("exhibits.py", False),
+        ("printed/table-1.csv", False),
+    ],
 )
 def test_a_source_makes_results_stale_and_prose_does_not(
     paper: Paper, folder: Path, tmp_path: Path, name: str, *, kept: bool

@@ -21,7 +21,10 @@ def handout(
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
     format: Annotated[  # noqa: A002
-        str, typer.Option("--format", help="pdf, html, docx, tex, typ, ipynb; for learning platforms moodle or qti.")
+        str,
+        typer.Option(
+            "--format", help="pdf, html, docx, tex, typ, ipynb, slides; for learning platforms moodle or qti."
+        ),
     ] = "pdf",
     variants: Annotated[
         int | None, typer.Option("--variants", min=1, help="A class set: so many sheets, each with its own numbers.")
@@ -59,6 +62,7 @@ def handout(
     """
     from replicate.handout import (
         BANKS,
+        SLIDES,
         ClassSet,
         Form,
         Sheet,
@@ -82,15 +86,19 @@ def handout(
     own = tuple(one for folder in exercises or () for one in own_exercises(folder))
     sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language), own)
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
-    chosen = with_handout(run.within.papers(given), all_needed=bool(given))
     file_format = checked_format(format)
+    chosen = with_handout(run.within.papers(given), all_needed=bool(given), file_format=file_format)
     class_options = {"--variants": variants, "--roster": roster, "--form": form, "--stress": stress}
     kinds = [name for name, value in class_options.items() if value is not None]
+    if file_format == SLIDES:
+        about_exercises = {"--select": select, "--points": points, "--exercises": exercises, "--solutions": solutions}
+        _check_no_exercises([*kinds, *(name for name, value in about_exercises.items() if value)])
     if kinds:
         _check_class_options(kinds, len(chosen), again is not None and file_format in BANKS, papers)
         varying(chosen[0], own)
     for paper in chosen:
-        check_sheet(paper, sheet)
+        if file_format != SLIDES:
+            check_sheet(paper, sheet)
     if stress is not None:
         for variation in varying(chosen[0], own).variations.values():
             for line in stressed(variation, stress):
@@ -135,6 +143,13 @@ def _check_class_options(kinds: list[str], papers: int, one_in_a_bank: bool, giv
         raise ReplicateError(msg)
     if one_in_a_bank:
         msg = "--form makes one sheet again; a file of questions is about a class: use --variants or --roster"
+        raise ReplicateError(msg)
+
+
+def _check_no_exercises(given: list[str]) -> None:
+    """Refuse options that slides have no use for."""
+    if given:
+        msg = f"{given[0]} is about exercises, and slides have none"
         raise ReplicateError(msg)
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
-from replicate.handout.edition import FILE, edition
-from replicate.handout.formats import BANKS, EDITIONS, named
+from replicate.handout.edition import TEXT, edition
+from replicate.handout.formats import BANKS, EDITIONS, SLIDES, named
 from replicate.handout.own_exercises import with_own
 from replicate.handout.placing import exercises_of
 from replicate.handout.questions import questions_of
@@ -58,6 +58,13 @@ def build_handouts(
     made: dict[str, bytes] = {}
     own = sheet.own if sheet else ()
     for paper in papers:
+        if file_format == SLIDES:
+            from replicate.handout.slides import slides
+
+            made[f"{paper.id}-slides.pdf"] = slides(
+                edition(paper, results, verdicts, solutions=False, sheet=sheet, kind=SLIDES)
+            )
+            continue
         for variation in with_own(exercises_of(paper), own).variations.values():
             files = variation.files(variation.original)
             made |= {f"{paper.id}-{name}": text.encode() for name, text in files.items()}
@@ -76,17 +83,18 @@ def build_handouts(
     return [folder / name for name in made]
 
 
-def with_handout(papers: Sequence[Paper], *, all_needed: bool = False) -> list[Paper]:
-    """Return the papers that have a handout.
+def with_handout(papers: Sequence[Paper], *, all_needed: bool = False, file_format: str = "pdf") -> list[Paper]:
+    """Return the papers that have a handout, or slides if that is the format.
 
     Raises
     ------
     TemplateError
         If none has one, or `all_needed` and one has none.
     """
-    found = [paper for paper in papers if (paper.folder() / FILE).is_file()]
+    kind = SLIDES if file_format == SLIDES else TEXT
+    found = [paper for paper in papers if (paper.folder() / f"{kind}.md").is_file()]
     missing = [paper.id for paper in papers if paper not in found]
     if missing and (all_needed or not found):
-        msg = f"{missing[0]}/{FILE}: the paper has no handout"
+        msg = f"{missing[0]}/{kind}.md: the paper has no {kind}"
         raise TemplateError(msg)
     return found

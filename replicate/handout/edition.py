@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib.resources.abc import Traversable
-from pathlib import Path
 from typing import Any
 
 from replicate.errors import TemplateError
@@ -27,7 +26,7 @@ from replicate.handout.tree import Blocks, Element, attribute, classes, div, ele
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import VerdictRow
 
-FILE = "handout.md"
+TEXT = "handout"  # the name of the text, without the ending
 AT_ONCE = 25  # documents in one call of pandoc
 
 _MARK = re.compile(f"{OPEN}(\\d+){CLOSE}")
@@ -52,6 +51,8 @@ class Document:
         What a lecturer set besides.
     language
         Of the text; the words besides are in that of `sheet`.
+    source
+        What messages call its text.
     """
 
     paper: Paper
@@ -63,6 +64,7 @@ class Document:
     form: str = ""
     sheet: Sheet = field(default_factory=Sheet)
     language: Language = field(default_factory=lambda: language("en"))
+    source: str = ""
 
 
 def edition(
@@ -74,6 +76,7 @@ def edition(
     form: Form | None = None,
     sheet: Sheet | None = None,
     shared: dict[str, Any] | None = None,
+    kind: str = TEXT,
 ) -> Document:
     """Make one edition of a paper's handout.
 
@@ -89,11 +92,13 @@ def edition(
         What a lecturer sets besides.
     shared
         Kept from one form to the next: what does not vary.
+    kind
+        Which text of the paper: its handout or its slides.
 
     Raises
     ------
     TemplateError
-        If there is no handout, the text asks for something that does not exist, a program in it fails, or a
+        If there is no such text, the text asks for something that does not exist, a program in it fails, or a
         formula cannot be converted. The message names file, line and what is wrong.
     ReplicateError
         If what is set for the sheet does not go with the text.
@@ -106,6 +111,7 @@ def edition(
         forms=[form],
         sheet=sheet,
         shared={} if shared is None else shared,
+        kind=kind,
     )
     return made
 
@@ -119,13 +125,14 @@ def editions(
     forms: Sequence[Form | None],
     sheet: Sheet | None,
     shared: dict[str, Any],
+    kind: str = TEXT,
 ) -> list[Document]:
     """Make one edition for each of several forms, in few calls of pandoc; `edition` says more."""
     sheet = sheet or Sheet()
-    file, text_language = _file(paper, sheet.language)
+    file, text_language = _file(paper, sheet.language, kind)
     source = display_name(file)
     if not file.is_file():
-        msg = f"{source}: the paper has no handout"
+        msg = f"{source}: the paper has no {kind}"
         raise TemplateError(msg)
     content = read_text(file, source, TemplateError)
     placings = [Placing(paper, results, verdicts, form.draw if form else "", shared, sheet.own) for form in forms]
@@ -160,6 +167,7 @@ def editions(
             str(form) if form else "",
             sheet,
             text_language,
+            source,
         )
         for form, placing, (title, blocks), some in zip(forms, placings, found, formulas, strict=True)
     ]
@@ -206,10 +214,10 @@ def without_solutions(document: Document) -> Document:
     return replace(document, solutions=False, blocks=blocks, formulas=kept, drawings=drawings)
 
 
-def _file(paper: Paper, wanted: Language) -> tuple[Traversable, Language]:
+def _file(paper: Paper, wanted: Language, kind: str) -> tuple[Traversable, Language]:
     """Return the text in the language wanted if there is one, otherwise the English one."""
-    translated = paper.folder() / f"{Path(FILE).stem}.{wanted.tag}.md"
-    return (translated, wanted) if translated.is_file() else (paper.folder() / FILE, language("en"))
+    translated = paper.folder() / f"{kind}.{wanted.tag}.md"
+    return (translated, wanted) if translated.is_file() else (paper.folder() / f"{kind}.md", language("en"))
 
 
 def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from replicate.handout.edition import Document
     from replicate.handout.questions import Question
 
+#: The story in pictures, one file for each paper, without exercises.
+SLIDES = "slides"
+
 #: The files of one edition: by what follows the edition's name in theirs, or by a whole name if it does not begin with
 #: a dot or a hyphen.
 Files = dict[str, bytes]
@@ -91,7 +94,7 @@ def checked_format(text: str) -> str:
     ReplicateError
         If there is not.
     """
-    known = [*EDITIONS, *BANKS]
+    known = [*EDITIONS, SLIDES, *BANKS]
     if text in known:
         return text
     msg = f"the format is '{text}', allowed: {', '.join(known)}"

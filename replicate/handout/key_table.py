@@ -7,14 +7,12 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from replicate.display.numbers import aligned
-from replicate.display.tables import Cell, TableView, Value, table_view
+from replicate.display.tables import Cell, TableView, Value
 from replicate.display.words import MATCHES, VERDICTS
 from replicate.errors import TemplateError
 from replicate.exhibits import Table
 from replicate.exhibits.numerals import MINUS
-from replicate.exhibits.results import TableResult
 from replicate.handout.tree import Element, inlines, plain, span, string
-from replicate.verdicts.rows import VerdictRow
 
 # What the signs say to a reader who has not seen the report; a verdict of no more words is its own name.
 _MATCHES = {
@@ -57,7 +55,7 @@ class Choice:
     transposed: bool = False
 
 
-def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow], choice: Choice) -> Element:
+def key_table(view: TableView, choice: Choice) -> Element:
     """Return the table as an element of pandoc's document tree, without its caption.
 
     Raises
@@ -65,9 +63,9 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
     TemplateError
         If a row, column or reading does not exist.
     """
-    view = table_view(table, result, verdicts)
+    table = view.table
     if choice.transposed:
-        view = _transposed(view)
+        view = transposed_view(view)
     if choice.digits:
         view = replace(view, rows=_rounded(view.rows, choice))
     columns = _chosen("column", choice.columns, view.columns)
@@ -111,7 +109,7 @@ def key_table(table: Table, result: TableResult, verdicts: Sequence[VerdictRow],
 def legend(view: TableView, choice: Choice) -> list[Element]:
     """Return what bold type and the signs in the shown cells mean, as sentences of inline content."""
     if choice.transposed:
-        view = _transposed(view)
+        view = transposed_view(view)
     columns, rows = choice.columns or view.columns, choice.rows or [row for row, _ in view.rows]
     shown = [
         cell
@@ -149,7 +147,7 @@ def _listed(signs: Sequence[tuple[Element, str]]) -> list[Element]:
     return out
 
 
-def _transposed(view: TableView) -> TableView:
+def transposed_view(view: TableView) -> TableView:
     """Return the table with rows and columns exchanged, decimal points of the new columns in line."""
     rows = [(column, [cells[place] for _, cells in view.rows]) for place, column in enumerate(view.columns)]
     return replace(view, columns=[row for row, _ in view.rows], rows=_lined_up(rows))

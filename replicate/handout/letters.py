@@ -53,7 +53,7 @@ def check_letters(text: str, document: Document, name: str) -> None:
     if not unknown:
         return
     missing = next(letter for letter in text if letter in unknown)
-    source = read_text(document.paper.folder() / "handout.md", name, TemplateError)
+    source = read_text(document.paper.folder() / Path(name).name, name, TemplateError)
     place = f"{name}:{source.count(chr(10), 0, source.index(missing)) + 1}" if missing in source else name
     words = f"U+{ord(missing):04X} {unicodedata.name(missing, '')}".strip()
     msg = f"{place}: no font at hand has the letter '{missing}' ({words}); a web page (--format html) can show it"

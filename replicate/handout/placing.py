@@ -6,6 +6,9 @@ transposed=False)``
 ``figure(name, width=1.0, size=None)``
     a figure of the paper or of the handout's own, as a vector drawing; with a size in inches
     it is drawn anew at that size;
+``dots(exhibit, columns=[...], rows=[...], readings={id: words}, labels={key: text}, printed="as printed",
+axis="", log=False, transposed=False, size=(6.2, 2.8))``
+    a table as a figure: for each row a ring for what is printed and a dot for what each reading computes;
 ``inputs(name)``
     the numbers of an exercise whose numbers vary, by their names;
 ``stated(name)``
@@ -32,13 +35,15 @@ from typing import Any, Literal
 
 from replicate.display.addresses import TRIALS, trial_address, trial_label
 from replicate.display.inline_svg import description
-from replicate.display.tables import table_view
+from replicate.display.tables import TableView, table_view
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.exhibits.variants import Inputs, Variation
-from replicate.handout.key_table import Choice, key_table, legend
+from replicate.handout.dots import DotChoice, dot_figure
+from replicate.handout.formula_numbers import fixed, percent, tex
+from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.tree import Element
 from replicate.run import drawing
@@ -119,6 +124,7 @@ class Placing:
         return {
             "table": self.table,
             "figure": self.figure,
+            "dots": self.dots,
             "answer": self.answer,
             "inputs": self.inputs,
             "stated": self.stated,
@@ -210,23 +216,55 @@ class Placing:
         return self._mark(self.shared[key])
 
     def _table(self, exhibit: str, choice: Choice) -> Placed:
-        found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
-        if not isinstance(found, Table) or not isinstance(result, TableResult):
-            known = [id for id, other in self.paper.exhibits.items() if isinstance(other, Table)]
-            msg = f"table('{exhibit}'): no such table was computed; the paper has: {_listed(known)}"
-            raise TemplateError(msg)
-        if result.errors:
-            reading, why = next(iter(result.errors.items()))
-            msg = f"table('{exhibit}'): the reading '{reading}' failed: {why}"
-            raise TemplateError(msg)
-        verdicts = [row for row in self.verdicts if row.paper == self.paper.id and row.exhibit == exhibit]
+        view = self._view("table", exhibit)
         try:
-            placed = key_table(found, result, verdicts, choice)
+            placed = key_table(view, choice)
         except TemplateError as error:
             msg = f"table('{exhibit}'): {error}"
             raise TemplateError(msg) from error
-        signs = legend(table_view(found, result, verdicts), choice) if choice.printed else []
-        return Placed(placed, signs)
+        return Placed(placed, legend(view, choice) if choice.printed else [])
+
+    def dots(
+        self,
+        exhibit: str,
+        columns: Sequence[str] = (),
+        rows: Sequence[str] = (),
+        readings: Mapping[str, str] | None = None,
+        labels: Mapping[str, str] | None = None,
+        printed: str = "as printed",
+        axis: str = "",
+        log: bool = False,
+        transposed: bool = False,
+        size: tuple[float, float] = (6.2, 2.8),
+    ) -> str:
+        """Place a table of the paper as a figure; it is the same on all sheets."""
+        choice = DotChoice(columns, rows, readings or {}, labels or {}, printed, axis, log)
+        key, name = f"dots {exhibit} {choice} {transposed} {size}", f"dots-{len(self.things)}"
+        if key not in self.shared:
+            view = self._view("dots", exhibit)
+            view = transposed_view(view) if transposed else view
+            try:
+                drawn = dot_figure(view, choice, name, size)
+            except TemplateError as error:
+                msg = f"dots('{exhibit}'): {error}"
+                raise TemplateError(msg) from error
+            with _said_by(f"dots('{exhibit}')"):
+                self.shared[key] = drawing.capture(f"{self.paper.id}-handout", drawn), drawn.alt
+        result, alt = self.shared[key]
+        return self._mark(Drawing(name, result.svg, result.png, alt, min(1.0, size[0] / TEXT_WIDTH)))
+
+    def _view(self, function: str, exhibit: str) -> TableView:
+        found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
+        if not isinstance(found, Table) or not isinstance(result, TableResult):
+            known = [id for id, other in self.paper.exhibits.items() if isinstance(other, Table)]
+            msg = f"{function}('{exhibit}'): no such table was computed; the paper has: {_listed(known)}"
+            raise TemplateError(msg)
+        if result.errors:
+            reading, why = next(iter(result.errors.items()))
+            msg = f"{function}('{exhibit}'): the reading '{reading}' failed: {why}"
+            raise TemplateError(msg)
+        verdicts = [row for row in self.verdicts if row.paper == self.paper.id and row.exhibit == exhibit]
+        return table_view(found, result, verdicts)
 
     def figure(self, name: str, width: float = 1.0, size: tuple[float, float] | None = None) -> str:
         """Place a figure of the handout's own, or else one of the paper."""
@@ -298,42 +336,6 @@ def _said_by(call: str) -> Iterator[None]:
     except Exception as error:
         msg = f"{call} failed: {type(error).__name__}: {error}"
         raise TemplateError(msg) from error
-
-
-def tex(number: float, digits: int = 3) -> str:
-    r"""Return a number as LaTeX.
-
-    Examples
-    --------
-    >>> tex(0.0123456), tex(-1234567.0), tex(2.0)
-    ('0.0123', '-1.23 \\cdot 10^{6}', '2')
-    """
-    text = f"{float(number) + 0.0:.{digits}g}"
-    mantissa, _, exponent = text.partition("e")
-    return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else text
-
-
-def fixed(number: float, decimals: int) -> str:
-    """Return a number with so many decimals.
-
-    Examples
-    --------
-    >>> fixed(2.0, 2), fixed(-0.0001, 2)
-    ('2.00', '0.00')
-    """
-    text = f"{float(number):.{decimals}f}"
-    return text if float(text) else text.removeprefix("-")
-
-
-def percent(number: float, digits: int = 2) -> str:
-    """Return a fraction in per cent, without the sign.
-
-    Examples
-    --------
-    >>> percent(0.12345), percent(1.0, 3)
-    ('12', '100')
-    """
-    return tex(100.0 * float(number), digits)
 
 
 def _listed(names: Sequence[str] | Mapping[str, object]) -> str:

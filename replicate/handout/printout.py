@@ -24,7 +24,7 @@ import typst
 
 import replicate
 from replicate.errors import TemplateError
-from replicate.handout.edition import FILE, Document
+from replicate.handout.edition import Document
 from replicate.handout.letters import check_letters, fonts_dir
 from replicate.handout.pandoc import written
 from replicate.handout.row_heads import with_row_heads
@@ -80,7 +80,7 @@ def pdfs(documents: Iterable[Document], at_once: int = 1) -> Iterator[bytes]:
         under_way: deque[Future[bytes]] = deque()
         for some in _batches(documents, at_once):
             for document, text in zip(some, markups(some), strict=True):
-                under_way.append(pool.submit(_set, document, text))
+                under_way.append(pool.submit(typeset, document, text))
             while len(under_way) > at_once:
                 yield under_way.popleft().result()
         while under_way:
@@ -93,14 +93,25 @@ def _batches(documents: Iterable[Document], size: int) -> Iterator[list[Document
         yield some
 
 
-def _set(document: Document, text: str) -> bytes:
-    """Return the PDF of a document from its Typst source."""
-    name = f"{document.paper.id}/{FILE}"
+def typeset(document: Document, text: str, look: str = TEMPLATE) -> bytes:
+    """Return the PDF of a document from its Typst source.
+
+    Parameters
+    ----------
+    look
+        The template that the source imports.
+
+    Raises
+    ------
+    TemplateError
+        If Typst cannot set the document, or sets it with a warning.
+    """
+    name = document.source
     check_letters(text, document, name)
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        template = (templates_dir() / TEMPLATE).read_text(encoding="utf-8")
-        (root / TEMPLATE).write_text(template, encoding="utf-8")
+        template = (templates_dir() / look).read_text(encoding="utf-8")
+        (root / look).write_text(template, encoding="utf-8")
         if document.form:
             (root / FORM).write_bytes(form_code(document.form))
         for drawing in document.drawings.values():
@@ -134,13 +145,13 @@ def markup(document: Document) -> str:
     return markups([document])[0]
 
 
-def markups(documents: Sequence[Document]) -> list[str]:
+def markups(documents: Sequence[Document], look: str = TEMPLATE) -> list[str]:
     """Return the Typst sources of handouts, written by one call of pandoc."""
     pieces = [transform(one.blocks, partial(_for_typst, document=one)) for one in documents]
-    return [head(one) + body for one, body in zip(documents, written(pieces, "typst"), strict=True)]
+    return [head(one, look) + body for one, body in zip(documents, written(pieces, "typst"), strict=True)]
 
 
-def head(document: Document) -> str:
+def head(document: Document, look: str = TEMPLATE) -> str:
     """Return the Typst source before the text: the template and what it is to say."""
     paper, sheet = document.paper, document.sheet
     settings = {
@@ -160,7 +171,8 @@ def head(document: Document) -> str:
         arguments.append(f"form: {quoted(document.form)}")
     words = ", ".join(f"{quoted(name)}: {quoted(word)}" for name, word in sheet.language.words.items())
     arguments.append(f"words: ({words})")
-    return f'#import "{TEMPLATE}": *\n#show: handout.with({", ".join(arguments)})\n\n'
+    whole = look.partition(".")[0]  # the function that the template is named after
+    return f'#import "{look}": *\n#show: {whole}.with({", ".join(arguments)})\n\n'
 
 
 def form_code(form: str) -> bytes:
@@ -237,7 +249,7 @@ def _block(element: Element, document: Document) -> Blocks | None:
         return list(content)
     known = [name for name in found if name in _BLOCKS]
     if not known:
-        msg = f"{document.paper.id}/{FILE}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
+        msg = f"{document.source}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
         raise TemplateError(msg)
     return [raw_block("typst", f"#{known[0]}["), *content, raw_block("typst", "]")]
 

@@ -4,7 +4,7 @@ A worker records what it has loaded when a unit is done:
 
 * the framework's own rooms, whole folders by content;
 * the paper's folder by content, without the prose that only judges or explains (``ledger.toml``, ``notes.md``,
-  ``handout.md``, ``handout.py``), so that editing prose recomputes nothing;
+  ``handout.md``, ``handout.py``, ``slides.md``), so that editing prose recomputes nothing;
 * every other module that is not the standard library's: by content, or by the version of its distribution if it is
   an installed one;
 * the project file above the paper's folder, by what it says;
@@ -33,7 +33,7 @@ from replicate.run.project import project_text
 
 Dependencies = dict[str, dict[str, str]]
 
-_PROSE = re.compile(r"(ledger|notes|handout)(-\w+)?\.(toml|md)|handout\.py")
+_PROSE = re.compile(r"(ledger|notes|handout|slides)([-.]\w+)?\.(toml|md)|handout\.py")
 # Settings that choose the numerical kernels, and with them the last bits of a result.
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 _ROOT = __name__.split(".")[0]

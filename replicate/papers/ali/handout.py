@@ -14,7 +14,7 @@ from scipy import optimize
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
 from replicate.loops import PI, Loop, Plant
-from replicate.papers.ali.structures import Settings, plant, series
+from replicate.papers.ali.structures import Settings, d_filter, plant, series
 from replicate.papers.ali.tuning import gain_product, integral_time, smallest_sensitivity
 from replicate.teaching import nyquist_reading, sketch
 
@@ -143,6 +143,27 @@ def window(fig: Figure) -> None:
         axes.plot([gain], [peak], "o", color=colour)
         axes.annotate(name, (gain, peak), (offset, 3), textcoords="offset points", ha="right", va="bottom")
     axes.set(xlabel="$KK_p$", ylabel="$M_s$", ylim=(0.0, 40.0))
+
+
+@exercises.figure(
+    "twins",
+    "Two derivative filters",
+    alt="Magnitude of the lead factor over frequency, with the filter on the whole factor and on the derivative alone. "
+    "Both rise from 1; at high frequencies the first ends at 10, the second at 11.",
+    size=(6.4, 2.6),
+)
+def twins(fig: Figure) -> None:
+    """Draw the magnitude of the lead factor with each of the two filters, over frequency times Td."""
+    omega = np.geomspace(0.1, 1000.0, 301)
+    axes = fig.subplots()
+    for structure, name in ((series, "filter on the whole factor"), (d_filter, "filter on D only")):
+        controller = structure(Settings(1.0, 1e9, 1.0))  # without integral action only the lead factor is left
+        axes.loglog(omega, abs(controller.feedback(1j * omega)), label=name)
+    ticks = [1, 2, 5, 10]
+    axes.set(xlabel="$\\omega T_d$", ylabel="magnitude", yticks=ticks, ylim=(0.9, 14.0))
+    axes.set_yticklabels([str(tick) for tick in ticks])
+    axes.minorticks_off()
+    axes.legend()
 
 
 def _nyquist_loop(inputs: Inputs) -> Loop:

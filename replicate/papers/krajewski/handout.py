@@ -15,6 +15,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
 from replicate.loops import PI, Loop, Plant, Signal
 from replicate.papers.krajewski.chart_values import TAUS
+from replicate.papers.krajewski.loci import upper_end
 from replicate.papers.krajewski.normalised_loop import lag, loop, point
 from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, hyperbola_fit, printed_coefficients, upper_ends
 from replicate.papers.krajewski.table_1_errors import residuals, single_digit_slips
@@ -46,6 +47,26 @@ def at_a_third() -> Values:
     printed = float(hyperbola(printed_coefficients("45"), 0.3))
     fitted = float(hyperbola(hyperbola_fit(ends), 0.3))
     return {"printed": printed, "below": exact - printed, "fit_below": exact - fitted}
+
+
+@exercises.figure(
+    "hyperbolas",
+    "The ends of the curves and the printed hyperbolas",
+    alt="The ends of the curves of constant phase margin over the dead time, for 45 and 120 degrees, with the printed "
+    "hyperbolas dashed. All fall steeply at first; for 45 degrees the printed hyperbola lies a little below the curve.",
+    size=(6.4, 2.7),
+)
+def draw_hyperbolas(fig: Figure) -> None:
+    """Draw b_u and the printed hyperbolas for two phase margins: the odd column, and the one that fits worst."""
+    axes = fig.subplots()
+    taus = np.linspace(TAUS[0], TAUS[-1], 91)
+    for colour, margin in (("C1", "45"), ("C0", "120")):
+        ends = [upper_end(float(tau), float(margin)) for tau in taus]
+        axes.plot(taus, ends, color=colour, label=f"$b_u$, {margin}°")
+        printed = hyperbola(printed_coefficients(margin), taus)
+        axes.plot(taus, printed, color=colour, linestyle="--", label=f"printed hyperbola, {margin}°")
+    axes.set(xlabel="$\\tau$", ylabel="$b_u$", xlim=(0.0, 1.0), ylim=(0.0, None))
+    axes.legend()
 
 
 @exercises.figure(
