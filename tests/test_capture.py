@@ -230,20 +230,6 @@ def test_the_png_is_a_png_of_the_right_size() -> None:
     assert int.from_bytes(png[20:24], "big") == 2 * plotstyle.PNG_DPI
 
 
-def luminance(colour: str) -> float:
-    """Relative luminance by WCAG 2.2."""
-    channels = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-    linear = [c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in channels]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
-
-
-@pytest.mark.parametrize("colour", plotstyle.PALETTE)
-@pytest.mark.parametrize("page", ["#ffffff", "#14181d"])
-def test_curves_have_contrast_on_white_and_dark_pages(colour: str, page: str) -> None:
-    lighter, darker = sorted((luminance(colour), luminance(page)), reverse=True)
-    assert (lighter + 0.05) / (darker + 0.05) >= 3.0
-
-
 def test_a_bezier_curve_is_read_back_along_the_curve() -> None:
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path

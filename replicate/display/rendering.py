@@ -17,6 +17,7 @@ from replicate.display.distance import off
 from replicate.display.markdown import MarkdownBatch
 from replicate.display.safe_html import policy
 from replicate.exhibits.plain_text import visible
+from replicate.figures.style import dark_curves
 from replicate.resources import templates_dir
 
 
@@ -80,7 +81,7 @@ _STYLE, _POLICY = "\ue006style\ue007", "\ue006policy\ue007"
 
 def style_sheet(theme: Mapping[str, str]) -> str:
     """Return the style sheet of all pages, in the colours of a project where it names some."""
-    style = (templates_dir() / "style.css").read_text(encoding="utf-8") + _math_font()
+    style = (templates_dir() / "style.css").read_text(encoding="utf-8") + dark_curves() + _math_font()
     colours = "".join(f"--{_COLOURS[name]}: {colour}; " for name, colour in theme.items())
     return f"{style}@media not (prefers-color-scheme: dark) {{ :root {{ {colours}}} }}\n" if colours else style
 

@@ -11,6 +11,7 @@ from replicate.display.inline_svg import inline_svg
 from replicate.display.rendering import html_environment
 from replicate.display.source_code import highlight
 from replicate.exhibits.plain_text import visible
+from replicate.figures.style import dark_curves
 from replicate.handout.edition import Document
 from replicate.handout.pandoc import written
 from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, string, transform
@@ -33,6 +34,7 @@ def webpage(document: Document) -> str:
             words=document.sheet.language,
             date=document.sheet.date,
             form=document.form,
+            dark_curves=dark_curves(),
             body=Markup(body),  # noqa: S704  -- the project's own text
             software=f"replicate {replicate.__version__}",
         )

@@ -14,6 +14,7 @@ from replicate.display.addresses import TRIALS
 from replicate.display.rendering import html_environment
 from replicate.display.safe_html import policy
 from replicate.exhibits import Paper
+from replicate.figures.style import dark_curves
 from replicate.resources import templates_dir
 from replicate.whatif.reference import markers, reference
 from replicate.whatif.rows import Row, rows_of
@@ -45,6 +46,7 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") ->
     """
     folder = templates_dir() / "whatif"
     style, *scripts = (folder.joinpath(name).read_text(encoding="utf-8") for name in ("whatif.css", *_SCRIPTS))
+    style += dark_curves()
     script = f"const CONSTANTS = {json.dumps(CONSTANTS)};\n" + "\n".join(scripts)
     data = {"rows": [asdict(row) for row in rows], "markers": markers(rows), "reference": reference()}
     text = json.dumps(data, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")

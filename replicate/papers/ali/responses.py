@@ -111,7 +111,7 @@ def draw_setpoint_controls(
         right.annotate(
             f"cut off: the kick at $t = 0$ reaches {kicks}",
             xy=(0.0, 1.0), xycoords="axes fraction", xytext=(14.0, -12.0), textcoords="offset points",
-            arrowprops={"arrowstyle": "->", "color": "0.4"}, va="center", fontsize=8.5,
+            arrowprops={"arrowstyle": "->", "color": "0.4"}, va="center", fontsize=9.5,
         )  # fmt: skip
     for axes in grid[-1]:
         axes.set_xlabel("time $t$")

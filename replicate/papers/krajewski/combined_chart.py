@@ -57,9 +57,9 @@ def draw_combined(axes: Axes, tau: float) -> None:
         name = ("phase margin", f"phase margin {margin:g}", f"{margin:g}°")
         _labelled(axes, constant_phase_margin(tau, margin), box, 0.34, name)
     end = min(box[0][1], box[1][1])
-    axes.plot([0.0, end], [0.0, end], color="0.5", linewidth=0.9, label="b = a", zorder=1)
+    axes.plot([0.0, end], [0.0, end], color="0.5", linestyle="-", linewidth=0.9, label="b = a", zorder=1)
     diagonal = Locus(lambda u: (end * np.column_stack([u, u]), np.full((u.size, 2), end)))
-    label_locus(axes, diagonal, 0.93, "$b = a$", "0.5", fontsize=8)
+    label_locus(axes, diagonal, 0.93, "$b = a$", "0.5", fontsize=9)
 
 
 def _labelled(axes: Axes, locus: Locus, box: Box, fraction: float, name: tuple[str, str, str]) -> None:
@@ -68,7 +68,7 @@ def _labelled(axes: Axes, locus: Locus, box: Box, fraction: float, name: tuple[s
     draw_locus(axes, locus, curve, **STYLES[family])
     u = inside(locus, *box, fraction)
     if u is not None:
-        label_locus(axes, locus, u, text, STYLES[family]["edgecolor"], fontsize=8)
+        label_locus(axes, locus, u, text, STYLES[family]["edgecolor"], fontsize=9)
 
 
 def _sensitivities(axes: Axes, tau: float, box: Box) -> None:
@@ -79,7 +79,7 @@ def _sensitivities(axes: Axes, tau: float, box: Box) -> None:
         draw_locus(axes, pieces, f"Ms = {ms:g}", **STYLES["sensitivity"])
         u = inside(pieces[0], *box, 0.33)
         if u is not None:
-            label_locus(axes, pieces[0], u, f"{ms:g}", "C3", fontsize=8)
+            label_locus(axes, pieces[0], u, f"{ms:g}", "C3", fontsize=9)
 
 
 def _crossovers(axes: Axes, tau: float, box: Box) -> None:
@@ -92,7 +92,7 @@ def _crossovers(axes: Axes, tau: float, box: Box) -> None:
         outer = constant_crossover(tau, w, 0.0, least) or arc
         u = inside(outer, *box, 0.5)
         if u is not None:
-            label_locus(axes, outer, u, f"{w:g}", "C2", fontsize=8)
+            label_locus(axes, outer, u, f"{w:g}", "C2", fontsize=9)
 
 
 def combined_chart(tau: float, fig: Figure | None = None) -> Figure:

@@ -51,8 +51,8 @@ def design_chart(axes: Axes, tau: float, crossovers: int = 8) -> None:
         outer = constant_crossover(tau, w, 0.0, 60.0) or arc
         u = inside(outer, a, b, 0.42)
         if u is not None:
-            label_locus(axes, outer, u, f"{w:g}", "C2", fontsize=7)
+            label_locus(axes, outer, u, f"{w:g}", "C2", fontsize=8.5)
     for margin, line in MARGINS.items():
         locus = constant_phase_margin(tau, margin)
         draw_locus(axes, locus, f"phase margin {margin}", edgecolor="C0", linestyle=line, linewidth=1.7)
-        label_locus(axes, locus, 0.36, f"{margin}°", "C0", fontsize=7.5)
+        label_locus(axes, locus, 0.36, f"{margin}°", "C0", fontsize=9)

@@ -102,7 +102,7 @@ def label_locus(axes: Axes, locus: Locus, u: float, text: str, color: Any, **sty
         "transform_rotates_text": True,
         "ha": "center",
         "va": "center",
-        "fontsize": 8,
+        "fontsize": 9,
         "bbox": box,
         "clip_on": True,
         "zorder": 3,
@@ -113,7 +113,7 @@ def label_locus(axes: Axes, locus: Locus, u: float, text: str, color: Any, **sty
 def mark_point(axes: Axes, a: float, b: float, text: str, offset: tuple[float, float], **style: Any) -> None:
     """Mark a point of the plane with a dot and a name beside it."""
     axes.plot([a], [b], "o", color=axes.xaxis.label.get_color(), markersize=4.5, label=text, zorder=4)
-    axes.annotate(text, (a, b), xytext=offset, textcoords="offset points", fontsize=9, zorder=4, **style)
+    axes.annotate(text, (a, b), xytext=offset, textcoords="offset points", fontsize=10, zorder=4, **style)
 
 
 def plane(axes: Axes, a: tuple[float, float], b: tuple[float, float], title: str = "") -> None:

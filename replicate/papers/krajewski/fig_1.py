@@ -49,8 +49,8 @@ def draw(fig: Figure) -> None:
     for axes, (name, (a, b)) in zip(fig.subplots(2, 3, sharex=True, sharey=True).flat, CASES.items(), strict=True):
         unstable = loop(a, b, TAU).unstable_poles()
         count = "stable" if unstable == 0 else f"{unstable} unstable pole{'s' if unstable > 1 else ''}"
-        axes.set_title(f"({name}) $a = {a:g}$, $b = {b:g}$: {count}", fontsize=9)
-        axes.plot(circle.real, circle.imag, color="0.5", linewidth=0.8, label="unit circle")
+        axes.set_title(f"({name}) $a = {a:g}$, $b = {b:g}$: {count}", fontsize=10)
+        axes.plot(circle.real, circle.imag, color="0.5", linestyle="-", linewidth=0.8, label="unit circle")
         axes.axvline(float(asymptote(a, b, TAU)), color="C1", linestyle="--", linewidth=1.0, label="asymptote")
         response = frequency_response(a, b, TAU, w)
         axes.plot(response.real, response.imag, color="C0", label="Nyquist diagram")
@@ -60,8 +60,8 @@ def draw(fig: Figure) -> None:
         axes.set(xlim=(-VIEW, VIEW), ylim=(-VIEW, VIEW), aspect="equal", xticks=ticks, yticks=ticks)
         axes.axhline(0.0, color="0.5", linewidth=0.6, zorder=0)
         axes.axvline(0.0, color="0.5", linewidth=0.6, zorder=0)
-    fig.supxlabel("real part", fontsize=9.5)
-    fig.supylabel("imaginary part", fontsize=9.5)
+    fig.supxlabel("real part", fontsize=10.5)
+    fig.supylabel("imaginary part", fontsize=10.5)
 
 
 def _arrow(axes: Axes, response: NDArray[np.complex128]) -> None:

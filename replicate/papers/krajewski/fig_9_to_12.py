@@ -104,7 +104,7 @@ def draw_responses(axes: Axes, figure: Responses) -> None:
             xytext=offset,
             textcoords="offset points",
             color=color,
-            fontsize=8.5,
+            fontsize=9.5,
             ha="center",
             va="center",
             arrowprops=leader if abs(offset[0]) > 20 else None,

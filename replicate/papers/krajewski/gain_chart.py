@@ -30,11 +30,11 @@ def gain_chart(axes: Axes, tau: float) -> None:
     for g, line in RATIOS.items():
         locus = constant_gain_ratio(tau, g)
         draw_locus(axes, locus, f"g = {g:g}", edgecolor="C1", linestyle=line, linewidth=1.7)
-        label_locus(axes, locus, 0.9, f"{g:g}", "C1", fontsize=7.5)
+        label_locus(axes, locus, 0.9, f"{g:g}", "C1", fontsize=9)
     segment = constant_phase_crossover(tau, PHASE_CROSSOVER)
     if segment is not None:
         draw_locus(axes, segment, "phase crossover 2", edgecolor="C3", linestyle="--", linewidth=1.3)
         (tip,) = segment.curve(np.array([1.0]))[0]
-        style: dict[str, Any] = {"color": "C3", "fontsize": 8, "va": "center"}
+        style: dict[str, Any] = {"color": "C3", "fontsize": 9, "va": "center"}
         offset = (5, 6) if tip[1] > 0.7 * top else (5, -5)
         axes.annotate("$\\omega_B = 2$", tip, xytext=offset, textcoords="offset points", **style)

@@ -83,7 +83,7 @@ def draw_residuals(fig: Figure) -> None:
         odd = margin == "45"
         style = {"color": "C1", "linewidth": 2.0, "zorder": 3} if odd else {"color": "0.55", "linewidth": 1.0}
         values = residuals(margin)
-        axes.plot(TAUS, values, marker="o", markersize=4 if odd else 2.5, **style)  # type: ignore[arg-type]
+        axes.plot(TAUS, values, linestyle="-", marker="o", markersize=4 if odd else 2.5, **style)  # type: ignore[arg-type]
     for names, height in (("90°", "90"), ("75°", "75"), ("60°, 120°", "60"), ("30°", "30"), ("45°", "45")):
         axes.annotate(
             names, (TAUS[-1], residuals(height)[-1]), (6, {"90": 2, "75": -2}.get(height, 0)),

@@ -36,7 +36,7 @@ def draw_map(axes: Axes, tau: float) -> None:
         draw_locus(axes, locus, f"phase margin {margin:g}", edgecolor="0.45", linewidth=1.0)
         u = inside(locus, a, b, 0.76)
         if u is not None:
-            label_locus(axes, locus, u, f"{margin:g}°", "0.45", fontsize=7)
+            label_locus(axes, locus, u, f"{margin:g}°", "0.45", fontsize=8.5)
 
 
 @paper.figure(

@@ -83,7 +83,9 @@ def nyquist(fig: Figure) -> None:
     turn = np.linspace(0.0, 2.0 * np.pi, 121)
     for (key, controller), axes in zip(CONTROLLERS.items(), panels, strict=True):
         value = Loop(G4, controller)(1j * w)
-        axes.plot(-1.0 + np.cos(turn) / 1.4, np.sin(turn) / 1.4, color="C6", linewidth=1.1, label="$M_s = 1.4$")
+        axes.plot(
+            -1.0 + np.cos(turn) / 1.4, np.sin(turn) / 1.4, color="C6", linestyle="-", linewidth=1.1, label="$M_s = 1.4$"
+        )
         axes.plot(value.real, value.imag, color=STYLES[key][0], linestyle="-", label="$L(i\\omega)$")
         axes.plot([-1.0], [0.0], marker="+", color="C6", linestyle="", label="$-1$")
         axes.set_xlim(-2.0, 0.5)

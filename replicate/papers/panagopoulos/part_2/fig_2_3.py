@@ -45,7 +45,7 @@ def draw(fig: Figure, ms: float) -> None:
             top.plot(t, response.output(t), color=color, linestyle=line, label=label)
             bottom.plot(t, response.control(t), color=color, linestyle=line, label=label)
         size = "" if load == 1.0 else f", load {load:g}"
-        top.set_title(f"$G_{name[1]}${size}", fontsize=9)
+        top.set_title(f"$G_{name[1]}${size}", fontsize=10)
         top.set_ylabel("$y$")
         bottom.set_ylabel("$u$")
         bottom.set_xlim(0.0, until)

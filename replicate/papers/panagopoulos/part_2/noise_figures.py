@@ -72,7 +72,7 @@ def load_and_noise(fig: Figure) -> None:
                 shown, np.concatenate([signal(t), after]), color="C0", linestyle="-", linewidth=0.9, label="$F_yG$"
             )
         top.plot(shown, plain, color="C1", linestyle="--", linewidth=1.2, label="$G$")
-        top.set_title(f"$n = {order}$, $N = {n}$", fontsize=9)
+        top.set_title(f"$n = {order}$, $N = {n}$", fontsize=10)
         if order == 1:
             top.set_ylabel("$y$")
             bottom.set_ylabel("$u$")
@@ -81,7 +81,7 @@ def load_and_noise(fig: Figure) -> None:
         axes.set_xticks(ticks, ["0", "10", "20", "30", "32", "34"])
         axes.set_xlim(0.0, shown[-1])
         axes.set_xlabel("time $t$")
-    panels[0, 0].legend(loc="upper right", fontsize=8)
+    panels[0, 0].legend(loc="upper right", fontsize=9)
 
 
 @paper.figure(

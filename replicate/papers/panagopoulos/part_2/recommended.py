@@ -111,7 +111,7 @@ def responses(fig: Figure) -> None:
                 highest, lowest = max(highest, float(y.max())), min(lowest, float(y.min()))
         axes.set_ylim(1.15 * lowest - 0.05 * highest, 1.15 * highest)
         axes.set_xlim(0.0, until)
-        axes.set_title(f"$G_{name[1]}$, $M_s = {ms}$", fontsize=9)
+        axes.set_title(f"$G_{name[1]}$, $M_s = {ms}$", fontsize=10)
         if axes in panels[:, 0]:
             axes.set_ylabel("$y(t)$")
     for axes in panels[-1]:

@@ -40,10 +40,10 @@ def surface(fig: Figure) -> None:
         x, up, low = k[inside] + SHEAR * kd, upper[inside] + LIFT * kd, lower[inside] + LIFT * kd
         color = f"C{(len(SECTIONS) - 1 - n) % 7}"
         left.fill_between(x, low, up, color=color, alpha=0.18, linewidth=0.0)
-        left.plot(x, up, color=color, label=f"$k_d = {kd:g}$, upper")
+        left.plot(x, up, color=color, linestyle="-", label=f"$k_d = {kd:g}$, upper")
         left.plot(x, low, color=color, linestyle="--", linewidth=1.1, label=f"$k_d = {kd:g}$, lower")
-        left.text(x[0] - 0.03, up[0], f"{kd:g}", ha="right", va="center", fontsize=8)
-    left.text(0.02, 0.97, "$k_d$ beside each section", transform=left.transAxes, va="top", fontsize=8)
+        left.text(x[0] - 0.03, up[0], f"{kd:g}", ha="right", va="center", fontsize=9)
+    left.text(0.02, 0.97, "$k_d$ beside each section", transform=left.transAxes, va="top", fontsize=9)
     left.set_xlabel("$k$, shifted right with $k_d$")
     left.set_ylabel("$k_i$, shifted up with $k_d$")
     left.set_xlim(-0.1, 2.0)
@@ -104,7 +104,7 @@ def ellipses(fig: Figure) -> None:
         axes.set_ylim(0.0, 1.5)
         axes.set_xlabel("$k$")
         axes.set_title(title)
-        axes.legend(loc="upper left", fontsize=8)
+        axes.legend(loc="upper left", fontsize=9)
     left.set_ylabel("$k_i$")
 
 

@@ -42,7 +42,7 @@ class Diagram:
         """Draw an arrow along straight lines through points; its label stands above the first line, or ``at``."""
         xs, ys = zip(*points[:-1], strict=True)
         if len(points) > 2:
-            self.axes.plot(xs, ys, color=self.ink, lw=1.2, solid_capstyle="butt")
+            self.axes.plot(xs, ys, color=self.ink, lw=1.2, ls="-", solid_capstyle="butt")
         style = {"arrowstyle": "-|>", "color": self.ink, "lw": 1.2, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 11}
         self.axes.annotate("", xy=points[-1], xytext=points[-2], arrowprops=style)
         if label:

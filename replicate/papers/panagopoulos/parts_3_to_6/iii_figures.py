@@ -117,7 +117,7 @@ def contours(fig: Figure) -> None:
     a = np.exp(1j * points.phase_of_a)
     marked = {"O": 0j, "A": a, "B": points.ob + 0j, "C": points.oc + 0j, "D": points.od + 0j}
     shifts = {"O": (0.1, 0.12), "A": (0.08, 0.14), "B": (0.12, 0.14), "C": (0.0, -0.24), "D": (-0.14, 0.14)}
-    right.plot([0.0, a.real, points.oc], [0.0, a.imag, 0.0], color=ink, linewidth=0.8)
+    right.plot([0.0, a.real, points.oc], [0.0, a.imag, 0.0], color=ink, linestyle="-", linewidth=0.8)
     for name, point in marked.items():
         right.plot([point.real], [point.imag], "o", markersize=4, color=ink)
         dx, dy = shifts[name]
