@@ -56,7 +56,7 @@ function cardRows(card) {
     const value = term.nextElementSibling;
     rows.push([text(link), text(term), text(value), text(value.nextElementSibling)]);
   }
-  rows.push([text(link), "verdict", text(card.querySelector(".badge")).slice(1), ""]);
+  rows.push([text(link), "verdict", text(card.querySelector(".badge")), ""]);
   return rows;
 }
 

@@ -9,6 +9,7 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 from replicate.display.live_curves import mark_curves, tag
+from replicate.display.repeated_labels import SHARED, share_labels
 from replicate.figures.style import themed
 
 # What an SVG file says about itself; in a page, the element's own title and description do.
@@ -16,6 +17,8 @@ _FOR_FILES = {"metadata", "title"}
 _REFERENCE = re.compile(r"url\(#")
 _COORDINATE = re.compile(r"-?\d+\.\d{3,}")
 _SPACE = re.compile(r"\s+")
+# matplotlib draws letters of a hundred units and scales them to their size, upside down.
+_LETTERS = re.compile(r"scale\((\d*\.\d+) -\1\)")
 _XLINK = "{http://www.w3.org/1999/xlink}href"
 
 
@@ -36,8 +39,9 @@ def inline_svg(svg: str, id: str, title: str, description: str, axes: Sequence[M
     Returns
     -------
     str
-        One `<svg role="img">` element in the page's colours; its width follows its container. Coordinates are rounded
-        to a hundredth of a point.
+        One `<svg role="img">` element in the page's colours; its width follows its container, and with `--width` and
+        `--type`, the size of its smallest letters, a page can say how far. Coordinates are rounded to a hundredth of
+        a point.
 
     Raises
     ------
@@ -54,11 +58,14 @@ def inline_svg(svg: str, id: str, title: str, description: str, axes: Sequence[M
         msg = f"{id}: the drawing is not an SVG document with a view box"
         raise ValueError(msg)
     mark_curves(root, axes)
+    share_labels(root)
     body = "".join(text for child in root for text in _written(child, id))
     width, height = (float(size) for size in view_box.split()[2:])
+    sizes = [100.0 * float(scale) for scale in _LETTERS.findall(body)]
+    smallest = f"; --type: {min(sizes):g}" if sizes else ""
     return (
         f'<svg id="{id}" role="img" aria-labelledby="{id}-title {id}-desc" viewBox="{view_box}" '
-        f'fill="currentColor" style="aspect-ratio: {width:g} / {height:g}; --width: {width:g}">'
+        f'fill="currentColor" style="aspect-ratio: {width:g} / {height:g}; --width: {width:g}{smallest}">'
         f'<title id="{id}-title">{html.escape(title)}</title>'
         f'<desc id="{id}-desc">{html.escape(description)}</desc>{themed(body)}</svg>'
     )
@@ -92,7 +99,9 @@ def _written(element: ET.Element, id: str) -> Iterator[str]:
 
 def _attributes(element: ET.Element, name: str, id: str) -> Iterator[tuple[str, str]]:
     for key, value in element.items():
-        if key == "id":
+        if key == SHARED:
+            yield "id", f"{id}-{value}"
+        elif key == "id":
             if name != "g":  # nothing refers to groups by their ids, and every figure has the same ones
                 yield key, f"{id}-{value}"
         elif key == _XLINK:
