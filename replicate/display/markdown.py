@@ -33,6 +33,18 @@ _FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LIST
 _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)", re.DOTALL)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
+_MARKS = re.compile("[\ue000-\ue007]")
+
+
+def without_marks(text: str) -> str:
+    r"""Return a text in which the private characters that hold places of a page are written out.
+
+    Examples
+    --------
+    >>> without_marks("\ue000block0\ue001")
+    '\\ue000block0\\ue001'
+    """
+    return _MARKS.sub(lambda found: f"\\u{ord(found[0]):x}", text)
 
 
 class MarkdownBatch:
@@ -64,7 +76,7 @@ class MarkdownBatch:
         return self._token("plain", _not_a_block(text))
 
     def _token(self, form: Form, text: str) -> Markup:
-        text = text.strip()
+        text = without_marks(text.strip())
         if not text:
             return Markup("")
         number = self._texts.setdefault(text, len(self._texts))

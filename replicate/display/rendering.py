@@ -14,7 +14,7 @@ from markupsafe import Markup
 from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.distance import off
-from replicate.display.markdown import MarkdownBatch
+from replicate.display.markdown import MarkdownBatch, without_marks
 from replicate.display.safe_html import policy
 from replicate.exhibits.plain_text import visible
 from replicate.figures.style import dark_curves
@@ -30,7 +30,13 @@ def html_environment() -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        finalize=_written,
     )
+
+
+def _written(value: Any) -> Any:
+    """Write out what would pass for a mark of the page being filled; what is HTML already may be one."""
+    return without_marks(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
 def render(template: str, name: str, **context: Any) -> str:

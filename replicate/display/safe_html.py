@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from collections.abc import Sequence
 
 import nh3
@@ -45,10 +46,21 @@ _ATTRIBUTES: dict[str, set[str]] = {
     "th": {"scope"},
 }
 
+_SCHEMES = ("http", "https", "mailto", "doi")
+_STRAY = re.compile(rf"\s*[/\\]{{2}}|(?!({'|'.join(_SCHEMES)}):)[^/?#]*:", re.IGNORECASE)
+
+
+def _kept(tag: str, attribute: str, value: str) -> str | None:
+    """Return an attribute's value, none for a link that neither names one of the schemes nor stays in the report."""
+    del tag
+    return None if attribute == "href" and _STRAY.match(value) else value
+
+
 _CLEANER = nh3.Cleaner(
     tags=_MATH | _TEXT,
     attributes=_ATTRIBUTES,
-    url_schemes={"http", "https", "mailto", "doi"},
+    attribute_filter=_kept,
+    url_schemes=set(_SCHEMES),
     link_rel=None,
 )
 

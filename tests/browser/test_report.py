@@ -14,50 +14,13 @@ from typing import Any
 
 import pytest
 
+from browser.sight import BY_COLOURS, BY_WIDTH, FOLD, SETTLED, SIDEWAYS, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
 from replicate.report.pages import INDEX, SEARCH
 
 ROOT = Path(__file__).parents[2]
 MOST_BYTES, MOST_ELEMENTS, MOST_SCRIPT = 2_000_000, 25_000, 30_000
-
-# What depends on the width of the window, and on the colours; all other rules are tried once per page.
-BY_WIDTH = ["target-size", "scrollable-region-focusable", "meta-viewport"]
-BY_COLOURS = ["color-contrast", "link-in-text-block"]
-
-# A drawing, a formula and a listing are one thing each to a reader, and of rows and entries built alike, of the
-# same elements with the same classes, one stands for all: thousands of parts would take minutes and find nothing else.
-FOLD = """() => {
-  for (const part of document.querySelectorAll("svg[role=img] > :not(title, desc)")) part.remove();
-  for (const one of document.querySelectorAll("math")) {
-    const text = document.createElement("span");
-    text.textContent = one.textContent;
-    one.replaceWith(text);
-  }
-  for (const one of document.querySelectorAll("pre > code")) one.textContent = one.textContent;
-  const seen = new Set();
-  for (const one of document.querySelectorAll("tbody, tbody > tr, .claims > li, .notes > li, .hits > li, .exhibit")) {
-    const parts = one.outerHTML.match(/<[a-z][^>]*>/g).map((tag) => {
-      const names = tag.match(/ class="[^"]*"| role="[^"]*"| type="[^"]*"/g) ?? [];
-      return tag.match(/<[a-z0-9]+/)[0] + names.join("");
-    });
-    const built = [...new Set(parts)].sort().join();
-    if (seen.has(built)) one.remove();
-    seen.add(built);
-  }
-}"""
-UNFOLDED = """() => {
-  const sheet = document.styleSheets[0];
-  sheet.insertRule(".exhibit { content-visibility: visible !important; }", sheet.cssRules.length);
-}"""
-SETTLED = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50))))"
-# Where a page is wider than the window: what sticks out, and is in no region that scrolls by itself.
-SIDEWAYS = """() => document.documentElement.scrollWidth <= innerWidth ? [] :
-  [...document.querySelectorAll("body *")]
-    .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !e.closest(".scroll, .drawing, pre, svg"))
-    .slice(0, 5).map((e) => e.outerHTML.slice(0, 120))"""
-STOPS = """() => [...document.querySelectorAll("[tabindex='0']")]
-  .filter((e) => e.checkVisibility() && e.scrollWidth <= e.clientWidth + 1 && e.scrollHeight <= e.clientHeight + 1)
-  .map((e) => e.outerHTML.slice(0, 120))"""
+WRONG = {"misprint", "damaged", "discrepant", "unexplained"}
 
 
 @pytest.fixture(scope="session")
@@ -75,37 +38,17 @@ def report(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Path:
     return out / "report"
 
 
-class Sight:
-    """A page in a browser, and what went wrong in it."""
+def read(path: Path) -> list[dict[str, str]]:
+    return list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
 
-    def __init__(self, browser: Any, path: Path, width: int = 1280, **options: Any) -> None:
-        self.page = browser.new_page(viewport={"width": width, "height": 900}, **options)
-        self.wrong: list[str] = []
-        self.page.on("pageerror", lambda error: self.wrong.append(str(error)))
-        self.page.on("console", lambda message: self.wrong.append(message.text) if message.type == "error" else None)
-        self.page.on("request", lambda one: None if one.url.startswith("file:") else self.wrong.append(one.url))
-        self.page.goto(path.as_uri())
 
-    def __enter__(self) -> Any:
-        return self.page
-
-    def __exit__(self, *_: object) -> None:
-        self.page.close()
-        assert self.wrong == []  # nothing raised, nothing was fetched, the policy was not violated
+def plain(text: str) -> str:
+    """Return how a text begins, up to its first formula or emphasis."""
+    return re.split(r"[$*`]", text)[0]
 
 
 def pages(report: Path) -> list[Path]:
     return sorted(report.glob("*.html"))
-
-
-def violations(page: Any, axe: str, rules: list[str] | None = None) -> list[Any]:
-    options: dict[str, Any] = {"resultTypes": ["violations"]}
-    if rules:
-        options["runOnly"] = {"type": "rule", "values": rules}
-    if not page.evaluate("Boolean(window.axe)"):
-        page.evaluate(axe)  # through the debugger: the page's policy allows its own script only
-    found = page.evaluate("(options) => axe.run(document, options)", options)
-    return [(v["id"], [node["html"][:160] for node in v["nodes"]][:5]) for v in found["violations"]]
 
 
 def test_no_page_is_heavy(report: Path) -> None:
@@ -149,8 +92,9 @@ def test_every_exhibit_can_be_skipped(report: Path) -> None:
 
 
 def test_an_address_opens_a_card_with_and_without_script(report: Path, browser: Any) -> None:
-    rows = list(csv.DictReader(io.StringIO((report / "data" / "verdicts.csv").read_text(encoding="utf-8"))))
-    wrong = next(row for row in rows if row["paper"] == "khan" and row["verdict"] == "misprint")
+    wrong = next(
+        row for row in read(report / "data" / "verdicts.csv") if row["paper"] == "khan" and row["verdict"] == "misprint"
+    )
     file, _, fragment = wrong["address"].partition("#")
     for scripted in (True, False):
         context = browser.new_context(java_script_enabled=scripted, viewport={"width": 1280, "height": 900})
@@ -165,14 +109,61 @@ def test_an_address_opens_a_card_with_and_without_script(report: Path, browser: 
         context.close()
 
 
-def test_two_clicks_lead_to_the_wrong_numbers_of_a_table(report: Path, browser: Any) -> None:
+def test_two_clicks_lead_a_newcomer_to_what_is_wrong_in_a_table(report: Path, browser: Any) -> None:
+    """From the overview: which numbers of Khan's Table II are wrong, why, by how much; and the address of one."""
+    wrong = [
+        row
+        for row in read(report / "data" / "verdicts.csv")
+        if (row["paper"], row["exhibit"]) == ("khan", "table-2") and row["verdict"] in WRONG
+    ]
+    assert len(wrong) > 3
+    clicks = 0
+
+    def click(what: Any) -> None:
+        nonlocal clicks
+        assert what.is_visible()
+        what.click()
+        clicks += 1
+
     with Sight(browser, report / INDEX) as page:
-        page.locator("table.glance a[href='khan.html']").click()
-        ledger = page.locator(".wrong")
-        row = ledger.locator("tr", has_text="Table 2").first
-        assert row.locator(".number").count() == 2
-        row.locator("a").first.click()
-        assert page.locator("td:target > .card").is_visible()
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        click(page.locator("table.glance a[href='khan.html']"))
+        listed = page.locator(".wrong tr")
+        for row in wrong:
+            line = listed.filter(has=page.locator(f"a[href='#{row['address'].partition('#')[2]}']"))
+            assert line.count() == 1, row["address"]
+            said = line.inner_text().replace("−", "-")
+            assert row["printed"] in said
+            assert re.search(r"[\d.]+ ?%|digits?|units?", said), said  # how far off
+            if row["corrected"]:
+                assert row["corrected"] in said.replace("\u0305", "")
+        one = wrong[0]
+        click(page.locator(f".wrong a[href='#{one['address'].partition('#')[2]}']"))
+        card = page.locator("td:target > .card")
+        assert card.is_visible()
+        said = card.inner_text()
+        for part in ("printed", one["printed"], "off by", plain(one["explanation"])[:30]):
+            assert part in said
+        assert clicks == 2
+        assert page.url.endswith(one["address"])
+        card.get_by_role("button", name="copy address").click()
+        assert page.evaluate("navigator.clipboard.readText()") == page.url
+
+
+def test_every_cell_claim_and_error_has_one_address(report: Path) -> None:
+    addresses = [row["address"] for row in read(report / "data" / "verdicts.csv")]
+    assert len(set(addresses)) == len(addresses) > 1000
+    errors = [row["address"] for row in read(report / "data" / "errata.csv")]
+    assert set(errors) <= set(addresses)
+    ids = {page.name: re.findall(r' id="([^"]*)"', page.read_text(encoding="utf-8")) for page in pages(report)}
+    for names in ids.values():
+        assert len(set(names)) == len(names)
+    known = {name: set(names) for name, names in ids.items()}
+    for address in addresses:
+        file, _, fragment = address.partition("#")
+        assert fragment in known[file], address
+        assert re.fullmatch(r"[A-Za-z0-9_-]+(\.[A-Za-z0-9_-]+){2}", fragment)
+    assert "khan.html#table-2.CC.ph1_Mp" in addresses
 
 
 def test_filters_need_no_script(report: Path, browser: Any) -> None:
