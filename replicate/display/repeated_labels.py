@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 from xml.etree import ElementTree as ET
 
+from replicate.display.live_curves import tag
+
 #: Attribute of an element that `share_labels` refers to: the id it needs.
 SHARED = "shared"
 
@@ -38,8 +40,8 @@ def share_labels(root: ET.Element) -> None:
     first: dict[_Key, tuple[ET.Element, float, float]] = {}
     for element in root.iter(f"{_SVG}g"):
         found = _PLACE.fullmatch(element.get("transform", ""))
-        letters = [child for child in element if isinstance(child.tag, str) and child.tag != f"{_SVG}defs"]
-        if found is None or len(letters) < 1 or any(child.tag != f"{_SVG}use" for child in letters):
+        letters = [child for child in element if tag(child) not in {"", "defs"}]
+        if found is None or not letters or any(tag(child) != "use" for child in letters):
             continue
         x, y = float(found[1]), float(found[2])
         own = [f"{name}={value}" for name, value in element.items() if name != "transform"]
