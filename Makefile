@@ -63,7 +63,7 @@ scaling: $(VENV)/.developed ## how sweeps of up to a million loops grow, on a cl
 	$(BIN)/python tools/sweep_scaling.py
 
 .PHONY: units
-units: $(VENV)/.developed ## try 1,000 random loops in other units of time and gain (about 20 minutes)
+units: $(VENV)/.developed ## try 1,000 random loops in other units of time and gain (about two minutes)
 	$(BIN)/python tests/loops/equivariance.py 1000
 
 .PHONY: conformance

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 EPS = float(np.finfo(float).eps)
+COUNTS = 1e-8  # share of a polynomial's value from which a term is more than rounding
 ROUNDING = 8.0  # units in the last place, for each order, by which a model's entries may be rounded
 
 
@@ -56,31 +57,40 @@ def polynomials_of(system: control.TransferFunction | control.StateSpace) -> tup
 
 def _from_state_space(a: Array, b: Array, c: Array, d: Array) -> tuple[Array, Array]:
     n = a.shape[0]
-    exact_a, exact_b, exact_c = _fractions(a), _fractions(b)[:, :1], _fractions(c)[:1]
+    (whole_a, unit_a), (whole_b, unit_b), (whole_c, unit_c) = _integers(a), _integers(b[:, :1]), _integers(c[:1])
+    # (s I - A)^-1 = (M_0 s^(n-1) + M_1 s^(n-2) + ...) / (s^n + a_1 s^(n-1) + ...), of integers if A is
+    one = np.array([[int(i == j) for j in range(n)] for i in range(n)], dtype=object).reshape(n, n)
     feedthrough = Fraction(float(d[0, 0]))
-    # (s I - A)^-1 = (M_0 s^(n-1) + M_1 s^(n-2) + ...) / (s^n + a_1 s^(n-1) + ...)
-    one = np.array([[Fraction(int(i == j)) for j in range(n)] for i in range(n)], dtype=object).reshape(n, n)
-    den, num, m = [Fraction(1)], [feedthrough], one
+    den, num, m, whole = [Fraction(1)], [feedthrough], one, 1
     for k in range(1, n + 1):
-        num.append((exact_c @ m @ exact_b)[0, 0])
-        product = exact_a @ m
-        den.append(-sum((product[i, i] for i in range(n)), Fraction(0)) / k)
-        m = product + den[-1] * one
+        num.append(Fraction((whole_c @ m @ whole_b)[0, 0], unit_c * unit_b * unit_a ** (k - 1)))
+        product = whole_a @ m
+        whole = -sum(product[i, i] for i in range(n)) // k
+        den.append(Fraction(whole, unit_a**k))
+        m = product + whole * one
     num = [num[k] + (feedthrough * den[k] if k else 0) for k in range(n + 1)]
     den_noise, num_noise = _noise(a, b[:, 0], c[0], abs(float(d[0, 0])))
-    den_floats = np.array([float(x) for x in den])
-    num_floats = np.array([float(x) for x in num])
-    return (
-        np.where(np.abs(num_floats) <= num_noise, 0.0, num_floats),
-        np.where(np.abs(den_floats) <= den_noise, 0.0, den_floats),
-    )
+    own = np.abs(np.linalg.eigvals(a)) if n else np.zeros(0)
+    own = own[own > ROUNDING * n * EPS * own.max(initial=0.0)]
+    return _denoised(num, num_noise, own), _denoised(den, den_noise, own)
 
 
-def _fractions(matrix: Array) -> NDArray[Any]:
-    exact = np.empty(matrix.shape, dtype=object)
-    for index, value in np.ndenumerate(matrix):
-        exact[index] = Fraction(float(value))
-    return exact
+def _integers(matrix: Array) -> tuple[NDArray[Any], int]:
+    """Return a matrix of floats as integers and the power of two over which they are."""
+    ratios = [float(value).as_integer_ratio() for value in matrix.ravel()]
+    unit = max((below for _, below in ratios), default=1)
+    exact = np.empty(matrix.size, dtype=object)
+    exact[:] = [above * (unit // below) for above, below in ratios]
+    return exact.reshape(matrix.shape), unit
+
+
+def _denoised(polynomial: list[Fraction], noise: Array, frequencies: Array) -> Array:
+    """Return coefficients as floats, zero where they may be noise and count for nothing at the model's frequencies."""
+    floats = np.array([float(x) for x in polynomial])
+    terms = np.abs(floats) * frequencies[:, None] ** np.arange(floats.size - 1, -1, -1.0)
+    value = np.abs(np.polyval(floats, 1j * frequencies))
+    counts = np.any(terms > COUNTS * value[:, None], axis=0)
+    return np.where((np.abs(floats) <= noise) & ~counts, 0.0, floats)
 
 
 def _noise(a: Array, b: Array, c: Array, d: float) -> tuple[Array, Array]:
@@ -105,6 +115,8 @@ def _noise(a: Array, b: Array, c: Array, d: float) -> tuple[Array, Array]:
 def _without_rounding(num: Array, den: Array) -> tuple[Array, Array]:
     """Return polynomials without leading numerator coefficients that are rounding, and with poles at rest as such."""
     num, den = np.trim_zeros(np.atleast_1d(num), "f"), np.trim_zeros(np.atleast_1d(den), "f")
+    if not num.size:
+        return np.zeros(1), den
     poles = np.abs(np.roots(den))
     fastest = float(poles.max(initial=0.0))
     unit = ROUNDING * max(den.size, 2) * EPS

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import chebyshev as cheb
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
@@ -16,10 +17,16 @@ from replicate.loops.plant import Plant
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+STEP = 2e-3  # of a difference, relative to |s|
 CIRCLE_POINTS = 48
 CIRCLE_RADIUS = 0.35  # of |w|; a cut or poles on the negative real axis stay well outside
 LOWEST, HIGHEST, PER_OCTAVE = -100, 100, 4  # octaves of frequency in which a function's corners are looked for
+ANALYTIC = 1e-4  # relative difference of a value and the mean around it that is no rounding error
+LIMIT_POINTS, LIMIT = 10, 1e-9  # of the fit for a limit at rest, and the relative difference of two that agree
+GROWS = 1.2  # factor over two decades by which a function without a limit grows
+TINY = 1e-100  # modulus from which a function that overflows in its denominator goes on to zero
 BENT = 0.3  # change of slope, or of phase in rad, at which a frequency response has left its asymptote
+MOST_WAVES = 8  # changes between steeper and flatter than the asymptote, of a response that has corners
 LAG = 4.0 * np.pi  # phase beyond which nothing of a frequency response matters to a loop
 
 
@@ -45,7 +52,24 @@ class FunctionPlant(Plant):
     def _values(self, s: ArrayLike) -> ComplexArray:
         assert self.function is not None  # noqa: S101  -- set above
         s = np.asarray(s, dtype=complex)
-        return np.asarray(np.asarray(self.function(s), dtype=complex) + np.zeros_like(s))
+        with np.errstate(all="ignore"):  # values that are not finite are looked for where they matter
+            values = np.array(np.asarray(self.function(s), dtype=complex) + np.zeros_like(s))
+            lost = ~np.isfinite(values)
+            if lost.any() and values.ndim:
+                values[lost] = self._vanished(s[lost], values[lost])
+            return values
+
+    def _vanished(self, s: ComplexArray, values: ComplexArray) -> ComplexArray:
+        """Return 0 for values without a number where the function is tiny on the way there, as 1/cosh(1e3) is."""
+        assert self.function is not None  # noqa: S101  -- set above
+        near = s
+        for _ in range(HIGHEST):
+            near = near / 2.0
+            there = np.asarray(self.function(near), dtype=complex) + np.zeros_like(near)
+            values = np.where(~np.isfinite(values) & (np.abs(there) < TINY), 0.0, values)
+            if np.all(np.isfinite(values) | np.isfinite(there)):
+                break
+        return np.asarray(values)
 
     def delay_free(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the function itself at complex ``s``."""
@@ -54,10 +78,7 @@ class FunctionPlant(Plant):
     def log_derivative(self, s: ArrayLike) -> ComplexArray:
         """Evaluate G'(s)/G(s), dead time included, by a sixth-order difference."""
         s = np.asarray(s, dtype=complex)
-        h = 2e-3 * np.abs(s)
-        g = self.delay_free
-        slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
-        return np.asarray(slope / (60 * h * g(s)) - self.dead_time)
+        return np.asarray(difference(self.delay_free, s) / self.delay_free(s) - self.dead_time)
 
     def taylor(self, s: ComplexArray, order: int) -> ComplexArray:
         """Return Taylor coefficients of the function at ``s`` by Cauchy's integral, shape (order + 1, len(s))."""
@@ -82,10 +103,29 @@ class FunctionPlant(Plant):
 
     @property
     def gain(self) -> float:
-        """The steady-state gain f(0), ``inf`` for a pole there, ``nan`` if the function has no value there."""
-        with np.errstate(all="ignore"):
-            at_rest = complex(self.delay_free(0.0))
-        return float(at_rest.real) if np.isfinite(at_rest) else float("nan")
+        """The steady-state gain f(0), a limit if need be; ``inf`` where f grows towards it, ``nan`` without one."""
+        at_rest = complex(self.delay_free(0.0))
+        if np.isfinite(at_rest):
+            return float(at_rest.real)
+        low, _ = self.corners
+        for limit in (self._mean_around_rest, self._limit_of_roots):
+            near, nearer = limit(0.3 * low), limit(0.1 * low)
+            if abs(near - nearer) <= LIMIT * abs(near):
+                return near
+        first, second = np.abs(self.delay_free(low * np.array([1e-4, 1e-6])))
+        return float("inf") if second > GROWS * first else float("nan")
+
+    def _mean_around_rest(self, radius: float) -> float:
+        """Return f(0) as the mean around it: right where f is analytic there."""
+        turn = np.exp(2j * np.pi * (np.arange(CIRCLE_POINTS) + 0.5) / CIRCLE_POINTS)
+        return float(np.mean(self.delay_free(radius * turn)).real)
+
+    def _limit_of_roots(self, reach: float) -> float:
+        """Return f(0) as a polynomial in the square root of s has it, fitted on the positive real axis."""
+        x = cheb.chebpts1(LIMIT_POINTS)
+        share = 0.1 + 0.9 * 0.5 * (1.0 + x)
+        series = cheb.chebfit(x, self.delay_free(0.1 * reach * share**2).real, LIMIT_POINTS - 1)
+        return float(cheb.chebval(-1.0 - 0.2 / 0.9, series))
 
     @property
     def gain_is_negative(self) -> bool:
@@ -112,7 +152,7 @@ class FunctionPlant(Plant):
         with np.errstate(all="ignore"):
             value = self.delay_free(1j * w)
         known = np.isfinite(value) & (value != 0.0) & (np.abs(value) > 1e-290) & (np.abs(value) < 1e290)
-        first = int(np.argmax(known)) if known.any() else 0
+        first = self._first_smooth(w, value) if known.any() else 0
         gone = np.nonzero(~known[first:])[0]
         last = first + int(gone[0]) if gone.size else known.size
         w, value = w[first:last], value[first:last]
@@ -125,6 +165,9 @@ class FunctionPlant(Plant):
             if left.size:
                 lagged = np.nonzero(np.abs(phase - phase[0]) > LAG)[0]
                 end = int(lagged[0]) if lagged.size else w.size - 1
+                waves = np.nonzero(np.diff(np.sign(slope[left[0] :] - np.median(slope[-PER_OCTAVE:]))))[0]
+                if waves.size > MOST_WAVES:  # the ripple of a dead time in a sum, not corners
+                    end = min(end, int(left[0] + waves[MOST_WAVES]))
                 settled = np.abs(slope[: end + 1] - np.median(slope[-PER_OCTAVE:])) > BENT
                 high = int(np.nonzero(settled)[0][-1]) if settled.any() and not lagged.size else min(end, w.size - 1)
                 if not settled.any() and not lagged.size:
@@ -132,6 +175,20 @@ class FunctionPlant(Plant):
                 return float(w[left[0]]), float(max(w[high], w[left[0]]))
         at = 1.0 / self.dead_time if self.dead_time else 1.0
         return at, at
+
+    def _first_smooth(self, w: Array, value: ComplexArray) -> int:
+        """Return the first frequency from which on, for two octaves, the values are not rounding errors.
+
+        A function such as (1 - e^{-s})/s loses its digits near s = 0. Where it has them, its value is the mean of those
+        around it.
+        """
+        turn = np.exp(2j * np.pi * np.arange(8) / 8)
+        with np.errstate(all="ignore"):
+            mean = np.mean(self.delay_free(1j * w[:, None] * (1.0 + 0.1 * turn)), axis=1)
+            smooth = np.abs(mean - value) <= ANALYTIC * np.abs(value)
+        smooth &= np.isfinite(value) & (np.abs(value) > 1e-290) & (np.abs(value) < 1e290)
+        run = np.convolve(smooth, np.ones(2 * PER_OCTAVE), mode="valid") > 2 * PER_OCTAVE - 0.5
+        return int(np.argmax(run)) if run.any() else int(np.argmax(value != 0.0))
 
     def state_space(self) -> tuple[Array, Array, Array, float]:
         """Refuse: a function has no state-space model; LoopError always."""
@@ -141,3 +198,10 @@ class FunctionPlant(Plant):
     def __repr__(self) -> str:
         name = getattr(self.function, "__name__", "function")
         return f"Plant.from_function({name}, dead_time={self.dead_time:g})"
+
+
+def difference(g: Callable[[ComplexArray], ComplexArray], s: ComplexArray) -> ComplexArray:
+    """Return g'(s) by a difference of the sixth order."""
+    h = STEP * np.abs(s)
+    slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
+    return np.asarray(slope / (60 * h))

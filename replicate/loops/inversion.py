@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -24,6 +25,7 @@ from numpy.typing import NDArray
 from replicate.loops import chebyshev
 from replicate.loops.errors import LoopError
 from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -37,6 +39,7 @@ FIRST = 1e-3  # length of the first piece, in time scales
 GROWTH = 1.35
 SHORT = 1e-6  # length of a piece, in time scales, that is not halved
 SHORTEST = 1e-14  # length of a piece, in time scales, that is not halved at a kink: a power of t starts without a scale
+ALONG = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 1500)])  # shares of a side, dense at its start
 SPAN = 0.02  # smallest ratio of two times for which one contour serves
 KINKS = 12
 MOST_EXPANDED = 25  # dead times up to which it is, if the closed loop cannot be inverted there
@@ -52,16 +55,24 @@ class ClosedLoop:
     forward
         The open response without the dead time, drive times plant over s, for complex arrays.
     poles
-        The rightmost closed-loop poles with Im > 0. They are counted: whether these are all is checked.
+        The rightmost closed-loop poles with Im >= 0. They are counted: whether these are all is checked.
+    unit
+        The user's unit of time over the loop's, for messages.
     """
 
     transfer: LoopTransfer
     forward: Callable[[Any], ComplexArray]
     poles: ComplexArray
+    unit: float
 
     def closed(self, s: Any) -> ComplexArray:
         """Evaluate the response's transform without the dead time of its first path."""
         return np.asarray(self.forward(s) / (1.0 + self.transfer(s)))
+
+    @cached_property
+    def bandwidth(self) -> float:
+        """A frequency beyond which |L| is small."""
+        return self.transfer.beyond(0.1)
 
     def path(self, trips: int) -> Callable[[Any], ComplexArray]:
         """Return the transform, without dead time, of the part that has been around the loop ``trips`` times."""
@@ -76,7 +87,7 @@ class ClosedLoop:
     def residue(self, pole: complex) -> complex:
         """Return the residue of the closed transform at a pole, by Cauchy's integral."""
         others = [abs(pole - q) for q in self.poles if q != pole]
-        radius = 0.3 * min([abs(pole), 2.0 * pole.imag, *others])
+        radius = 0.3 * min([abs(pole), *([2.0 * pole.imag] if pole.imag else []), *others])
         turn = np.exp(2j * np.pi * np.arange(RESIDUE_POINTS) / RESIDUE_POINTS)
         return complex(np.mean(self.closed(pole + radius * turn) * radius * turn))
 
@@ -111,7 +122,7 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
     lefts: list[float] = []
     pieces: list[Array] = []
     # the response's size, before any piece is known
-    largest = float(np.abs(loop.closed(1.0 / time_scale)) / time_scale)
+    largest = float(np.abs(loop.closed((1.0 + 1.0j) / time_scale)) / time_scale)
     while pending:
         left, right = pending.pop()
         t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)
@@ -139,29 +150,40 @@ def _values(loop: ClosedLoop, t: Array) -> Array:
     delay = loop.transfer.dead_time
     middle = float(t[t.size // 2])
     if not delay or middle > EXPANDED * delay:
-        try:
-            return _invert(loop.closed, t, loop)
-        except LoopError:
-            if not delay or middle > MOST_EXPANDED * delay:
-                raise
+        values = _invert(loop.closed, t, loop)
+        if values is not None:
+            return values
+        if not delay or middle > MOST_EXPANDED * delay:
+            raise LoopError(_why_not(loop, loop.closed, t))
     # after n dead times the loop has been gone around n times at most: a finite sum without closed-loop poles
-    parts = [_invert(loop.path(n), t - n * delay, None) for n in range(int(middle / delay) + 1)]
-    return np.asarray(np.sum(parts, axis=0))
+    total = np.zeros_like(t)
+    for n in range(int(middle / delay) + 1):
+        part = _invert(loop.path(n), t - n * delay, None)
+        if part is None:
+            raise LoopError(_why_not(loop, loop.path(n), t))
+        total += part
+    return total
 
 
-def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array:
-    """Invert a transform at times t; with a loop, its poles to the right of the contour are added as residues."""
+def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array | None:
+    """Invert a transform at times t, or return None if no contour does.
+
+    With a loop, its poles to the right of the contour are added as residues.
+    """
     result = np.zeros_like(t)
     left = t > 1e-14 * max(float(t.max()), 0.0)
     while left.any():  # one contour serves times that differ by no more than a factor
         longest = float(t[left].max())
         group = left & (t >= SPAN * longest)
-        result[group] = _invert_group(transform, t[group], loop)
+        values = _invert_group(transform, t[group], loop)
+        if values is None:
+            return None
+        result[group] = values
         left &= ~group
     return result
 
 
-def _invert_group(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array:
+def _invert_group(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array | None:
     longest, shortest = float(t.max()), float(t.min())
     for opening in OPENINGS:
         for scale in (3.0 / longest, 9.0 / longest):
@@ -173,24 +195,47 @@ def _invert_group(transform: Callable[[Any], ComplexArray], t: Array, loop: Clos
             if values is None:
                 continue
             if loop:
-                for pole in outside:
-                    values = values + 2.0 * (loop.residue(complex(pole)) * np.exp(pole * t)).real
+                for pole in outside.tolist():
+                    pair = 2.0 if pole.imag else 1.0
+                    values = values + pair * (loop.residue(pole) * np.exp(pole * t)).real
             return values
-    raise LoopError(_why_not(transform, shortest))
+    return None
 
 
-def _why_not(transform: Callable[[Any], ComplexArray], shortest: float) -> str:
-    """Say why no contour inverts a transform."""
+def _why_not(loop: ClosedLoop, transform: Callable[[Any], ComplexArray], t: Array) -> str:
+    """Say why no contour inverts a transform at times ``t``."""
+    hidden = _hidden_dead_time(loop.transfer.plant)
+    if hidden:
+        return (
+            f"the plant's function holds a dead time of about {hidden * loop.unit:.2g}: "
+            "take it out and give it as dead_time, or several as a sum of plants"
+        )
+    shortest = float(t[t > 0.0].min())
     contour = _Contour(3.0 / shortest, OPENINGS[0])
     s, _ = contour(np.linspace(0.0, contour.reach(shortest), 200))
     with np.errstate(all="ignore"):
         wrong = s[~np.isfinite(transform(s))]
     if wrong.size:
-        return f"the plant's function is not finite at s = {wrong[0]:.3g}: write it so that it does not overflow"
+        at = f"{wrong[0] / loop.unit:.3g}"
+        return f"the plant's function is not finite at s = {at}: write it so that it does not overflow"
     return (
         "no contour inverts the response: the loop is too lightly damped, "
         "or the plant's function falls too slowly at high frequency"
     )
+
+
+def _hidden_dead_time(plant: Plant) -> float:
+    """Return the dead time T of a function that grows to the left as exp(-s T) does, else 0."""
+    low, high = plant.corners
+    size = np.geomspace(low, 1e3 * high, 60)
+    left = size * np.exp(0.9j * np.pi)
+    with np.errstate(all="ignore"):
+        growth = np.log(np.abs(plant.delay_free(left))) / -left.real
+    growth = growth[np.isfinite(growth)]
+    # powers and roots of s grow more slowly: their rate falls
+    last = growth[-4:]
+    steady = last.size == 4 and float(np.ptp(last)) < 0.2 * float(np.abs(last).max())
+    return float(last[-1]) if steady and last[-1] > 0.0 else 0.0
 
 
 def _refined(contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float) -> Array | None:
@@ -232,27 +277,26 @@ class _Contour:
     def poles_to_the_right(self, loop: ClosedLoop, shortest: float) -> ComplexArray | None:
         """Return the known closed-loop poles to the right of the contour, or None if they are not all there are.
 
-        The argument of 1 + L is followed around the region between the upper arm, cut where exp(s t) has decayed, the
-        vertical line above its tip, and the vertical line through the contour's vertex: each pole inside adds a turn.
+        The argument of 1 + L is followed from the contour's vertex along the upper arm, cut where exp(s t) has decayed,
+        up, to the right, and down to the real axis. With its mirror image this path is closed: a pair inside adds two
+        half turns, a real pole one.
         """
-        transfer = loop.transfer
         arm, _ = self(np.linspace(0.0, self.reach(shortest), 3000))
-        vertex, tip = arm[0].real, arm[-1]
-        top = max(2.0 * tip.imag, 2.0 * transfer.beyond(0.1))
-        along = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 1500)])
-        up = tip + 1j * (top - tip.imag) * along
-        bridge = np.linspace(tip.real, vertex, 200) + 1j * top
-        back = vertex + 1j * top * along[::-1]
-        path = np.concatenate([arm, up, bridge, back])
+        tip = arm[-1]
+        top = max(2.0 * tip.imag, 2.0 * loop.bandwidth)
+        up = tip + 1j * (top - tip.imag) * ALONG
+        bridge = np.linspace(tip.real, top, 400) + 1j * top
+        down = top + 1j * top * ALONG[::-1]
         with np.errstate(all="ignore"):
-            value = 1.0 + transfer(path)
+            value = 1.0 + loop.transfer(np.concatenate([arm, up, bridge, down]))
         if not np.isfinite(value).all():
             return None
-        turns = round(abs(float(np.sum(np.angle(value[1:] / value[:-1])))) / (2.0 * np.pi))
-        inside = [pole for pole in loop.poles if pole.imag > 0.0 and _encloses(path, complex(pole))]
-        return np.array(inside, dtype=complex) if len(inside) == turns else None
+        half_turns = round(abs(float(np.sum(np.angle(value[1:] / value[:-1])))) / np.pi)
+        known = np.array(loop.poles, dtype=complex)
+        inside = known[(known.real > np.where(known.imag < tip.imag, self.left_end(known.imag), tip.real))]
+        return inside if half_turns == np.sum(np.where(inside.imag > 0.0, 2, 1)) else None
 
-
-def _encloses(path: ComplexArray, point: complex) -> bool:
-    offsets = np.append(path, path[0]) - point
-    return abs(float(np.sum(np.angle(offsets[1:] / offsets[:-1])))) > np.pi
+    def left_end(self, height: Array) -> Array:
+        """Return the real part of the point of the upper arm at an imaginary part."""
+        rise = np.hypot(1.0, height / (self.scale * np.cos(self.opening)))
+        return np.asarray(self.scale * (1.0 - np.sin(self.opening) * rise))

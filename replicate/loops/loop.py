@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
@@ -127,9 +126,16 @@ class Loop(LoopViews):
         """Return the closed-loop pole with the largest real part (of a pair the one with Im > 0).
 
         Modes that cancel in the set-point response (plant poles cancelled by controller zeros) are included.
+
+        Raises
+        ------
+        LoopError
+            If there is none: the loop is static, or its plant is a function whose cut takes the place of poles.
         """
         if self._poles.size == 0:
             msg = "a static loop has no poles; give a horizon to get its response"
+            if not self.plant.parts:
+                msg = "the loop has no pole off the negative real axis, where its plant, a function, has a cut"
             raise LoopError(msg)
         return complex(self._poles[0] / self._units.time)
 
@@ -186,8 +192,13 @@ class Loop(LoopViews):
         self._require_stable("settling horizon")
         if not self.plant.parts:
             # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
-            return TAIL / abs(self.rightmost_pole().real)
+            return TAIL * self._pace * self._units.time
         return SETTLED / self._slowest_decay() + 4.0 * self._longest
+
+    @property
+    def _pace(self) -> float:
+        """Time constant of the slowest mode of a loop around a function, in the loop's units; 1 if it has no mode."""
+        return 1.0 / abs(self._poles[0].real) if self._poles.size and self._poles[0].real else 1.0
 
     @property
     def _longest(self) -> float:
@@ -301,48 +312,9 @@ class Loop(LoopViews):
             s = np.asarray(s, dtype=complex)
             return np.asarray((setpoint * controller.feedforward(s) + load) * plant.delay_free(s) / s)
 
-        closed = inversion.ClosedLoop(self._transfer, forward, self.poles(count=8) * self._units.time)
-        breaks, y = inversion.respond(closed, end, 1.0 / abs(self._poles[0].real))
+        closed = inversion.ClosedLoop(self._transfer, forward, self.poles(count=8) * self._units.time, self._units.time)
+        breaks, y = inversion.respond(closed, end, self._pace)
         return breaks, y, *control_signal(controller, breaks, y, setpoint)
 
     def __repr__(self) -> str:
         return f"Loop({self.plant!r}, {self.controller!r})"
-
-
-def step_responses(
-    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float = 1.0, load: float = 0.0
-) -> list[Signal]:
-    """Return the outputs of one rational plant under many controllers that differ only in their gains.
-
-    With dead time all loops advance together: one matrix product per dead-time interval for the whole sweep.
-
-    Parameters
-    ----------
-    plant
-        A rational plant.
-    controllers
-        The controllers.
-    until
-        Time until which the responses are computed.
-    setpoint, load
-        Heights of the steps of the set point and, at the plant input, of the load.
-
-    Raises
-    ------
-    LoopError
-        If the controllers differ in more than k, ki, kd and b.
-    """
-    if not controllers:
-        return []
-    until = checks.positive("the horizon until", until, allowed="a finite time > 0")
-    units = Units.of(plant, controllers[0])
-    found = responses(
-        units.plant(plant), [units.controller(c) for c in controllers], until / units.time,
-        setpoint=setpoint, load=load * units.gain,
-    )  # fmt: skip
-    signals = []
-    for controller, (breaks, y, _) in zip(controllers, found, strict=True):
-        loop = Loop(plant, controller)
-        final, _ = loop.steady_state(setpoint, load)
-        signals.append(Signal(breaks * units.time, y, final=final, stable=loop.is_stable))
-    return signals

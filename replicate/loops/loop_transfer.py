@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops.controller import PID
-from replicate.loops.errors import ImproperLoopError
+from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.plant import Plant
 from replicate.loops.sum_plant import SumPlant
 
@@ -193,8 +193,12 @@ class LoopTransfer:
         ahead = 2.0 ** np.arange(octaves + 1)
         w = start * (1.0 + 1e-9)
         for _ in range(400):
-            if np.all(np.abs(self(1j * w * ahead)) < level):
+            gain = np.abs(self(1j * w * ahead))
+            if np.all(gain < level):
                 return float(w)
+            if np.isnan(gain).any():
+                msg = "the plant's function is not finite at high frequency: write it so that it does not overflow"
+                raise LoopError(msg)
             w *= 1.5
         msg = f"the loop gain does not fall below {level:g} at high frequency"
         raise ImproperLoopError(msg)

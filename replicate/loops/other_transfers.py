@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from replicate.loops.errors import ImproperLoopError
+from replicate.loops.function_plant import difference
 from replicate.loops.loop_transfer import LoopTransfer, stationary_frequencies
 from replicate.loops.sum_plant import SumPlant
 
@@ -48,14 +49,22 @@ class FunctionTransfer(LoopTransfer):
         return np.asarray(np.polyval(self.den, s) + fed_back)
 
     def characteristic_slope(self, s: ComplexArray) -> ComplexArray:
-        """Evaluate f'(s)."""
-        slope, den = np.polyval(np.polyder(self.den), s), np.polyval(self.den, s)
-        value = np.polyval(self.num, s) * np.exp(-s * self.dead_time) * self.plant.delay_free(s)
-        return np.asarray(slope + value * (self.log_derivative(s) + slope / den))
+        """Evaluate f'(s), the function's part by a difference: N g has no pole where N cancels one of g."""
+
+        def open_loop(s: ComplexArray) -> ComplexArray:
+            return np.asarray(np.polyval(self.num, s) * self.plant.delay_free(s))
+
+        fed_back = difference(open_loop, s) - self.dead_time * open_loop(s)
+        return np.asarray(np.polyval(np.polyder(self.den), s) + fed_back * np.exp(-s * self.dead_time))
 
     def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
         """Evaluate f(s) and f'(s)."""
         return self.characteristic(s), self.characteristic_slope(s)
+
+    def size(self, s: ComplexArray) -> Array:
+        """Return the sum of the moduli of f's terms."""
+        fed_back = np.polyval(self.num, s) * np.exp(-s * self.dead_time) * self.plant.delay_free(s)
+        return np.asarray(np.abs(np.polyval(self.den, s)) + np.abs(fed_back))
 
     def log_derivative(self, s: Any) -> ComplexArray:
         """Evaluate L'(s)/L(s)."""

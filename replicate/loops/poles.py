@@ -1,27 +1,20 @@
 """Closed-loop poles of loops with dead time, all of them and multiple ones, too.
 
-Candidates are the eigenvalues of the infinitesimal generator, discretised by Chebyshev collocation of the transport of
-the control signal through the dead time (Breda, Maset and Vermiglio, "Stability of Linear Delay Differential
-Equations", 2015, chapter 4); each is polished by Newton's method on the exact characteristic function. The
-discretisation only says where to look: what is returned satisfies f(s) = 0 to rounding, and the argument principle says
-whether it is complete.
+Candidates (`replicate.loops.pole_starts`) are polished by Newton's method on the exact characteristic function. They
+only say where to look: what is returned satisfies f(s) = 0 to rounding, and the argument principle says whether it is
+complete.
 """
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
-import scipy.linalg
-from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
-from replicate.loops.chain import build_chain, gains
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
+from replicate.loops.pole_starts import generator_eigenvalues, has_cut, starts_on_grid
 from replicate.loops.stability import argument_change
 from replicate.loops.zero_search import Box, zero_in_circle, zeros_in_box
 
@@ -31,10 +24,12 @@ ComplexArray = NDArray[np.complex128]
 NEWTON_STEPS = 40
 SOON = 8  # steps after which a simple zero has been found to rounding
 SETTLED = 1e-12  # relative size of the step at such a zero: what is left is rounding
+ARRIVED = 1e-6  # and at a multiple one
 SPARE = 3  # zeros that are found besides those asked for before the others are given up
 MOST_STARTS = 24
 EPS = float(np.finfo(float).eps)
 CLOSE = 0.03  # distance, relative to the modulus, of points that may be one multiple pole
+STALLED = 1e-8  # size of f, relative to its terms, near a zero that Newton's method cannot reach
 NOISE = 200.0  # rounding errors of f, in units of eps times its terms, within which it is zero
 MOST_TURNS = 3000.0  # rad of the longest dead time up to which poles are counted
 TIE = 1e-9  # relative difference of real parts that are equal
@@ -43,12 +38,13 @@ TIE = 1e-9  # relative difference of real parts that are equal
 def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
     """Return the rightmost closed-loop poles, sorted by descending real part, Im >= 0 (a pair counts once).
 
-    A multiple pole is returned once; of equal real parts the lowest frequency comes first. A static loop has none.
+    A multiple pole is returned once; of equal real parts the lowest frequency comes first. A static loop has none, and
+    a loop around a plant given by a function may have none off its cut.
 
     Raises
     ------
     LoopError
-        If no pole is found.
+        If no pole of a rational loop is found.
     """
     if transfer.is_polynomial:
         starts = np.asarray(np.roots(np.polyadd(transfer.den, transfer.num)), dtype=complex)
@@ -57,7 +53,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     elif plant.parts:
         starts = generator_eigenvalues(plant, controller, transfer)
     else:
-        starts = _starts_on_grid(transfer)
+        starts = starts_on_grid(transfer)
     if starts.size == 0 and (transfer.is_polynomial or transfer.num.size == 0):  # a static loop
         return starts
     starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]
@@ -65,13 +61,17 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     polished, converged = _newton(transfer, starts, count)
     # a multiple root has no slope for Newton: there the eigenvalue is as good as it gets
     points = np.where(converged, polished, starts) if transfer.is_polynomial else polished[converged]
+    if not plant.parts:
+        points = np.append(points, _stalled(transfer, polished[~converged]))
+    if plant.parts and not complex(transfer.characteristic(0j)):  # Newton's steps are relative to s
+        points = np.append(points[np.abs(points) > 1e-9 * np.abs(points).max(initial=0.0)], 0.0)
     found = _ordered(_distinct(transfer, points, count))
     if plant.parts and not transfer.is_polynomial and transfer.num.size:
         found = _completed(transfer, found, count)
-    if not found:
+    if not found and plant.parts:
         msg = "no closed-loop pole was found"
         raise LoopError(msg)
-    return np.array(found[:count])
+    return np.array(found[:count], dtype=complex)
 
 
 def merged(first: ComplexArray, second: ComplexArray, count: int) -> ComplexArray:
@@ -96,6 +96,9 @@ def _ordered(poles: list[complex]) -> list[complex]:
 def _distinct(transfer: LoopTransfer, points: ComplexArray, count: int) -> list[complex]:
     """Return each pole once: points that are one to rounding become one, near ones the multiple pole they are."""
     found: list[complex] = []
+    # a pair that is one double pole shows only one of its two
+    close = points[(points.imag > 0.0) & (2.0 * points.imag <= CLOSE * np.abs(points))]
+    points = np.concatenate([points, close.conj()])
     ordered = [complex(p) for p in points[np.argsort(-points.real)]]
     while ordered and len(found) < 2 * count + MOST_STARTS:
         first = ordered.pop(0)
@@ -110,7 +113,9 @@ def _distinct(transfer: LoopTransfer, points: ComplexArray, count: int) -> list[
         if abs(pole.imag) < 1e-10 * abs(pole):
             pole = complex(pole.real, 0.0)
         if not transfer.plant.parts and pole.imag < 1e-9 * abs(pole) and pole.real <= 0.0:
-            continue  # on the cut of a plant given by a function
+            if has_cut(transfer, np.array([pole]))[0]:
+                continue
+            pole = complex(pole.real, 0.0)
         if all(abs(pole - other) > 1e-8 * abs(pole) for other in found):
             found.append(pole)
     return found
@@ -131,6 +136,18 @@ def _multiple(transfer: LoopTransfer, first: complex, near: list[complex], clear
     at = np.array([zero.place])
     size = transfer.size(at)[0]
     return zero.place if abs(complex(transfer.characteristic(at)[0])) <= NOISE * EPS * size else None
+
+
+def _stalled(transfer: LoopTransfer, points: ComplexArray) -> ComplexArray:
+    """Return the multiple poles near which Newton's method has stalled for want of digits of the function."""
+    found: list[complex] = []
+    for point in points[np.isfinite(points) & (points.real < 0.0)].tolist():
+        value = transfer.characteristic(np.array([point]))
+        if abs(complex(value[0])) <= STALLED * transfer.size(np.array([point]))[0]:
+            zero = zero_in_circle(transfer.characteristic, transfer.characteristic_slope, point, 0.1 * abs(point))
+            if zero is not None and zero.order >= 2:
+                found.append(zero.place)
+    return np.array(found, dtype=complex)
 
 
 def _completed(transfer: LoopTransfer, found: list[complex], count: int) -> list[complex]:
@@ -192,63 +209,6 @@ def _count_right_of(transfer: LoopTransfer, line: float) -> int | None:
     return None if turn is None else round(turn / np.pi)
 
 
-def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer) -> ComplexArray:
-    """Return approximate poles, Im >= 0: where to look for the exact ones."""
-    chain = build_chain(plant, controller, integral=controller.ki != 0.0, derivative=controller.kd != 0.0)
-    chain = chain.balanced(gains(controller))
-    # the set-point filter's states are outside the loop
-    outside = controller.setpoint_filter_polynomials()[1].size - 1
-    n = chain.e.size - outside
-    g = gains(controller)
-    a, b, ux, uv = chain.a[:n, :n], chain.b[:n], (g @ chain.wx)[:n], g @ chain.wv
-    delays = np.array([part.dead_time for part in plant.parts])
-    longest = float(delays[-1])
-    if delays[0] == 0.0:  # close the path without dead time
-        direct = 1.0 - float(uv[0])
-        ux, uv = ux / direct, uv / direct
-        a, b = a + np.outer(b[:, 0], ux), b + np.outer(b[:, 0], np.where(delays > 0.0, uv, 0.0))
-        delays, b, uv = delays[1:], b[:, 1:], uv[1:]
-    # enough nodes to resolve the phase that the loop can turn during one dead time at its fastest relevant frequency
-    crossing = transfer.beyond(max(0.3, 0.5 * (1.0 + transfer.feedthrough)))
-    degree = int(min(160, max(24, np.ceil(1.2 * crossing * longest) + 16)))
-    d = _differentiation_matrix(degree) * (2.0 / longest)
-    # unknowns: X and u(t + theta) at the nodes theta = -L..0; the last node is u itself, given by the controller
-    size = n + degree
-    values = chebyshev.basis(1.0 - 2.0 * delays / longest, degree).T @ chebyshev.values_to_coefficients(degree)
-    inputs = values[:, :degree]  # v_i = u(t - L_i) from the nodes; u(t) itself has no part in it
-    inputs[np.abs(inputs) < 1e-13] = 0.0
-    own = np.where(np.abs(values[:, degree]) < 1e-13, 0.0, values[:, degree])
-    control = np.concatenate([ux, uv @ inputs]) / (1.0 - float(uv @ own))
-    matrix = np.zeros((size, size))
-    matrix[:n, :n] = a
-    matrix[:n, n:] = b @ inputs
-    matrix[:n] += np.outer(b @ own, control)
-    matrix[n:, n:] = d[:degree, :degree]
-    matrix[n:] += np.outer(d[:degree, degree], control)
-    eigenvalues = np.asarray(scipy.linalg.eigvals(matrix), dtype=complex)
-    return eigenvalues[eigenvalues.imag >= 0.0]
-
-
-@cache
-def _differentiation_matrix(degree: int) -> Array:
-    slopes = cheb.chebval(chebyshev.nodes(degree), cheb.chebder(np.eye(degree + 1), axis=0))  # (degree+1 basis, nodes)
-    return np.asarray(slopes.T @ chebyshev.values_to_coefficients(degree))
-
-
-def _starts_on_grid(transfer: LoopTransfer) -> ComplexArray:
-    """Return local minima of |f| on a polar grid of the upper half-plane: starts for plants given by a function."""
-    end = transfer.beyond(0.3)
-    radius = np.geomspace(1e-4 * end, 3.0 * end, 160)
-    angle = np.linspace(0.0, 0.98 * np.pi, 60)
-    s = radius[:, None] * np.exp(1j * angle[None, :])
-    relative = np.abs(1.0 + 1.0 / transfer(s))  # zero at the poles, and free of the scale of L
-    inner = relative[1:-1, :]
-    low = (inner <= relative[:-2, :]) & (inner <= relative[2:, :])
-    padded = np.pad(relative, ((0, 0), (1, 1)), mode="edge")[1:-1]
-    low &= (inner <= padded[:, :-2]) & (inner <= padded[:, 2:])
-    return np.asarray(s[1:-1][low])
-
-
 def _newton(transfer: LoopTransfer, s: ComplexArray, count: int) -> tuple[ComplexArray, NDArray[np.bool_]]:
     """Polish zeros of the characteristic function by Newton's method with limited steps, all at once.
 
@@ -271,6 +231,8 @@ def _newton(transfer: LoopTransfer, s: ComplexArray, count: int) -> tuple[Comple
             value, slope = transfer.characteristic_with_slope(at)
             change = value / slope
             change *= np.minimum(1.0, 0.3 * np.maximum(np.abs(at), 1e-300) / np.abs(change))
-            step[moving] = change
-            s[moving] = at - change
-    return s, np.isfinite(s) & (s != 0.0) & (np.abs(step) <= 1e-6 * np.abs(s))
+            # a plant's pole that the controller cancels has no value: the step before it is the last
+            known = np.isfinite(change) | ~(np.abs(step[moving]) <= ARRIVED * np.abs(at))
+            step[moving] = np.where(known, change, 4e-16 * at)
+            s[moving] = np.where(known, at - change, at)
+    return s, np.isfinite(s) & (s != 0.0) & (np.abs(step) <= ARRIVED * np.abs(s))

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import poles
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.other_transfers import PER_DECADE, crossings_of_one
 from replicate.loops.plant import Plant
+from replicate.loops.pole_starts import generator_eigenvalues
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -99,7 +99,7 @@ class PredictorTransfer(LoopTransfer):
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
         """Where the terms bend, and the predictor's own poles."""
-        own = poles.generator_eigenvalues(self.difference, self.primary, self.inner)
+        own = generator_eigenvalues(self.difference, self.primary, self.inner)
         own = own[np.argsort(-own.real)][:RESONANCES]
         found = np.concatenate([self.outer.corner_frequencies, self.inner.corner_frequencies, own])
         # the predictor has a pole at s = 0: the model's difference cancels the integral part there

@@ -186,6 +186,17 @@ def test_coefficients_that_are_rounding_are_zero() -> None:
 # ---- arguments -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("order", [10, 30, 40])
+def test_large_state_space_models_keep_all_their_coefficients(order: int) -> None:
+    random = np.random.default_rng(order)
+    a = -np.diag(np.linspace(0.1, 20.0, order)) + 0.01 * random.normal(size=(order, order))
+    system = control.ss(a, random.normal(size=(order, 1)), random.normal(size=(1, order)), 0.0)
+    plant = Plant.from_control(system, 0.5)
+    for w in (0.01, 0.3, 1.0, 7.0, 50.0):
+        direct = (system.C @ np.linalg.solve(1j * w * np.eye(order) - system.A, system.B)).item() * np.exp(-0.5j * w)
+        assert complex(plant(1j * w)) == pytest.approx(direct, rel=1e-10)
+
+
 def test_every_real_number_is_a_number() -> None:
     half: Any = Fraction(1, 2)
     quarter: Any = Decimal("0.25")

@@ -48,6 +48,21 @@ def test_multiple_poles() -> None:
     assert same_pole(loop.rightmost_pole(), -1.0, rel=1e-4)
 
 
+@pytest.mark.parametrize("dead_time", [0.1, 10.0, 100.0, 1e4])
+def test_a_double_pole_that_rounding_makes_a_pair(dead_time: float) -> None:
+    # Ti = T leaves k e^{-sL}/s, with the double pole -1/L for k L = 1/e
+    k = float(np.exp(-1.0)) / dead_time
+    pole = Loop(Plant.foptd(1.0, 1.0, dead_time), PI(k, k)).rightmost_pole()
+    assert same_pole(pole, -min(1.0, 1.0 / dead_time), rel=1e-7)
+    assert pole.imag == 0.0
+
+
+def test_a_pole_at_rest_that_the_controller_does_not_move() -> None:
+    # s/(s + 1) under integral action, and an integrator without feedback
+    assert Loop(Plant([1.0, 0.0], [1.0, 1.0], 1.0), PI(0.5, 0.3)).rightmost_pole() == 0.0
+    assert Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(0.0)).rightmost_pole() == 0.0
+
+
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_rightmost_pole_is_a_pole_and_none_lies_to_its_right(name: str) -> None:
     problem = PROBLEMS[name]

@@ -1,0 +1,169 @@
+"""Plants given by functions: Talbot's inversion in mpmath, exact poles, limits at rest, and refusals that say why."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from loops.references import polished_root
+from replicate.loops import PI, PID, Loop, LoopError, Plant
+
+Function = Callable[[Any], Any]
+
+#: Function for numpy, the same for mpmath, dead time.
+FUNCTIONS: dict[str, tuple[Function, Function, float]] = {
+    "diffusion": (lambda s: np.exp(-np.sqrt(s)), lambda s: mp.exp(-mp.sqrt(s)), 0.0),
+    "fractional lag": (lambda s: 1 / (1 + s**0.9), lambda s: 1 / (1 + s ** mp.mpf("0.9")), 0.2),
+    "half integrator": (lambda s: 1 / np.sqrt(s), lambda s: 1 / mp.sqrt(s), 0.0),
+    "half integrator, dead time": (lambda s: 1 / np.sqrt(s), lambda s: 1 / mp.sqrt(s), 0.5),
+    "sech": (
+        lambda s: 2.0 * np.exp(-np.sqrt(s)) / (1.0 + np.exp(-2.0 * np.sqrt(s))), lambda s: mp.sech(mp.sqrt(s)), 0.0,
+    ),
+    "sech that overflows": (lambda s: 1.0 / np.cosh(np.sqrt(s)), lambda s: mp.sech(mp.sqrt(s)), 0.0),
+    "tanh": (lambda s: np.tanh(np.sqrt(s)) / np.sqrt(s), lambda s: mp.tanh(mp.sqrt(s)) / mp.sqrt(s), 0.0),
+    "half lag, dead time": (lambda s: 1 / (1 + np.sqrt(s)), lambda s: 1 / (1 + mp.sqrt(s)), 1.0),
+    "a lag after all": (lambda s: 1 / (s + 1), lambda s: 1 / (s + 1), 1.0),
+    "an integrator after all": (lambda s: 1 / s, lambda s: 1 / s, 1.0),
+    "power of a lag": (lambda s: 1 / (s + 1) ** 1.5, lambda s: 1 / (s + 1) ** mp.mpf("1.5"), 0.3),
+}  # fmt: skip
+
+CONTROLLERS = {
+    "P": PI(0.4),
+    "PI": PI(0.5, 0.3),
+    "PID, filter": PID(0.5, 0.3, 0.1, derivative_filter=0.05),
+    "PI, filter of second order": PI(0.5, 0.3, measurement_filter=((1.0,), (0.005, 0.1, 1.0))),
+}
+
+TIMES = (0.05, 0.7, 2.3, 6.0)
+
+
+def feedback(controller: PID, s: mp.mpc) -> mp.mpc:
+    num, den = controller.measurement_filter_polynomials()
+    derivative = mp.mpf(controller.kd) * s / (1 + s * mp.mpf(controller.derivative_filter))
+    bare = mp.mpf(controller.k) + mp.mpf(controller.ki) / s + derivative
+    return bare * mp.polyval(num.tolist(), s) / mp.polyval(den.tolist(), s)
+
+
+def step(function: Function, dead_time: float, controller: PID, t: float) -> float:
+    """Sum what has gone around the loop n times; each term is inverted on its own."""
+    total, late = mp.mpf(0), mp.mpf(dead_time)
+    with mp.workdps(40):
+
+        def drive(s: mp.mpc) -> mp.mpc:
+            return (controller.b * mp.mpf(controller.k) + mp.mpf(controller.ki) / s) * function(s) / s
+
+        if not dead_time:
+            return float(
+                mp.invertlaplace(
+                    lambda s: drive(s) / (1 + feedback(controller, s) * function(s)), t, method="talbot", degree=60
+                )
+            )
+        n = 0
+        while t > late:
+            total += mp.invertlaplace(
+                lambda s, n=n: drive(s) * (-feedback(controller, s) * function(s)) ** n, t - late,
+                method="talbot", degree=50,
+            )  # fmt: skip
+            n, late = n + 1, late + mp.mpf(dead_time)
+    return float(total)
+
+
+@pytest.mark.parametrize("controller", CONTROLLERS)
+@pytest.mark.parametrize("plant", FUNCTIONS)
+def test_step_response_against_talbot(plant: str, controller: str) -> None:
+    function, exact, dead_time = FUNCTIONS[plant]
+    loop = Loop(Plant.from_function(function, dead_time), CONTROLLERS[controller])
+    y = loop.step(until=TIMES[-1])
+    for t in TIMES:
+        assert abs(float(y(t)) - step(exact, dead_time, CONTROLLERS[controller], t)) < 1e-12
+    assert loop.is_stable()
+    assert loop.horizon() > TIMES[-1]
+
+
+def test_a_loop_without_poles_settles() -> None:
+    # k/(1 + sqrt s + k) has no pole: its step response is k/(1+k) (1 - exp(a^2 t) erfc(a sqrt t)), a = 1 + k
+    loop = Loop(Plant.from_function(lambda s: 1.0 / (1.0 + np.sqrt(s))), PI(1.0))
+    with pytest.raises(LoopError, match="no pole off the negative real axis"):
+        loop.rightmost_pole()
+    assert loop.poles(3).size == 0
+    y = loop.step()
+    for t in (1e-3, 0.1, 3.0, 1e4):
+        exact = (1 - mp.exp(4 * mp.mpf(t)) * mp.erfc(2 * mp.sqrt(t))) / 2
+        assert float(y(t)) == pytest.approx(float(exact), rel=1e-11)
+    tail = mp.findroot(lambda t: mp.exp(4 * t) * mp.erfc(2 * mp.sqrt(t)) - mp.mpf("0.02"), 199)
+    assert y.settling_time() == pytest.approx(float(tail), rel=1e-9)
+    assert y.overshoot() == 0.0
+
+
+@pytest.mark.parametrize("k", [30.0, 60.0, -3.0])
+def test_unstable_loops_grow_as_their_poles_say(k: float) -> None:
+    # k e^{-sqrt s} has the poles (ln(-k))^2; what is left of them is inverted on a contour of its own
+    loop = Loop(Plant.from_function(lambda s: np.exp(-np.sqrt(s))), PI(k))
+    assert not loop.is_stable()
+    y = loop.step(until=1.5)
+    with mp.workdps(40):
+        pole = (mp.log(abs(k)) + (mp.pi * 1j if k > 0 else 0)) ** 2
+
+        def closed(s: mp.mpc) -> mp.mpc:
+            return k * mp.exp(-mp.sqrt(s)) / (1 + k * mp.exp(-mp.sqrt(s))) / s
+
+        for t in (0.05, 0.4, 1.5):
+            # 1 + k e^{-sqrt s} has the slope 1/(2 sqrt s) at its zero, k e^{-sqrt s} the value -1
+            residue = -2 * mp.sqrt(pole) * mp.exp(pole * t) / pole
+            grown = residue if k < 0 else 2 * residue.real
+            shifted = mp.invertlaplace(lambda s: closed(s + 60), mp.mpf(t), method="talbot", degree=120)
+            exact = shifted * mp.exp(60 * mp.mpf(t))
+            assert float(y(t)) == pytest.approx(float(mp.re(exact)), rel=1e-9)
+            if t == 1.5:
+                assert abs(float(mp.re(exact - grown))) < 10.0  # what grows is the pole's
+
+
+@pytest.mark.parametrize("controller", [PI(0.5, 0.3), PI(0.0, 0.1), PID(0.5, 0.3, 0.1, derivative_filter=0.05)])
+def test_real_poles_of_a_function_without_a_cut(controller: PID) -> None:
+    loop = Loop(Plant.from_function(lambda s: 1.0 / (s + 1.0) ** 2, 1.0), controller)
+    rational = Loop(Plant([1.0], [1.0, 2.0, 1.0], 1.0), controller).rightmost_pole()
+    with mp.workdps(30):
+        pole = polished_root(lambda s: 1 + feedback(controller, s) * mp.exp(-s) / (s + 1) ** 2, rational)
+    assert abs(loop.rightmost_pole() - complex(pole)) < 1e-12 * abs(pole)
+
+
+def test_a_double_pole_where_the_controller_cancels_the_function_s() -> None:
+    k = float(np.exp(-1.0))
+    loop = Loop(Plant.from_function(lambda s: 1.0 / (s + 1.0), 1.0), PI(k, k))
+    assert loop.rightmost_pole() == pytest.approx(-1.0, rel=1e-7)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e6])
+@pytest.mark.parametrize(
+    ("function", "gain"),
+    [
+        (lambda s: (1.0 - np.exp(-s)) / s, 1.0),
+        (lambda s: (1.0 - np.exp(-np.sqrt(s))) / np.sqrt(s), 1.0),
+        (lambda s: np.tanh(np.sqrt(s)) / np.sqrt(s), 1.0),
+        (lambda s: s / (s + 1.0), 0.0),
+        (lambda s: 1.0 / s, np.inf),
+        (lambda s: s**-0.1, np.inf),
+    ],
+)
+def test_the_gain_is_the_limit_at_rest(function: Function, gain: float, unit: float) -> None:
+    assert Plant.from_function(lambda s: function(s * unit)).gain == pytest.approx(gain, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("function", "reason"),
+    [
+        (lambda s: (1.0 - np.exp(-s)) / s, "holds a dead time of about"),
+        (lambda s: np.exp(-np.sqrt(s) * np.sqrt(s + 1.0)), "holds a dead time of about 1:"),
+        (lambda s: np.exp(-3.0 * s) / (s + 1.0), "holds a dead time of about"),
+        (lambda s: np.where(np.abs(s) > 20.0, np.nan, 1.0 / (s + 1.0)), "is not finite at"),
+        (lambda s: np.sinh(np.sqrt(s)) / np.cosh(np.sqrt(s)) / np.sqrt(s), "is not finite at"),
+    ],
+)
+def test_what_cannot_be_inverted_is_refused_with_the_right_reason(function: Function, reason: str) -> None:
+    loop = Loop(Plant.from_function(function), PI(0.0, 1e-7))
+    with pytest.raises(LoopError, match=reason):
+        loop.step(until=30.0)
