@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
@@ -16,7 +17,7 @@ from replicate.cli import app
 from replicate.errors import PaperDefinitionError, ReplicateError, TemplateError
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Variation, rounded
-from replicate.handout import ClassSet, Form, read_roster, stressed
+from replicate.handout import ClassSet, Form, Sheet, language, stressed
 from replicate.handout import class_set as class_set_module
 from replicate.handout.edition import edition
 from replicate.handout.printout import markup, pdf
@@ -141,28 +142,27 @@ def test_a_form_is_read_back_and_names_nobody() -> None:
         Form.read("bayhan:short:1")
 
 
-def test_a_roster_of_many_scripts() -> None:
-    students = read_roster(Path(__file__).parents[1] / "examples" / "roster.csv")
-    assert len(students) == len(set(students)) >= 8
-    assert any(not student.isascii() for student in students)
+def test_a_sheet_made_again_has_the_same_bytes_if_what_is_set_is_given_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    settings = Sheet("A quiz", "1 May", (2.0, 3.0), (1, 3), language("de"))
+    first = toy_class.class_set(tmp_path, monkeypatch, sheet=settings)
+    files = dict(first.files(["Ada"], "2026 W"))
+    row, *_ = csv.DictReader(io.StringIO(files["toy-key.csv"].decode()))
+    form = Form.read(row["form"])
+    assert str(form) == f"toy:{form.key}:2026%20W:1.3"  # paper, key, seed, selection: nobody's name
+    chosen = toy_class.class_set(tmp_path, monkeypatch, sheet=replace(settings, select=form.select))
+    assert dict(chosen.again(form)) == {f"toy-{form.key}.pdf": files["toy-Ada.pdf"]}
+    bare = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(select=form.select))
+    (other,) = dict(bare.again(form)).values()
+    assert other != files["toy-Ada.pdf"]  # title, date, points and language are not in the form
 
 
-@pytest.mark.parametrize(
-    ("text", "column", "message"),
-    [
-        ("", "", "roster is empty"),
-        ("name,mail\n\n", "", "roster is empty"),
-        ("name,mail\nAda,a\nada,b\n", "", "r.csv:3: 'ada' names the same sheet as 'Ada' in line 2"),
-        ("name;mail\nAda;a\n", "id", "no column 'id'; allowed: name, mail"),
-        ("name,id\nAda,\n", "id", "r.csv:2: no entry in the column 'id'"),
-        ("name\nA/B\nA:B\n", "", "names the same sheet"),
-    ],
-)
-def test_a_roster_that_cannot_be_used_is_one_line(tmp_path: Path, text: str, column: str, message: str) -> None:
-    (tmp_path / "r.csv").write_text(text, encoding="utf-8")
-    with pytest.raises(ReplicateError, match=message) as found:
-        read_roster(tmp_path / "r.csv", column)
-    assert "\n" not in str(found.value)
+def test_progress_counts_the_sheets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    steps: list[tuple[int, int]] = []
+    toy = toy_class.class_set(tmp_path, monkeypatch, progress=lambda done, total: steps.append((done, total)))
+    dict(toy.files(["Ada", "Bob", "Eve"], "1"))
+    assert steps == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_sheets_do_not_depend_on_the_rest_of_the_class(toy: ClassSet) -> None:

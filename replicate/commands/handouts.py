@@ -79,6 +79,8 @@ def handout(
     )
     from replicate.handout import language as language_of
     from replicate.staging import staged
+    from replicate.terminal.console import console
+    from replicate.terminal.counted_progress import counted_progress_on
     from replicate.whatif import write_whatif
 
     again = Form.read(form) if form is not None else None
@@ -113,10 +115,19 @@ def handout(
         outcome = run.recompute(chosen)
         verdicts = outcome.judgement.verdicts
         if kinds:
-            class_set = ClassSet(outcome.papers[0], outcome.results, verdicts, bool(solutions), sheet, file_format)
             bank = file_format if file_format in BANKS else "moodle"  # what a platform can import is in every set
-            made = class_set.again(again) if again else class_set.files(students, seed, bank)
-            written = [_written(fresh / "handouts" / name, content) for name, content in made]
+            with counted_progress_on(console(stderr=True), "sheets") as report:
+                class_set = ClassSet(
+                    outcome.papers[0],
+                    outcome.results,
+                    verdicts,
+                    bool(solutions),
+                    sheet,
+                    file_format,
+                    lambda done, total: report(done, total, 0),
+                )
+                made = class_set.again(again) if again else class_set.files(students, seed, bank)
+                written = [_written(fresh / "handouts" / name, content) for name, content in made]
         else:
             written = build_handouts(
                 outcome.papers,

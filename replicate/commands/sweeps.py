@@ -27,10 +27,16 @@ def sweep(
     from replicate.sweeps import read_sweep_file, run_sweep
     from replicate.sweeps.blocks import checked_format
     from replicate.terminal.console import console
-    from replicate.terminal.sweep_progress import sweep_progress_on
+    from replicate.terminal.counted_progress import counted_progress_on
 
     asked = read_sweep_file(file)
     folder = output_folder(library(), out) / "sweeps" / asked.name
-    with sweep_progress_on(console(stderr=True)) as progress:
-        computed = run_sweep(asked, folder, checked_format(file_format), backend_of(backend, scheduler, jobs), progress)
+    with counted_progress_on(console(stderr=True), "loops") as report:
+        computed = run_sweep(
+            asked,
+            folder,
+            checked_format(file_format),
+            backend_of(backend, scheduler, jobs),
+            lambda step: report(step.done, step.total, step.kept),
+        )
     echo(f"sweep: {asked.loops} loops in {folder}; blocks computed: {computed}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -38,6 +38,8 @@ class ClassSet:
         What a lecturer sets for all of them.
     file_format
         Of the sheets, or of the file of questions in their place.
+    progress
+        Is given how many sheets of how many are done.
     """
 
     paper: Paper
@@ -46,6 +48,7 @@ class ClassSet:
     solutions: bool = False
     sheet: Sheet = field(default_factory=Sheet)
     file_format: str = "pdf"
+    progress: Callable[[int, int], None] = lambda *_: None
     _shared: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def files(self, students: Sequence[str], seed: str, bank: str = "") -> Iterator[tuple[str, bytes]]:
@@ -75,8 +78,8 @@ class ClassSet:
         if self.file_format in EDITIONS:
             yield from self._sheets(stems, self._documents(forms.values(), exercises, questions if bank else None))
         else:
-            for _ in self._documents(forms.values(), exercises, questions):
-                pass
+            for number, _ in enumerate(self._documents(forms.values(), exercises, questions), start=1):
+                self.progress(number, len(forms))
         if bank:
             yield from named(BANKS[bank](questions), self.paper.id).items()
 
@@ -138,7 +141,8 @@ class ClassSet:
 
     def _sheets(self, stems: Sequence[str], documents: Iterable[Document]) -> Iterator[tuple[str, bytes]]:
         shown = (document if self.solutions else without_solutions(document) for document in documents)
-        for stem, made in zip(stems, EDITIONS[self.file_format](shown), strict=True):
+        for number, (stem, made) in enumerate(zip(stems, EDITIONS[self.file_format](shown), strict=True), start=1):
+            self.progress(number, len(stems))
             yield from named(made, f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}").items()
 
 

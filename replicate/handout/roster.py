@@ -7,13 +7,16 @@ import io
 import re
 import unicodedata
 from pathlib import Path
+from unicodedata import category
 
 from replicate.errors import ReplicateError
 from replicate.exhibits.plain_text import read_text
 
-_UNSAFE = re.compile(r'[<>:"/\\|?*\x00-\x1f\x7f]')  # in a file's name, on some system
-_LONGEST = 60  # characters of a name, so that its file's name fits any system
-_RESERVED = {"key", "key-forms", "solutions"}  # files of other kinds have these names
+_UNSAFE = re.compile(r'[<>:"/\\|?*]')  # in a file's name, on some system
+_LONGEST = 150  # bytes of a name, so that its file's name fits any system
+_RESERVED = {"key", "solutions", "slides"}  # files of other kinds have these names
+_INVISIBLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
+_JOINERS = "\u200c\u200d"  # within words of some scripts, and between the parts of a pictograph
 
 
 def read_roster(path: Path, column: str = "") -> list[str]:
@@ -31,11 +34,14 @@ def read_roster(path: Path, column: str = "") -> list[str]:
     ReplicateError
         If there is no such file or column, nobody in it, an id missing, or two ids would name one file.
     """
-    text = read_text(path, path.name, ReplicateError)
+    text = _text(path)
     head = text.splitlines()[0] if text.strip() else ""
-    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count))
+    skipped = 1 if re.fullmatch(r'"?sep=[,;\t]"?', head.strip()) else 0  # what a spreadsheet may write first
+    text = "\n" * skipped + text.partition("\n")[2] if skipped else text
+    head = next((line for line in text.splitlines() if line.strip()), "")
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), strict=True)
     try:
-        columns = [name.strip() for name in next(rows, [])]
+        columns = [name.strip() for name in next((row for row in rows if row), [])]
         lines = [(rows.line_num, row) for row in rows if any(cell.strip() for cell in row)]
     except csv.Error as error:
         msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
@@ -46,6 +52,9 @@ def read_roster(path: Path, column: str = "") -> list[str]:
     if column and column not in columns:
         msg = f"{path.name}: no column '{column}'; allowed: {', '.join(columns)}"
         raise ReplicateError(msg)
+    if columns.count(column) > 1:
+        msg = f"{path.name}: several columns are named '{column}'; rename them"
+        raise ReplicateError(msg)
     at = columns.index(column) if column else 0
     students: list[str] = []
     seen: dict[str, tuple[int, str]] = {}
@@ -54,7 +63,11 @@ def read_roster(path: Path, column: str = "") -> list[str]:
         if not student:
             msg = f"{path.name}:{number}: no entry in the column '{columns[at]}', which names the sheets"
             raise ReplicateError(msg)
-        name = file_stem(student).casefold()
+        if "\n" in student:
+            begin = student.partition("\n")[0]
+            msg = f"{path.name}:{number}: '{begin}...' goes on in another line; is a quotation mark missing?"
+            raise ReplicateError(msg)
+        name = unicodedata.normalize("NFC", file_stem(student).casefold())
         if name in seen:
             line, other = seen[name]
             msg = (
@@ -67,13 +80,24 @@ def read_roster(path: Path, column: str = "") -> list[str]:
     return students
 
 
+def _text(path: Path) -> str:
+    try:
+        return read_text(path, path.name, ReplicateError)
+    except ReplicateError as error:
+        if isinstance(error.__cause__, UnicodeDecodeError):
+            msg = f"{error}; in a spreadsheet, save the roster as 'CSV UTF-8'"
+            raise ReplicateError(msg) from error
+        raise
+
+
 def file_stem(student: str) -> str:
     """Return an id as part of a file's name.
 
     Examples
     --------
-    >>> file_stem("Ångström/2"), file_stem("key")
-    ('Ångström_2', 'key_')
+    >>> file_stem("Ångström/2"), file_stem("key"), file_stem(" .. ")
+    ('Ångström_2', 'key_', '_')
     """
-    stem = _UNSAFE.sub("_", student)[:_LONGEST].rstrip(". ") or "_"
+    shown = (sign if sign in _JOINERS or category(sign) not in _INVISIBLE else "_" for sign in student)
+    stem = _UNSAFE.sub("_", "".join(shown)).encode()[:_LONGEST].decode(errors="ignore").rstrip(". ") or "_"
     return f"{stem}_" if stem.casefold() in _RESERVED else stem

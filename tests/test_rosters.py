@@ -1,0 +1,77 @@
+"""Rosters: as spreadsheets save them, with names of any script, and what cannot be used is one line."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from replicate.errors import ReplicateError
+from replicate.handout import read_roster
+from replicate.handout.roster import file_stem
+
+
+def test_a_roster_of_many_scripts() -> None:
+    students = read_roster(Path(__file__).parents[1] / "examples" / "roster.csv")
+    assert len(students) == len(set(students)) >= 8
+    assert any(not student.isascii() for student in students)
+
+
+@pytest.mark.parametrize(
+    ("text", "column", "message"),
+    [
+        ("", "", "roster is empty"),
+        ("name,mail\n\n", "", "roster is empty"),
+        ("name,mail\nAda,a\nada,b\n", "", "r.csv:3: 'ada' names the same sheet as 'Ada' in line 2"),
+        ("name;mail\nAda;a\n", "id", "no column 'id'; allowed: name, mail"),
+        ("name,id\nAda,\n", "id", "r.csv:2: no entry in the column 'id'"),
+        ("name\nA/B\nA:B\n", "", "names the same sheet"),
+        ("name\nZo\u00eb\nZoe\u0308\n", "", "r.csv:3: 'Zoë' names the same sheet as 'Zoë' in line 2"),
+        ("name\nSTRASSE\nStraße\n", "", "r.csv:3: 'Straße' names the same sheet as 'STRASSE' in line 2"),
+        (f"name\n{'x' * 151}\n{'x' * 150}y\n", "", "names the same sheet"),
+        ("id,id\n1,2\n", "id", "r.csv: several columns are named 'id'; rename them"),
+        ('name\n"Ada\nBob\n', "", "r.csv:3: cannot be read as CSV: unexpected end of data"),
+        ('name,mail\n"Ada,a\nBob"\n', "", "r.csv:3: 'Ada,a...' goes on in another line; is a quotation mark missing?"),
+        ("name\nA\u202edA\n", "", "r.csv:2: holds the character U.202E"),
+        ("name\nA\0B\n", "", "r.csv:2: holds the character U.0000"),
+    ],
+)
+def test_a_roster_that_cannot_be_used_is_one_line(tmp_path: Path, text: str, column: str, message: str) -> None:
+    (tmp_path / "r.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(ReplicateError, match=message) as found:
+        read_roster(tmp_path / "r.csv", column)
+    assert "\n" not in str(found.value)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "name;Größe\r\nAda;1\r\nZoë;2\r\n".encode("utf-8-sig"),  # as spreadsheets save it: mark, semicolons, CRLF
+        b"sep=;\r\nname;x\r\nAda;1\r\nZo\xc3\xab;2\r\n",
+        b"\r\nname\tx\r\n\r\nAda\t1\r\nZo\xc3\xab\t2",
+        b'"name","x"\rAda,"1\r2"\rZo\xc3\xab',
+    ],
+)
+def test_a_roster_as_spreadsheets_save_it(tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "r.csv").write_bytes(content)
+    assert read_roster(tmp_path / "r.csv") == read_roster(tmp_path / "r.csv", "name") == ["Ada", "Zoë"]
+
+
+def test_a_roster_in_an_old_encoding_says_how_to_save_it(tmp_path: Path) -> None:
+    (tmp_path / "r.csv").write_bytes("name\nAda\nZoë\n".encode("latin-1"))
+    with pytest.raises(
+        ReplicateError, match=r"r\.csv:3: is not UTF-8 text; in a spreadsheet, save the roster as 'CSV U"
+    ):
+        read_roster(tmp_path / "r.csv")
+
+
+@pytest.mark.parametrize(
+    "student",
+    ["../../etc/passwd", "C:\\Users", ". .", "CON", "a" * 400, "👩‍🔬" * 90, "山" * 200, "ليلى حداد", "a\u200bb", "*?"],
+)
+def test_a_name_of_any_kind_is_part_of_a_name_of_one_file(tmp_path: Path, student: str) -> None:
+    name = f"panagopoulos-{file_stem(student)}-solutions.pdf"
+    assert Path(name).name == name
+    assert len(name.encode()) < 200
+    (tmp_path / name).write_bytes(b"")
+    assert [path.name for path in tmp_path.iterdir()] == [name]
