@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import html
+import os
 import re
+import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -395,7 +397,7 @@ def test_a_handout_begins_with_its_title(make: Make) -> None:
 def test_the_command_line_refuses_an_unknown_format(replicate: Callable[..., tuple[int, str, str]]) -> None:
     status, _, err = replicate("handout", "bayhan", "--format", "pages")
     assert status == 2
-    allowed = "pdf, html, ipynb, docx, tex, typ, moodle, qti"
+    allowed = "pdf, html, ipynb, docx, tex, typ, slides, moodle, qti"
     assert err.strip().splitlines()[-1] == f"replicate: the format is 'pages', allowed: {allowed}"
 
 
@@ -410,8 +412,36 @@ def test_a_letter_that_no_font_has_is_named_with_its_line(make: Make) -> None:
         pdf(document)
 
 
-def test_a_program_that_loops_is_stopped_and_named_by_its_line(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("replicate.handout.programs.LONGEST_RUN", 0.3)
-    loop = "while True:\n    try:\n        number = 6\n    except Exception:\n        pass"
-    with pytest.raises(TemplateError, match=r"toy/handout\.md:\d+: the program did not end within 0\.3 s"):
+@pytest.mark.parametrize(
+    ("loop", "line"),
+    [
+        ("while True:\n    try:\n        number = 6\n    except BaseException:\n        pass", 2),
+        ("number = 6\nsum(range(10**18))", 2),  # one call of C code that keeps the interpreter
+        ("import re\nre.match(r'(a+)+$', 'a' * 64 + 'b')", 2),
+        ("import time\n\ndef wait():\n    time.sleep(1e6)\n\nwait()", 4),
+    ],
+)
+def test_a_program_that_does_not_end_is_stopped_and_named_by_its_line(
+    make: Make, monkeypatch: pytest.MonkeyPatch, loop: str, line: int
+) -> None:
+    monkeypatch.setattr("replicate.handout.programs.LONGEST_RUN", 0.7)
+    with pytest.raises(TemplateError) as raised:
         make(f"{HEAD}```{{.python .run}}\n{loop}\n```\n")
+    stated = re.fullmatch(
+        r"toy/handout\.md:(\d+): the program did not end within 0\.7 s; it was stopped in this line", str(raised.value)
+    )
+    assert stated
+    assert line <= int(stated[1]) - 9 <= max(line, 5 if "while" in loop else line)  # the program begins in line 10
+
+
+@pytest.mark.parametrize("leave", ["import os\nos._exit(0)", "import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)"])
+def test_a_program_that_ends_its_process_is_named(make: Make, leave: str) -> None:
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:1[01]: the program fails: it has ended its process"):
+        make(f"{HEAD}```{{.python .run}}\n{leave}\n```\n")
+
+
+def test_what_a_program_changes_around_it_is_left_in_its_process(make: Make) -> None:
+    program = "import os, sys\nos.environ['TOY'] = '1'\nos.chdir('/')\nsys.path.clear()\nprint('done')"
+    here = Path.cwd()
+    assert "done" in markup(make(f"{HEAD}```{{.python .run}}\n{program}\n```\n"))
+    assert ("TOY" in os.environ, Path.cwd(), bool(sys.path)) == (False, here, True)

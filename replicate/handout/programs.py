@@ -6,16 +6,13 @@ handout share their names, as the cells of a notebook do. What a program writes 
 
 from __future__ import annotations
 
-import io
-import traceback
 from collections.abc import Sequence
-from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from typing import Any
 
 from replicate.errors import TemplateError
-from replicate.handout.endless import TimeIsUp, time_limit
 from replicate.handout.formulas import line_of
+from replicate.handout.program_process import ProgramError, ProgramProcess
 from replicate.handout.tree import Blocks, Element, classes, transform
 
 LONGEST_LINE = 88  # characters; what fits between the margins
@@ -41,7 +38,6 @@ def run_programs(
         If a program fails, or a line of it or of its output is too long for the page.
     """
     known = {} if known is None else known
-    runs = Runs({"__name__": "handout"}, known)
 
     def changed(element: Element) -> list[Element] | None:
         if element["t"] != "CodeBlock":
@@ -60,7 +56,9 @@ def run_programs(
             return [program]
         return [program, {"t": "CodeBlock", "c": [["", ["output"], []], written.rstrip()]}]
 
-    result: Blocks = transform(document, changed)
+    with ProgramProcess() as process:
+        runs = Runs(process, known)
+        result: Blocks = transform(document, changed)
     return result
 
 
@@ -70,13 +68,13 @@ class Runs:
 
     Attributes
     ----------
-    names
-        What the programs have defined.
+    process
+        In which they run.
     known
         What they wrote, by the text of a program and of all before it.
     """
 
-    names: dict[str, Any]
+    process: ProgramProcess
     known: dict[str, Any]
     _before: list[tuple[str, str, int]] = field(default_factory=list)
     _done: int = 0
@@ -87,25 +85,16 @@ class Runs:
         key = "\0".join(["program", *(one for one, _, _ in self._before)])
         if key not in self.known:
             for late in self._before[self._done :]:
-                self.known[key] = _run(late[0], self.names, late[1], late[2])
+                self.known[key] = self._run(*late)
             self._done = len(self._before)
         return str(self.known[key])
 
-
-def _run(code: str, names: dict[str, Any], source: str, first: int) -> str:
-    written = io.StringIO()
-    try:
-        with redirect_stdout(written), time_limit(LONGEST_RUN):
-            exec(compile(code, "<program>", "exec"), names)  # noqa: S102  -- the paper's own text
-    except (Exception, SystemExit, TimeIsUp) as error:
-        failed = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<program>"]
-        line = (failed[-1].lineno if failed else getattr(error, "lineno", 1)) or 1
-        why = f"the program fails: {type(error).__name__}: {error}"
-        if isinstance(error, TimeIsUp):
-            why = f"the program did not end within {LONGEST_RUN:g} s; it was stopped in this line"
-        msg = f"{source}:{first + line - 1}: {why}"
-        raise TemplateError(msg) from error
-    return written.getvalue()
+    def _run(self, code: str, source: str, first: int) -> str:
+        try:
+            return self.process.run(code, LONGEST_RUN)
+        except ProgramError as error:
+            msg = f"{source}:{first + error.line - 1}: {' '.join(str(error).split())}"
+            raise TemplateError(msg) from error
 
 
 def _check_width(line: str, place: str) -> None:

@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -158,6 +158,25 @@ class LocalPool:
 
 
 def _start(output: Path) -> _Worker:
+    process, here = started(serve, output)
+    return _Worker(process, here, output)
+
+
+def started(service: Callable[[Connection, Surroundings], None], output: Path) -> tuple[Any, Connection]:
+    """Start a worker process and return it with the near end of its pipe.
+
+    Parameters
+    ----------
+    service
+        Is called there with the far end.
+    output
+        A file for what it writes.
+
+    Raises
+    ------
+    ReplicateError
+        If none can be started.
+    """
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context: Any = multiprocessing.get_context(method)
     here, there = context.Pipe(duplex=True)
@@ -165,13 +184,13 @@ def _start(output: Path) -> _Worker:
         if method == "forkserver":
             _start_server()
         surroundings = Surroundings(_folder(), dict(os.environ), output)
-        process = context.Process(target=serve, args=(there, surroundings), name="replicate worker")
+        process = context.Process(target=service, args=(there, surroundings), name="replicate worker")
         process.start()
     except (OSError, EOFError) as error:
         msg = f"a worker process cannot be started: {str(error) or type(error).__name__}"
         raise ReplicateError(msg) from error
     there.close()
-    return _Worker(process, here, output)
+    return process, here
 
 
 def _start_server() -> None:

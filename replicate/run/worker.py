@@ -46,18 +46,10 @@ class Surroundings:
 
 def serve(connection: Connection, surroundings: Surroundings) -> None:
     """Do tasks until the connection is closed; this is what runs in a worker process."""
-    _stand_alone()
-    os.environ.clear()
-    os.environ.update(surroundings.environment)
-    with contextlib.suppress(OSError):
-        os.chdir(surroundings.folder)
-    output = _Output(surroundings.output)
-    output.begin()
+    output = settled(surroundings)
 
-    from replicate.run.isolation import isolate_matplotlib
     from replicate.run.performance import Performer
 
-    isolate_matplotlib()
     performer = Performer()
     pid = os.getpid()
     try:
@@ -80,6 +72,22 @@ def serve(connection: Connection, surroundings: Surroundings) -> None:
     except (EOFError, BrokenPipeError):
         pass
     os._exit(0)  # without waiting for threads of a unit, and without code that a paper has registered for the end
+
+
+def settled(surroundings: Surroundings) -> Output:
+    """Make this process a worker: alone, in the surroundings of the main process, its output in a file."""
+    _stand_alone()
+    os.environ.clear()
+    os.environ.update(surroundings.environment)
+    with contextlib.suppress(OSError):
+        os.chdir(surroundings.folder)
+    output = Output(surroundings.output)
+    output.begin()
+
+    from replicate.run.isolation import isolate_matplotlib
+
+    isolate_matplotlib()
+    return output
 
 
 def _stand_alone() -> None:
@@ -114,13 +122,14 @@ def _end_with(main: multiprocessing.process.BaseProcess) -> None:
     os._exit(1)
 
 
-class _Output:
+class Output:
     """Sends what units write, by Python or below it, to a file; each unit has new streams."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def begin(self) -> None:
+        """Begin an empty file; faults are reported in it, too."""
         nothing = os.open(os.devnull, os.O_RDONLY)
         there = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_APPEND, 0o600)
         for source, target in ((nothing, 0), (there, 1), (there, 2)):
@@ -134,6 +143,7 @@ class _Output:
         faulthandler.enable(2)
 
     def end(self) -> None:
+        """Write what is still to be written."""
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(Exception):  # closed by the unit, or replaced by something else
                 stream.flush()
