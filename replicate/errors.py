@@ -93,5 +93,19 @@ class UnreadableFormulaError(TemplateError):
         self.page, self.tex, self.why = page, tex, why
 
 
+class UnreadableTextError(TemplateError):
+    """A text that pandoc does not convert in reasonable time.
+
+    Attributes
+    ----------
+    page, text, why
+        The page on which it stands, the text, and what is wrong with it.
+    """
+
+    def __init__(self, page: str, text: str, why: str) -> None:
+        super().__init__(f"{page}: pandoc cannot convert the text '{' '.join(text.split())[:60]}': {why}")
+        self.page, self.text, self.why = page, text, why
+
+
 class OutputError(ReplicateError):
     """A result cannot be written where it should go."""

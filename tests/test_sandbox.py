@@ -21,6 +21,8 @@ REFUSED = {
     "multiplied text": ("{{ 'x' * 10**9 }}", "too large"),
     "multiplied list": ("{{ [1] * 10**9 }}", "too large"),
     "multiplied from the left": ("{{ 10**9 * 'x' }}", "too large"),
+    "braces": ("{" * 5000 + "}" * 5000, "nests too deeply"),
+    "negations": ("{{ " + "not " * 5000 + "1 }}", "nests too deeply"),
     "power": ("{{ 9**(9**9) }}", "too large"),
     "formatted": ("{{ '%999999999d' % 1 }}", "formatted with %"),
     "padded": ("{{ 'x'.center(10**9) }}", "unsafe"),

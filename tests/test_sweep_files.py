@@ -170,7 +170,7 @@ def test_a_full_disk_is_one_line(tmp_path: Path) -> None:
         ("block = 4", "until = -1", "s.toml:4: until is -1; expected: a number above 0"),
         ("block = 4", "pairing = 'pairs'", "s.toml:4: pairing is 'pairs'; allowed: grid, pairwise"),
         ("block = 4", "pairing = 'pairwise'", "s.toml:4: pairs need as many plants as controllers, not 2 plants and 6"),
-        ("block = 4", "block = ", "s.toml: is not readable TOML: "),
+        ("block = 4", "block = ", "s.toml:4: is not readable TOML: "),
     ],
 )
 def test_what_is_wrong_in_the_file_is_one_line(replicate: Run, old: str, new: str, message: str) -> None:

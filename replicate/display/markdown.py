@@ -15,8 +15,9 @@ from typing import Literal
 from markupsafe import Markup
 
 from replicate.display.formulas import formulas
+from replicate.display.pandoc import PandocError, SlowTextError, convert
 from replicate.display.safe_html import sanitised
-from replicate.errors import TemplateError, UnreadableFormulaError
+from replicate.errors import TemplateError, UnreadableFormulaError, UnreadableTextError
 
 Form = Literal["block", "inline", "plain"]
 
@@ -30,6 +31,8 @@ _NO_ATTRIBUTES = (
     "-bracketed_spans-fenced_divs-header_attributes-link_attributes-fenced_code_attributes-inline_code_attributes"
 )
 _FORMAT = f"markdown-auto_identifiers-implicit_figures-yaml_metadata_block{_LISTS}{_NO_HTML}{_NO_ATTRIBUTES}"
+_OPTIONS = ("--mathml", "--wrap=none", "--fail-if-warnings", "--reference-location=block")
+_LIMIT_ALONE = 5.0  # seconds for one paragraph
 _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)", re.DOTALL)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
@@ -89,6 +92,8 @@ class MarkdownBatch:
         ------
         UnreadableFormulaError
             If a formula is not LaTeX that pandoc knows.
+        UnreadableTextError
+            If pandoc takes too long for a text.
         TemplateError
             If pandoc cannot convert a text for another reason.
         """
@@ -104,22 +109,21 @@ class MarkdownBatch:
         return _TOKEN.sub(replacement, page)
 
     def _convert(self) -> list[str]:
-        import pypandoc
-
         if not self._texts:
             return []
         marked = [f"\ue004{i}\ue005\n\n{text}\n" for text, i in self._texts.items()]
-        options = ["--sandbox", "--mathml", "--wrap=none", "--fail-if-warnings", "--reference-location=block"]
         try:
-            document = pypandoc.convert_text("\n".join(marked), "html", format=_FORMAT, extra_args=options)
-        except RuntimeError as error:
+            document = convert("\n".join(marked), "html", _FORMAT, *_OPTIONS)
+        except SlowTextError as error:
+            raise UnreadableTextError(self.name, self._slowest(), str(error)) from error
+        except PandocError as error:
             formula = _FORMULA.search(str(error))
             if formula:
                 raise UnreadableFormulaError(self.name, formula[1].strip(), _reason(formula[2])) from error
             msg = f"{self.name}: pandoc cannot convert a text: {self._culprit(str(error))}"
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
-        document = sanitised(document.replace("\r\n", "\n")).replace(' id="footnotes"', "")
+        document = sanitised(document).replace(' id="footnotes"', "")
         document = formulas(document)
         parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
@@ -128,6 +132,17 @@ class MarkdownBatch:
                 msg = f"{self.name}: a code fence is not closed in or before the text '{text[:60]}'"
                 raise TemplateError(msg)
         return [texts[number].strip() for number in range(len(texts))]
+
+    def _slowest(self) -> str:
+        """Return the first paragraph for which pandoc takes too long when it stands alone."""
+        for paragraph in (part for text in self._texts for part in re.split(r"\n\s*\n", text)):
+            try:
+                convert(paragraph, "html", _FORMAT, *_OPTIONS, limit=_LIMIT_ALONE)
+            except SlowTextError:
+                return paragraph
+            except PandocError:
+                continue
+        return next(iter(self._texts))
 
     @staticmethod
     def _culprit(message: str) -> str:

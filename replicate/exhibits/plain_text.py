@@ -22,6 +22,9 @@ _STEERING = re.compile(
 )
 
 
+LARGEST = 16 * 2**20  # bytes of a text
+
+
 def steering(text: str) -> str:
     r"""Return the name of the first character that steers what shows a text, empty if there is none.
 
@@ -47,7 +50,7 @@ def visible(text: str) -> str:
     return _STEERING.sub(lambda found: found[0].encode("unicode_escape", "backslashreplace").decode("ascii"), text)
 
 
-def read_text(path: Path | Traversable, name: str, error: type[ReplicateError]) -> str:
+def read_text(path: Path | Traversable, name: str, error: type[ReplicateError], *, pipes: bool = False) -> str:
     """Read a text file of a paper.
 
     Parameters
@@ -55,13 +58,26 @@ def read_text(path: Path | Traversable, name: str, error: type[ReplicateError]) 
     name
         What messages call the file.
     error
-        Raised if it cannot be read, is not UTF-8 or holds a character that steers; the message has the line.
+        Raised if it cannot be read, is too large, is not UTF-8 or holds a character that steers; the message has the
+        line.
+    pipes
+        Whether it may be a pipe, which a reader waits for, as in ``--roster <(command)``.
     """
     try:
-        content = path.read_bytes()
+        if isinstance(path, Path) and (path.is_char_device() or path.is_block_device() or path.is_socket()):
+            msg = f"{name}: cannot be read: it is a device"
+            raise error(msg)
+        if isinstance(path, Path) and path.is_fifo() and not pipes:
+            msg = f"{name}: cannot be read: it is a pipe"
+            raise error(msg)
+        with path.open("rb") as file:
+            content = file.read(LARGEST + 1)
     except OSError as why:
         msg = f"{name}: cannot be read: {why.strerror or why}"
         raise error(msg) from why
+    if len(content) > LARGEST:
+        msg = f"{name}: is larger than {LARGEST // 2**20} MiB; allowed: texts that a person wrote"
+        raise error(msg)
     try:
         text = content.decode("utf-8")
     except UnicodeDecodeError as why:
@@ -87,6 +103,9 @@ def parse_toml(text: str, name: str, error: type[ReplicateError]) -> dict[str, A
         place = re.search(r" \(at (?:line (\d+)|end of document).*", str(why))
         line = (place and place[1]) or text.count("\n") + 1
         msg = f"{name}:{line}: is not readable TOML: {str(why)[: place.start()] if place else why}"
+        raise error(msg) from why
+    except RecursionError as why:
+        msg = f"{name}: is not readable TOML: too many brackets inside each other"
         raise error(msg) from why
 
 

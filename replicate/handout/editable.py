@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import json
-import os
-import subprocess
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-import pypandoc
 import typst
 
 import replicate
+from replicate.display.pandoc import PandocError, run
 from replicate.errors import TemplateError
 from replicate.handout import pandoc
 from replicate.handout.edition import Document
@@ -95,24 +93,12 @@ def _pandoc(document: Document, target: str, files: Mapping[str, bytes], *option
         root = Path(folder)
         for name, content in files.items():
             (root / name).write_bytes(content)
-        done = subprocess.run(  # noqa: S603  -- pandoc on a tree in which nothing is raw
-            [
-                pypandoc.get_pandoc_path(),
-                "--from=json",
-                f"--to={target}",
-                "--output=made",
-                "--fail-if-warnings",
-                *options,
-            ],
-            input=json.dumps(tree).encode(),
-            cwd=root,
-            env={**os.environ, "SOURCE_DATE_EPOCH": _DATE},
-            capture_output=True,
-            check=False,
-        )
-        if done.returncode:
-            msg = f"{document.paper.id}: pandoc cannot write {target}: {' '.join(done.stderr.decode().split())}"
-            raise TemplateError(msg)
+        command = ["--from=json", f"--to={target}", "--output=made", "--fail-if-warnings", *options]
+        try:
+            run(command, json.dumps(tree).encode(), root, {"SOURCE_DATE_EPOCH": _DATE})
+        except PandocError as error:
+            msg = f"{document.paper.id}: pandoc cannot write {target}: {' '.join(str(error).split())}"
+            raise TemplateError(msg) from error
         return (root / "made").read_bytes()
 
 

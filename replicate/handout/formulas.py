@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-import pypandoc
-
+from replicate.display import pandoc
 from replicate.errors import TemplateError
 from replicate.handout.spoken_math import spoken
 from replicate.handout.tree import Blocks, elements
@@ -62,11 +61,11 @@ def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
         return {}
     try:
         typst, mathml = _written(formulas, "typst"), _written(formulas, "html")
-    except RuntimeError:
+    except pandoc.PandocError:
         for formula in formulas:  # which one is it?
             try:
                 _written([formula], "typst")
-            except RuntimeError as error:
+            except pandoc.PandocError as error:
                 raise FormulaError(formula[1], _reason(str(error))) from error
         raise
     return {
@@ -78,9 +77,8 @@ def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
 def _written(formulas: Sequence[Formula], target: str) -> list[str]:
     """Write each formula in a paragraph of its own, and cut the result at the marks between them."""
     document = "\n\n".join(f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas)
-    options = ["--sandbox", "--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
-    text = str(pypandoc.convert_text(document, target, format="markdown", extra_args=options))
-    parts = [part.strip() for part in text.replace("\r\n", "\n").split("\ue004")[1:]]
+    options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
+    parts = [part.strip() for part in pandoc.convert(document, target, "markdown", *options).split("\ue004")[1:]]
     if target == "typst":
         return parts
     found = [re.search(r"<math\b.*</math>", part, re.DOTALL) for part in parts]

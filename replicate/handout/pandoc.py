@@ -6,12 +6,11 @@ import json
 from collections.abc import Sequence
 from functools import cache
 
-import pypandoc
-
+from replicate.display.pandoc import convert
 from replicate.handout.tree import Blocks, raw_block
 
 _MARK = "\ue004"  # between two pieces
-_OPTIONS = ("--sandbox", "--wrap=none", "--fail-if-warnings")
+_OPTIONS = ("--wrap=none", "--fail-if-warnings")
 
 
 def written(pieces: Sequence[Blocks], target: str, *options: str, raw: str = "") -> list[str]:
@@ -29,12 +28,8 @@ def written(pieces: Sequence[Blocks], target: str, *options: str, raw: str = "")
     if not pieces:
         return []
     blocks = [block for piece in pieces for block in (raw_block(raw or target, _MARK), *piece)]
-    text = str(
-        pypandoc.convert_text(
-            json.dumps(document(blocks)), target, format="json", extra_args=[*_OPTIONS, *options], verify_format=False
-        )
-    )
-    return [piece.strip("\n") + "\n" for piece in text.replace("\r\n", "\n").split(_MARK)[1:]]
+    text = convert(json.dumps(document(blocks)), target, "json", *_OPTIONS, *options)
+    return [piece.strip("\n") + "\n" for piece in text.split(_MARK)[1:]]
 
 
 def document(blocks: Blocks) -> dict[str, object]:
@@ -45,5 +40,5 @@ def document(blocks: Blocks) -> dict[str, object]:
 @cache
 def _api_version() -> tuple[int, ...]:
     """Return the version of the tree's format that this pandoc reads and writes."""
-    empty = json.loads(pypandoc.convert_text("", "json", format="markdown"))
+    empty = json.loads(convert("", "json", "markdown"))
     return tuple(empty["pandoc-api-version"])

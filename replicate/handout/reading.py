@@ -8,8 +8,7 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-import pypandoc
-
+from replicate.display.pandoc import PandocError, convert
 from replicate.errors import TemplateError
 from replicate.handout.formulas import line_of
 from replicate.handout.tree import Blocks, Element, elements
@@ -22,7 +21,8 @@ _FORMAT = (
     "markdown-auto_identifiers-implicit_figures-yaml_metadata_block-fancy_lists-example_lists-citations"
     "+raw_html+raw_tex+raw_attribute-native_divs-native_spans-markdown_in_html_blocks"
 )
-_OPTIONS = ["--sandbox", "--fail-if-warnings", "--columns=10000"]
+_OPTIONS = ("--fail-if-warnings", "--columns=10000")
+_LIMIT_ALONE = 30.0  # seconds for one text
 _FOREIGN = {
     "RawInline": "raw text for one format",
     "RawBlock": "raw text for one format",
@@ -49,14 +49,12 @@ def read(texts: Sequence[Lines], source: str) -> list[Blocks]:
     with tempfile.TemporaryDirectory() as folder:
         files = []
         for number, lines in enumerate(texts):
-            files.append(str(Path(folder) / f"{number:05}.md"))
+            files.append(Path(folder) / f"{number:05}.md")
             content = "\n".join([_MARK, "", *(line for line, _ in lines)])
-            Path(files[-1]).write_text(content, encoding="utf-8", newline="\n")
+            files[-1].write_text(content, encoding="utf-8", newline="\n")
         try:
-            tree = pypandoc.convert_file(
-                files, "json", format=_FORMAT, extra_args=[*_OPTIONS, "--file-scope"], verify_format=False
-            )
-        except RuntimeError:
+            tree = convert(files, "json", _FORMAT, *_OPTIONS, "--file-scope")
+        except PandocError:
             return [_read(lines, source) for lines in texts]  # one of them says where
     found: list[Blocks] = []
     for block in json.loads(tree)["blocks"]:
@@ -73,8 +71,8 @@ def _read(lines: Lines, source: str) -> Blocks:
     """Read Markdown into pandoc's tree."""
     text = "\n".join(line for line, _ in lines)
     try:
-        tree = json.loads(pypandoc.convert_text(text, "json", format=_FORMAT, extra_args=_OPTIONS, verify_format=False))
-    except RuntimeError as error:
+        tree = json.loads(convert(text, "json", _FORMAT, *_OPTIONS, limit=_LIMIT_ALONE))
+    except PandocError as error:
         words = " ".join(str(error).split())
         found = re.search(r"\[WARNING\] (.*?)(?: Failing because|$)", words)
         at = re.search(r"line (\d+)", words)

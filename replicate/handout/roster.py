@@ -82,7 +82,7 @@ def read_roster(path: Path, column: str = "") -> list[str]:
 
 def _text(path: Path) -> str:
     try:
-        return read_text(path, path.name, ReplicateError)
+        return read_text(path, path.name, ReplicateError, pipes=True)
     except ReplicateError as error:
         if isinstance(error.__cause__, UnicodeDecodeError):
             msg = f"{error}; in a spreadsheet, save the roster as 'CSV UTF-8'"

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
 from replicate.errors import ReplicateError
+from replicate.exhibits.plain_text import parse_toml, read_text
 from replicate.handout.own_exercises import OwnExercise
 from replicate.resources import templates_dir
 
@@ -65,11 +65,7 @@ def language(tag: str) -> Language:
         known = ", ".join(sorted(file.stem for file in folder.glob("*.toml")))
         msg = f"--language is '{tag}', allowed: {known}, or the path of a file like en.toml, say fr.toml"
         raise ReplicateError(msg)
-    try:
-        found = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        msg = f"{path.name}: {error}"
-        raise ReplicateError(msg) from error
+    found = parse_toml(read_text(path, path.name, ReplicateError), path.name, ReplicateError)
     words, region = found.get("words"), found.get("region", "")
     if not isinstance(words, dict) or not isinstance(region, str):
         msg = f"{path.name}: needs a text 'region' and a table [words], as {FOLDER}/en.toml"

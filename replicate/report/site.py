@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from importlib.resources import files
 from types import MappingProxyType
 
+from replicate.errors import TemplateError
+from replicate.exhibits.plain_text import read_text
 from replicate.run.project import Project
 
 _TITLE = "Papers, replicated"
@@ -49,7 +51,7 @@ def site_of(project: Project | None, *, bundled: bool) -> Site:
     default = _collection() if bundled else Site()
     if project is None or (bundled and not project.bundled):
         return default
-    methods = project.methods.read_text(encoding="utf-8") if project.methods else default.methods
+    methods = read_text(project.methods, project.methods.name, TemplateError) if project.methods else default.methods
     return Site(
         project.title or default.title, project.intro or default.intro, methods, project.language, project.theme
     )

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from replicate.display.markdown import MarkdownBatch
-from replicate.errors import TemplateError, UnreadableFormulaError
+from replicate.errors import TemplateError, UnreadableFormulaError, UnreadableTextError
 from replicate.exhibits import Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import Results
@@ -14,6 +14,7 @@ from replicate.report.pages import paper_pages
 from replicate.run.outcome import Outcome
 from replicate.verdicts.rows import Judgement
 
+_BEGINNING = 60  # characters of a text that are shown and looked for
 _TEXTS = (".md", ".toml", ".py", ".csv")
 
 
@@ -44,10 +45,15 @@ def _unreadable(paper: Paper, results: Results, judgement: Judgement) -> Templat
 
 
 def located(error: TemplateError, paper: Paper) -> TemplateError:
-    """Return the error with the place of a wrong formula in the files of the paper, where it can be found there."""
-    if not isinstance(error, UnreadableFormulaError):
+    """Return the error with the place of what is wrong in the files of the paper, where it can be found there."""
+    if isinstance(error, UnreadableFormulaError):
+        wrong, shown = error.tex, f"${error.tex}$"
+    elif isinstance(error, UnreadableTextError):
+        wrong = error.text[:_BEGINNING]
+        shown = f"the text '{' '.join(wrong.split())}'"
+    else:
         return error
-    words = r"\s+".join(re.escape(word) for word in error.tex.split())
+    words = r"\s+".join(re.escape(word) for word in wrong.split())
     as_written = re.compile(f"{words}|{words.replace(re.escape(chr(92)), re.escape(chr(92) * 2))}")
     folder = Path(str(paper.folder()))
     for file in sorted(path for path in folder.rglob("*") if path.suffix in _TEXTS):
@@ -55,5 +61,5 @@ def located(error: TemplateError, paper: Paper) -> TemplateError:
         found = as_written.search(text)
         if found:
             place = f"{display_name(file)}:{text.count(chr(10), 0, found.start()) + 1}"
-            return TemplateError(f"{place}: pandoc cannot convert ${error.tex}$: {error.why}")
+            return TemplateError(f"{place}: pandoc cannot convert {shown}: {error.why}")
     return error

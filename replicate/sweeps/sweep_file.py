@@ -17,13 +17,13 @@ import hashlib
 import json
 import math
 import re
-import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
 from replicate.errors import SweepFileError
+from replicate.exhibits.plain_text import parse_toml, read_text
 from replicate.loops.errors import LoopError
 from replicate.loops.sweep.axes import PLANT_COLUMNS, controller_axis, plant_axis
 from replicate.loops.sweep.metric_names import checked_metrics
@@ -116,12 +116,8 @@ def read_sweep_file(path: Path) -> SweepFile:
     SweepFileError
         If it cannot be read or is malformed; the message names file, line and what is allowed.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-        data: dict[str, Any] = tomllib.loads(text)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        msg = f"{path}: is not readable TOML: {getattr(error, 'strerror', None) or error}"
-        raise SweepFileError(msg) from error
+    text = read_text(path, str(path), SweepFileError)
+    data = parse_toml(text, str(path), SweepFileError)
 
     def refuse(key: str, why: str) -> NoReturn:
         lines = enumerate(text.splitlines(), 1)

@@ -23,6 +23,7 @@ can be known without.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -128,7 +129,7 @@ class Ledger:
             does not have, or two entries name the same cell. The message names file, line and field.
         """
         name = display_name(path)
-        if not path.is_file():
+        if not (os.path.lexists(path) if isinstance(path, Path) else path.is_file()):
             return cls(name)
         text = read_text(path, name, LedgerError)
         data = parse_toml(text, name, LedgerError)

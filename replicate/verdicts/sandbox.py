@@ -83,14 +83,23 @@ class SafeEnvironment(ImmutableSandboxedEnvironment):
         Raises
         ------
         jinja2.TemplateSyntaxError
-            If it is malformed, or takes in another file.
+            If it is malformed, nests too deeply, or takes in another file.
         """
-        tree = self.parse(text)
+        try:
+            tree = self.parse(text)
+        except RecursionError as error:
+            msg = "the expression nests too deeply"
+            raise jinja2.TemplateSyntaxError(msg, self._deepest_line(text)) from error
         for node in tree.find_all(_FORBIDDEN):
             kind = type(node).__name__.lower().replace("fromimport", "import")
             msg = f"'{kind}' is not available: a text stands alone"
             raise jinja2.TemplateSyntaxError(msg, node.lineno)
         return tree
+
+    def _deepest_line(self, text: str) -> int:
+        """Return the line with most operators, in which what nests too deeply must lie."""
+        lines = [number for number, kind, _ in self.lex(text) if kind in {"operator", "name"}]
+        return max(set(lines), key=lines.count, default=1)
 
     def fill(self, text: str, **variables: object) -> str:
         """Return a text filled in.

@@ -1,0 +1,87 @@
+"""Files that are none, never end or keep a reader busy: one line with the file's name, and soon."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+import synthetic
+
+from replicate.display import markdown, pandoc
+from replicate.display.markdown import MarkdownBatch
+from replicate.errors import LedgerError, PrintedFileError, ReplicateError, UnreadableTextError
+from replicate.exhibits import plain_text
+from replicate.exhibits.plain_text import parse_toml, read_text
+from replicate.handout.roster import read_roster
+from replicate.verdicts.ledger import Ledger
+
+
+def _device(path: Path) -> None:
+    path.symlink_to("/dev/zero")
+
+
+def _circle(path: Path) -> None:
+    path.symlink_to(path.name)
+
+
+def _large(path: Path) -> None:
+    with path.open("wb") as file:
+        file.truncate(plain_text.LARGEST + 1)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (os.mkfifo, "cannot be read: it is a pipe"),
+        (_device, "cannot be read: it is a device"),
+        (_circle, "cannot be read: Too many levels of symbolic links"),
+        (Path.mkdir, "cannot be read: Is a directory"),
+        (_large, "is larger than 16 MiB; allowed: texts that a person wrote"),
+    ],
+    ids=["pipe", "device", "circle", "folder", "large"],
+)
+def test_what_is_no_text_file_is_one_line(tmp_path: Path, make: Callable[[Path], None], said: str) -> None:
+    path = tmp_path / "table-1.csv"
+    make(path)
+    with pytest.raises(PrintedFileError) as caught:
+        read_text(path, "toy/table-1.csv", PrintedFileError)
+    assert str(caught.value) == f"toy/table-1.csv: {said}"
+
+
+def test_a_folder_in_the_place_of_a_ledger_is_no_missing_ledger(tmp_path: Path) -> None:
+    (tmp_path / "ledger.toml").mkdir()
+    with pytest.raises(LedgerError, match=r"ledger\.toml: cannot be read: Is a directory"):
+        Ledger.load(tmp_path / "ledger.toml", synthetic.paper(tmp_path))
+
+
+def test_a_roster_may_come_from_a_pipe(tmp_path: Path) -> None:
+    path = tmp_path / "roster"
+    os.mkfifo(path)
+    writer = threading.Thread(target=path.write_text, args=("id,name\na1,Ada\nb2,Bo\n",))
+    writer.start()
+    assert read_roster(path) == ["a1", "b2"]
+    writer.join()
+
+
+@pytest.mark.parametrize("text", ["a = " + "[" * 10**5, "a = " + "{b = " * 10**4])
+def test_brackets_without_end_are_one_line(text: str) -> None:
+    with pytest.raises(ReplicateError, match=r"^x\.toml: is not readable TOML: too many brackets inside each other$"):
+        parse_toml(text, "x.toml", ReplicateError)
+
+
+def test_a_text_that_keeps_pandoc_busy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pandoc, "TIME_LIMIT", 3.0)
+    monkeypatch.setattr(markdown, "_LIMIT_ALONE", 1.5)
+    batch = MarkdownBatch("toy.html")
+    page = batch.block("A text.") + batch.block(f"Before.\n\nAnother {'[' * 40} one.\n\nAfter.")
+    begun = time.monotonic()
+    with pytest.raises(
+        UnreadableTextError, match=r"^toy\.html: pandoc cannot convert the text 'Another \[\["
+    ) as caught:
+        batch.substitute(page)
+    assert caught.value.why.startswith("it takes more than 3 seconds")
+    assert time.monotonic() - begun < 60
