@@ -26,7 +26,7 @@ ALLOWED = {
     "display": {"errors", "exhibits", "figures", "resources", "run", "verdicts"},
     "report": {"display", "errors", "exhibits", "figures", "resources", "run", "verdicts"},
     "handout": {"display", "errors", "exhibits", "figures", "resources", "run", "verdicts"},
-    "sweeps": {"errors", "loops", "run", "staging"},
+    "sweeps": {"errors", "exhibits", "loops", "run", "staging"},
     "whatif": {"display", "errors", "exhibits", "figures", "loops", "resources"},
     "diff": {"display", "errors", "exhibits", "figures", "resources", "run", "staging", "verdicts"},
 }
