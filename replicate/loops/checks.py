@@ -94,7 +94,7 @@ def _converted(name: str, values: object, to: type, allowed: str, *, kinds: str)
 
 def whole(name: str, value: object) -> int:
     """Return an integer >= 1; LoopError otherwise."""
-    if not isinstance(value, int | np.integer) or value < 1:
+    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < 1:
         msg = f"{name} must be at least 1 and whole, not {shown(value)}"
         raise LoopError(msg)
     return int(value)

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.controller_views import ControllerViews
 from replicate.loops.errors import LoopError
+from replicate.loops.evaluation import quotient, values
 
 ComplexArray = NDArray[np.complex128]
 Array = NDArray[np.float64]
@@ -232,9 +233,8 @@ class PID(ControllerViews):
         s
             Complex frequencies, any shape.
         """
-        s = np.asarray(s, dtype=complex)
         num, den = self.feedback_polynomials()
-        return np.asarray(np.polyval(num, s) / np.polyval(den, s))
+        return values(lambda s: quotient(np.polyval(num, s), np.polyval(den, s)), s)
 
     def feedforward(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the transfer function from r to u, set-point filter included.
@@ -244,11 +244,14 @@ class PID(ControllerViews):
         s
             Complex frequencies, any shape.
         """
-        s = np.asarray(s, dtype=complex)
         num, den = self.setpoint_filter_polynomials()
-        integral = self.ki / s if self.ki else 0.0
-        derivative = self.kd * self.c * s / (1.0 + s * self.derivative_filter)
-        return np.asarray((self.b * self.k + integral + derivative) * np.polyval(num, s) / np.polyval(den, s))
+
+        def value(s: ComplexArray) -> ComplexArray:
+            integral = quotient(self.ki + 0.0 * s, s) if self.ki else 0.0
+            derivative = self.kd * self.c * s / (1.0 + s * self.derivative_filter)
+            return np.asarray((self.b * self.k + integral + derivative) * np.polyval(num, s) / np.polyval(den, s))
+
+        return values(value, s)
 
 
 def _filter_polynomials(given: Filter) -> tuple[Array, Array]:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
+from replicate.loops.evaluation import quotient, values
 
 if TYPE_CHECKING:
     from replicate.loops.loop import Loop
@@ -77,31 +78,33 @@ def nyquist(loop: Loop, w: ArrayLike) -> ComplexArray:
 
 def sensitivity(loop: Loop, s: ArrayLike) -> ComplexArray:
     """Return S(s) = 1/(1 + L)."""
-    return np.asarray(1.0 / (1.0 + loop(s)))
+    return values(lambda s: 1.0 / (1.0 + loop(s)), s)
 
 
 def complementary(loop: Loop, s: ArrayLike) -> ComplexArray:
     """Return T(s) = L/(1 + L), formed so that it is exact where L is large, too."""
-    return np.asarray(1.0 / (1.0 + 1.0 / loop(s)))
+    return values(lambda s: 1.0 / (1.0 + _inverse(loop(s))), s)
 
 
 def load_sensitivity(loop: Loop, s: ArrayLike) -> ComplexArray:
-    """Return PS(s) = P/(1 + L), from a load at the plant input to the output."""
-    s = checks.points("s", s)
-    return np.asarray(loop.plant(s) / (1.0 + loop(s)))
+    """Return PS(s) = P/(1 + L) = 1/(1/P + C), from a load at the plant input to the output."""
+    return values(lambda s: 1.0 / (_inverse(loop.plant(s)) + loop.controller.feedback(s)), s)
 
 
 def noise_sensitivity(loop: Loop, s: ArrayLike) -> ComplexArray:
     """Return CS(s) = C/(1 + L), C being the feedback part of the controller with its measurement filter."""
-    s = checks.points("s", s)
-    return np.asarray(loop.controller.feedback(s) / (1.0 + loop(s)))
+    return values(lambda s: 1.0 / (_inverse(loop.controller.feedback(s)) + loop.plant(s)), s)
+
+
+def _inverse(value: ComplexArray) -> ComplexArray:
+    return quotient(np.ones_like(value), value)
 
 
 def checked_frequencies(w: ArrayLike) -> Array:
     """Return frequencies as an array; LoopError unless all are positive and finite."""
     try:
-        frequency = np.asarray(w, dtype=float)
-    except (TypeError, ValueError):
+        frequency = checks.times("w", w)
+    except LoopError:
         frequency = np.array([np.nan])
     if not (np.isfinite(frequency).all() and (frequency > 0.0).all()):
         msg = "frequencies must be positive finite numbers, in rad per unit of time"

@@ -14,6 +14,7 @@ from replicate.loops.chain import OpenLoop, open_loop_of
 from replicate.loops.control_signal import control_signal
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
+from replicate.loops.evaluation import INFINITE, values
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.loop_views import LoopViews
 from replicate.loops.margins import Margins
@@ -96,8 +97,13 @@ class Loop(LoopViews):
         self._transfer = LoopTransfer.of(self._plant, self._controller)
 
     def __call__(self, s: ArrayLike) -> ComplexArray:
-        """Evaluate the loop transfer function L(s) = C(s) G(s)."""
-        return self._transfer(checks.points("s", s) * self._units.time)
+        """Evaluate the loop transfer function L(s) = C(s) G(s): ``inf`` at a pole, ``nan`` at infinity."""
+        found = values(lambda s: self._transfer(s * self._units.time), s)
+        if np.isfinite(found).all():
+            return found
+        controller, plant = self.controller.feedback(s), self.plant(s)
+        pole = (np.isinf(controller) & (plant != 0.0)) | (np.isinf(plant) & (controller != 0.0))
+        return np.asarray(np.where(pole, INFINITE, found))
 
     @cached_property
     def transfer(self) -> LoopTransfer:
@@ -289,7 +295,12 @@ class Loop(LoopViews):
             Heights of the two steps.
         """
         setpoint, load = checks.finite("the setpoint step", setpoint), checks.finite("the load step", load)
-        return steady_state(self.plant, self.controller, setpoint, load)
+        return steady_state(self.plant, self.primary_controller, setpoint, load, inner_gain=self._inner_gain)
+
+    @property
+    def _inner_gain(self) -> float:
+        """Steady-state gain of what a predictor adds to the measurement."""
+        return 0.0
 
     def open_loop(self) -> tuple[Units, OpenLoop]:
         """Return the chain that is closed by the controller's gains, in the loop's units."""

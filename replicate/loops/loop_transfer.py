@@ -66,7 +66,7 @@ class LoopTransfer:
     @property
     def is_polynomial(self) -> bool:
         """Whether the closed loop's poles are the roots of a polynomial: a rational loop without dead time."""
-        return self.dead_time == 0.0
+        return self.is_rational and self.dead_time == 0.0
 
     @property
     def longest_dead_time(self) -> float:
@@ -81,7 +81,7 @@ class LoopTransfer:
     @property
     def is_rational(self) -> bool:
         """Whether L is a rational function times one dead time."""
-        return True
+        return self.plant.is_rational
 
     @cached_property
     def _coefficients(self) -> tuple[list[float], list[float]]:
@@ -146,6 +146,11 @@ class LoopTransfer:
     def infinite_at_rest(self) -> bool:
         """Whether |L| is infinite at s = 0."""
         return bool(self.den[-1] == 0.0)
+
+    @property
+    def pole_at_rest(self) -> bool:
+        """Whether s = 0 is a closed-loop pole, as for a zero of the plant there that meets an integrator."""
+        return self.is_rational and not self.den[-1] + (self.num[-1] if self.num.size else 0.0)
 
     @cached_property
     def gain_stationary(self) -> Array:

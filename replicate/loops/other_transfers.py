@@ -27,16 +27,6 @@ RATIO = 64  # largest denominator of a ratio of two dead times that counts as ra
 class FunctionTransfer(LoopTransfer):
     """L of a plant given by a function: N/D is the controller."""
 
-    @property
-    def is_polynomial(self) -> bool:
-        """False: the plant is a function."""
-        return False
-
-    @property
-    def is_rational(self) -> bool:
-        """False: the plant is a function."""
-        return False
-
     def __call__(self, s: Any) -> ComplexArray:
         """Evaluate L(s) at complex ``s``."""
         s = np.asarray(s, dtype=complex)
@@ -48,18 +38,15 @@ class FunctionTransfer(LoopTransfer):
         fed_back = np.polyval(self.num, s) * np.exp(-s * self.dead_time) * self.plant.delay_free(s)
         return np.asarray(np.polyval(self.den, s) + fed_back)
 
-    def characteristic_slope(self, s: ComplexArray) -> ComplexArray:
-        """Evaluate f'(s), the function's part by a difference: N g has no pole where N cancels one of g."""
+    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Evaluate f(s) and f'(s), the function's part by a difference: N g has no pole where N cancels one of g."""
 
         def open_loop(s: ComplexArray) -> ComplexArray:
             return np.asarray(np.polyval(self.num, s) * self.plant.delay_free(s))
 
         fed_back = difference(open_loop, s) - self.dead_time * open_loop(s)
-        return np.asarray(np.polyval(np.polyder(self.den), s) + fed_back * np.exp(-s * self.dead_time))
-
-    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Evaluate f(s) and f'(s)."""
-        return self.characteristic(s), self.characteristic_slope(s)
+        slope = np.polyval(np.polyder(self.den), s) + fed_back * np.exp(-s * self.dead_time)
+        return self.characteristic(s), np.asarray(slope)
 
     def size(self, s: ComplexArray) -> Array:
         """Return the sum of the moduli of f's terms."""
@@ -104,6 +91,7 @@ class SumTransfer(LoopTransfer):
     """L of a plant with several dead times: a numerator for each, one denominator."""
 
     nums: tuple[Array, ...] = ()
+    controller: tuple[Array, Array] = (np.ones(1), np.ones(1))
 
     @classmethod
     def of_parts(cls, plant: SumPlant, num: Array, den: Array) -> SumTransfer:
@@ -116,7 +104,7 @@ class SumTransfer(LoopTransfer):
         """
         nums = tuple(np.asarray(np.polymul(num, part), dtype=float) if num.size else num for part in plant.nums)
         whole = np.asarray(np.polymul(den, plant.common_den), dtype=float)
-        transfer = cls(nums[0], whole, plant.dead_time, plant, nums)
+        transfer = cls(nums[0], whole, plant.dead_time, plant, nums, (num, den))
         if any(part.size > whole.size for part in nums):
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
             raise ImproperLoopError(msg)
@@ -124,16 +112,6 @@ class SumTransfer(LoopTransfer):
             msg = "the loop is not well posed: without dead time L must not tend to -1 at infinite frequency"
             raise ImproperLoopError(msg)
         return transfer
-
-    @property
-    def is_polynomial(self) -> bool:
-        """False: there are several dead times."""
-        return False
-
-    @property
-    def is_rational(self) -> bool:
-        """False: there are several dead times."""
-        return False
 
     @property
     def dead_times(self) -> Array:
@@ -145,16 +123,9 @@ class SumTransfer(LoopTransfer):
         """Evaluate L(s) at complex ``s``."""
         s = np.asarray(s, dtype=complex)
         if self.plant.removable:  # type: ignore[attr-defined]
-            controller = np.polyval(self._controller[0], s) / np.polyval(self._controller[1], s)
+            controller = np.polyval(self.controller[0], s) / np.polyval(self.controller[1], s)
             return np.asarray(controller * self.plant(s))
         return np.asarray(self._fed_back(s) / np.polyval(self.den, s))
-
-    @cached_property
-    def _controller(self) -> tuple[Array, Array]:
-        assert isinstance(self.plant, SumPlant)  # noqa: S101  -- by construction
-        num, _ = np.polydiv(self.nums[0], self.plant.nums[0]) if self.nums[0].size else (self.nums[0], None)
-        den, _ = np.polydiv(self.den, self.plant.common_den)
-        return np.asarray(num, dtype=float), np.asarray(den, dtype=float)
 
     def _fed_back(self, s: ComplexArray) -> ComplexArray:
         total = np.zeros(s.shape, dtype=complex)
@@ -170,8 +141,8 @@ class SumTransfer(LoopTransfer):
             whole = whole / (s - pole)
         return np.asarray(whole)
 
-    def characteristic_slope(self, s: ComplexArray) -> ComplexArray:
-        """Evaluate f'(s)."""
+    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Evaluate f(s) and f'(s)."""
         slope = np.polyval(np.polyder(self.den), s)
         for num, delay in zip(self.nums, self.dead_times, strict=True):
             slope = slope + (np.polyval(np.polyder(num), s) - delay * np.polyval(num, s)) * np.exp(-s * delay)
@@ -179,7 +150,8 @@ class SumTransfer(LoopTransfer):
         for pole in self._removable:
             shrink = shrink * (s - pole)
         logs = sum((1.0 / (s - pole) for pole in self._removable), np.zeros_like(s))
-        return np.asarray(slope / shrink - self.characteristic(s) * logs)
+        value = self.characteristic(s)
+        return value, np.asarray(slope / shrink - value * logs)
 
     def size(self, s: ComplexArray) -> Array:
         """Return the sum of the moduli of f's terms: its rounding error is this times the relative precision."""
@@ -199,21 +171,22 @@ class SumTransfer(LoopTransfer):
     @property
     def infinite_at_rest(self) -> bool:
         """Whether |L| is infinite at s = 0."""
-        return bool(self._controller[1][-1] == 0.0 or self.plant.integrators)
+        return bool(self.controller[1][-1] == 0.0 or self.plant.integrators)
+
+    @property
+    def pole_at_rest(self) -> bool:
+        """Whether s = 0 is a closed-loop pole that is no pole of the common denominator alone."""
+        return 0.0 not in self._removable and not self.den[-1] + sum(num[-1] for num in self.nums if num.size)
 
     @property
     def open_loop_poles(self) -> ComplexArray:
         """The poles of the open loop."""
-        return np.concatenate([self.plant.poles(), np.roots(self._controller[1])])
-
-    def characteristic_with_slope(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Evaluate f(s) and f'(s)."""
-        return self.characteristic(s), self.characteristic_slope(s)
+        return np.concatenate([self.plant.poles(), np.roots(self.controller[1])])
 
     def log_derivative(self, s: Any) -> ComplexArray:
         """Evaluate L'(s)/L(s)."""
         s = np.asarray(s, dtype=complex)
-        num, den = self._controller
+        num, den = self.controller
         rational = np.polyval(np.polyder(num), s) / np.polyval(num, s) - np.polyval(np.polyder(den), s) / np.polyval(
             den, s
         )

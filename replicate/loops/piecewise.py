@@ -77,13 +77,9 @@ class Piecewise:
         LoopError
             If a time lies beyond the horizon.
         """
-        try:
-            times = np.asarray(t, dtype=float)
-        except (TypeError, ValueError):
-            msg = f"the times must be real numbers, not {checks.shown(t)}"
-            raise LoopError(msg) from None
-        flat = np.atleast_1d(times).ravel()
+        times = checks.times("the times", t)
         end = self.breaks[-1]
+        flat = np.maximum(np.atleast_1d(times).ravel(), -end)  # before the step all times are alike
         if np.isnan(flat).any():
             msg = "a time is not a number (nan)"
             raise LoopError(msg)

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
+from replicate.loops.evaluation import quotient, values
 from replicate.loops.plant_views import PlantViews
 
 if TYPE_CHECKING:
@@ -171,12 +172,11 @@ class Plant(PlantViews):
     def delay_free(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the part without (its shortest) dead time at complex ``s``."""
         s = np.asarray(s, dtype=complex)
-        return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s))
+        return quotient(np.polyval(self.num, s), np.polyval(self.den, s))
 
     def __call__(self, s: ArrayLike) -> ComplexArray:
-        """Evaluate G(s), dead time exact, at complex ``s`` of any shape."""
-        s = np.asarray(s, dtype=complex)
-        return np.asarray(self.delay_free(s) * np.exp(-s * self.dead_time))
+        """Evaluate G(s), dead time exact, at complex ``s`` of any shape: ``inf`` at a pole, ``nan`` at infinity."""
+        return values(lambda s: self.delay_free(s) * np.exp(-s * self.dead_time), s)
 
     def log_derivative(self, s: ArrayLike) -> ComplexArray:
         """Evaluate G'(s)/G(s), dead time included: exact for rational plants, by a sixth-order difference otherwise.
@@ -297,7 +297,8 @@ class Plant(PlantViews):
         from replicate.loops.sum_plant import product_of
 
         if not isinstance(other, Plant):
-            return self.rescaled(1.0, 1.0 / checks.finite("the factor of a plant", other)) if other else _no_plant()
+            factor = checks.finite("the factor of a plant", other)
+            return self.rescaled(1.0, 1.0 / factor) if factor else _no_plant()
         return product_of(self, other)
 
     __rmul__ = __mul__
@@ -307,9 +308,10 @@ class Plant(PlantViews):
         from replicate.loops.sum_plant import sum_of
 
         if not isinstance(other, Plant):
-            if not other:
+            gain = checks.finite("the gain in parallel to a plant", other)
+            if not gain:
                 return self
-            other = Plant([checks.finite("the gain in parallel to a plant", other)], [1.0])
+            other = Plant([gain], [1.0])
         return sum_of([*self.parts, *other.parts] if self.parts and other.parts else [self, other])
 
     __radd__ = __add__

@@ -65,9 +65,7 @@ def plot_step(ax: Axes, loop: Loop, label: str = "", *, until: float | None = No
         Horizon; by default until the loop has settled within 0.1 %.
     """
     ax.axhline(1.0, color="0.7", linewidth=0.8)
-    plot_signal(ax, _settled(loop.step(until=until), until), label)
-    ax.set_ylabel("y")
-    return ax
+    return _plot_output(ax, loop.step(until=until), label, until)
 
 
 def plot_load(ax: Axes, loop: Loop, label: str = "", *, until: float | None = None) -> Axes:
@@ -84,7 +82,11 @@ def plot_load(ax: Axes, loop: Loop, label: str = "", *, until: float | None = No
     until
         Horizon; by default until the loop has settled within 0.1 %.
     """
-    plot_signal(ax, _settled(loop.load_step(until=until), until), label)
+    return _plot_output(ax, loop.load_step(until=until), label, until)
+
+
+def _plot_output(ax: Axes, output: Signal, label: str, until: float | None) -> Axes:
+    plot_signal(ax, _settled(output, until), label)
     ax.set_ylabel("y")
     return ax
 

@@ -63,7 +63,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     points = np.where(converged, polished, starts) if transfer.is_polynomial else polished[converged]
     if not plant.parts:
         points = np.append(points, _stalled(transfer, polished[~converged]))
-    if plant.parts and not complex(transfer.characteristic(0j)):  # Newton's steps are relative to s
+    if transfer.pole_at_rest:  # Newton's steps are relative to s
         points = np.append(points[np.abs(points) > 1e-9 * np.abs(points).max(initial=0.0)], 0.0)
     found = _ordered(_distinct(transfer, points, count))
     if plant.parts and not transfer.is_polynomial and transfer.num.size:

@@ -16,7 +16,6 @@ from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
 from replicate.loops.predictor_transfer import PredictorTransfer
 from replicate.loops.smith_predictor import SmithPredictor
-from replicate.loops.steady_state import steady_state
 from replicate.loops.sum_plant import roots_without, sum_of
 from replicate.loops.to_control import Kind
 from replicate.loops.units import Units
@@ -150,15 +149,7 @@ class PredictorLoop(Loop):
         )
         return breaks, y, breaks, u
 
-    def steady_state(self, setpoint: float, load: float) -> tuple[float, float]:
-        """Return the steady-state values of output and control signal for the given set-point and load steps.
-
-        Parameters
-        ----------
-        setpoint, load
-            Heights of the two steps.
-        """
-        setpoint, load = checks.finite("the setpoint step", setpoint), checks.finite("the load step", load)
+    @property
+    def _inner_gain(self) -> float:
         difference = self.predictor.difference
-        inner = difference.gain if difference is not None else 0.0
-        return steady_state(self.plant, self.predictor.controller, setpoint, load, inner_gain=inner)
+        return difference.gain if difference is not None else 0.0

@@ -50,11 +50,6 @@ class PredictorTransfer(LoopTransfer):
         return whole
 
     @property
-    def is_polynomial(self) -> bool:
-        """False: there is more than one dead time."""
-        return False
-
-    @property
     def is_rational(self) -> bool:
         """False: there is more than one dead time."""
         return False

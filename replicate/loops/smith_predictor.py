@@ -25,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
+from replicate.loops.evaluation import quotient, values
 from replicate.loops.plant import Plant
 from replicate.loops.sum_plant import sum_of
 
@@ -108,7 +109,7 @@ class SmithPredictor:
         s
             Complex frequencies, any shape.
         """
-        return self._closed(s, self.controller.feedback(s))
+        return values(lambda s: quotient(np.ones_like(s), self._inverse(s)), s)
 
     def feedforward(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the transfer function from r to u.
@@ -118,12 +119,14 @@ class SmithPredictor:
         s
             Complex frequencies, any shape.
         """
-        return self._closed(s, self.controller.feedforward(s))
+        return values(lambda s: self.controller.feedforward(s) / (self.controller.feedback(s) * self._inverse(s)), s)
 
-    def _closed(self, s: ArrayLike, path: ComplexArray) -> ComplexArray:
+    def _inverse(self, s: ComplexArray) -> ComplexArray:
+        """Return one over the feedback: 1/C + what the model adds."""
+        primary = self.controller.feedback(s)
         difference = self.difference
-        inner = difference(s) * self.controller.feedback(s) if difference is not None else 0.0
-        return np.asarray(path / (1.0 + inner))
+        inner = difference(s) if difference is not None else 0.0
+        return np.asarray(quotient(np.ones_like(s), primary) + inner)
 
     def __repr__(self) -> str:
         return f"SmithPredictor({self.controller!r}, model={self.model!r})"

@@ -7,9 +7,10 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
+import numpy as np
 import pytest
 
-from replicate.loops import PI, Circle, Loop, LoopError, Plant, design_pi, design_pid, nu_gap, tune
+from replicate.loops import PI, Circle, Loop, LoopError, Plant, SmithPredictor, design_pi, design_pid, nu_gap, tune
 from replicate.loops.inputs import Step
 
 PLANT = Plant.foptd(1.0, 1.0, 1.0)
@@ -82,3 +83,60 @@ def test_times_are_real_numbers() -> None:
     for value in (1j, "x", [None]):
         with pytest.raises(LoopError, match="the times of a data frame must be real numbers"):
             Y.to_frame(value)  # type: ignore[arg-type]
+
+
+# ---- transfer functions where they have no value -------------------------------------------------------------------
+
+INTEGRATOR = Plant([1.0], [1.0, 0.0], 1.0)
+HELD = Plant.from_terms([([1.0], [1.0, 0.0], 0.0), ([-1.0], [1.0, 0.0], 1.0)])
+HEAT = Plant.from_function(lambda s: np.exp(-np.sqrt(s)))
+
+
+@pytest.mark.parametrize("where", [np.nan, np.inf, -np.inf, 1j * np.inf, complex(np.inf, np.inf)])
+@pytest.mark.parametrize("plant", [PLANT, INTEGRATOR, HELD, HEAT], ids=["lag", "integrator", "sum", "function"])
+def test_transfer_functions_are_nan_at_infinity_without_a_warning(plant: Plant, where: complex) -> None:
+    loop = Loop(plant, PI(0.2, 0.1))
+    for function in (plant, loop, loop.S, loop.T, loop.PS, loop.CS, loop.controller.feedback):
+        assert np.isnan(complex(function(where)))
+        values = function([1j, where])
+        assert np.isfinite(values[0])
+        assert np.isnan(values[1])
+
+
+@pytest.mark.parametrize(
+    ("loop", "expected"),
+    [  # L, S, T, PS = 1/(1/P + C), CS = 1/(1/C + P) at rest
+        (Loop(PLANT, PI(0.2, 0.1)), (np.inf, 0.0, 1.0, 0.0, 1.0)),
+        (Loop(PLANT, PI(0.25)), (0.25, 0.8, 0.2, 0.8, 0.2)),
+        (Loop(INTEGRATOR, PI(0.25)), (np.inf, 0.0, 1.0, 4.0, 0.0)),
+        (Loop(INTEGRATOR, PI(0.25, 0.01)), (np.inf, 0.0, 1.0, 0.0, 0.0)),
+        (Loop(HELD, PI(0.25, 0.01)), (np.inf, 0.0, 1.0, 0.0, 1.0)),
+        (Loop(HEAT, PI(0.25, 0.01)), (np.inf, 0.0, 1.0, 0.0, 1.0)),
+        (Loop(PLANT, PI(0.0)), (0.0, 1.0, 0.0, 1.0, 0.0)),
+        (Loop(PLANT, SmithPredictor(PI(0.2, 0.1), PLANT)), (np.inf, 0.0, 1.0, 0.0, 1.0)),
+    ],
+)
+def test_transfer_functions_at_rest(loop: Loop, expected: tuple[float, ...]) -> None:
+    found = [complex(f(0.0)) for f in (loop, loop.S, loop.T, loop.PS, loop.CS)]
+    assert found == pytest.approx(list(expected), rel=1e-14, abs=1e-14)
+
+
+def test_what_is_added_to_a_plant_or_multiplied_with_it_is_a_number() -> None:
+    wrong: Any
+    for wrong in (None, "", [], True):
+        with pytest.raises(LoopError, match="must be a finite number, not"):
+            PLANT + wrong
+        with pytest.raises(LoopError, match="must be a finite number, not"):
+            PLANT * wrong
+    with pytest.raises(LoopError, match="must be at least 1 and whole, not True"):
+        Loop(PLANT, PI(0.2)).poles(True)
+
+
+def test_complex_times_and_frequencies_are_refused_and_the_past_is_at_rest() -> None:
+    loop = Loop(PLANT, PI(0.2, 0.1))
+    y = loop.step(until=5.0)
+    assert float(y(-np.inf)) == 0.0
+    with pytest.raises(LoopError, match="the times must be real numbers"):
+        y(np.complex128(0.5))
+    with pytest.raises(LoopError, match="frequencies must be positive finite numbers"):
+        loop.bode(np.complex128(0.5))
