@@ -1,18 +1,8 @@
 "use strict";
 // What a page of the report can do beyond reading: nothing here is needed to read it.
 
-// ---------------------------------------------------------------------------------------------- keyboard stops
-
-// A region is a stop of the tab key only while it scrolls.
-const regions = document.querySelectorAll(".scroll, .drawing, pre, math[tabindex]");
-const scrolls = new ResizeObserver((entries) => {
-  for (const { target } of entries) {
-    const moves = target.scrollWidth > target.clientWidth + 1 || target.scrollHeight > target.clientHeight + 1;
-    if (moves) target.tabIndex = 0;
-    else target.removeAttribute("tabindex");
-  }
-});
-for (const region of regions) scrolls.observe(region);
+// The contents are open where there is room beside the text; the style sheet does the same in newer browsers.
+for (const contents of document.querySelectorAll("details.contents")) contents.open = matchMedia("(min-width: 76rem)").matches;
 
 // ---------------------------------------------------------------------------------------------- copying
 
@@ -87,10 +77,23 @@ function toolsOfTarget() {
 }
 for (const moment of ["load", "hashchange"]) addEventListener(moment, toolsOfTarget);
 
+// The names of all columns; one under a common head has that in its name.
+function headNames(table) {
+  const names = [];
+  let place = 0;
+  for (const head of table.tHead.rows[0].cells) {
+    for (let i = 0; i < head.colSpan; i += 1, place += 1) {
+      const own = place && table.tHead.querySelector(`[data-c="${place}"]`);
+      names.push(own && own !== head ? `${text(own.firstChild)}, ${text(head)}` : text((own || head).firstChild));
+    }
+  }
+  return names;
+}
+
 // A table as it is seen: hidden rows, cards and signs are left out.
 function tableRows(table) {
-  const rows = [];
-  for (const row of table.rows) {
+  const rows = [headNames(table)];
+  for (const row of [...table.tBodies].flatMap((body) => [...body.rows])) {
     if (!row.checkVisibility()) continue;
     rows.push(
       [...row.cells].map((cell) => {
@@ -119,7 +122,7 @@ const number = (cell) => Number.parseFloat(text(cell?.firstChild).replaceAll("âˆ
 
 function sort(table, column, head) {
   const upward = head.getAttribute("aria-sort") !== "ascending";
-  for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
+  for (const other of table.tHead.querySelectorAll("th")) other.removeAttribute("aria-sort");
   head.setAttribute("aria-sort", upward ? "ascending" : "descending");
   // The print decides; where nothing is printed, what is computed.
   const value = (body) => [...body.rows].map((row) => number(row.cells[column])).find((one) => !Number.isNaN(one));
@@ -133,8 +136,8 @@ function sort(table, column, head) {
 
 for (const table of document.querySelectorAll(".scroll:not(.stretches) > table.values")) {
   if (table.tBodies.length < 6) continue;
-  [...table.tHead.rows[0].cells].forEach((head, column) => {
-    if (!column) return;
+  table.tHead.querySelectorAll("[data-c]").forEach((head) => {
+    const column = Number(head.dataset.c);
     const label = head.querySelector(".label");
     const sorter = button("", () => sort(table, column, head));
     sorter.className = "sorter";

@@ -106,7 +106,7 @@ def differences(pairs: Sequence[Pair], salt: str) -> str:
         canvas = Canvas(figsize=(_WIDTH, 0.5 + 1.35 * len(pairs)))
         for axes, pair in zip(canvas.subplots(len(pairs), squeeze=False)[:, 0], pairs, strict=True):
             place = f" ({_shortened(pair.axes['panel'])})" if several else ""
-            axes.set_title(_shortened(pair.name) + place, loc="left", fontsize=9)
+            axes.set_title(_shortened(pair.name) + place, loc="left", fontsize=10)
             if pair.values is not None:
                 _draw_values(axes, pair)
             else:
@@ -195,7 +195,7 @@ def _set_axes(axes: Axes, panel: Description) -> None:
         if isinstance(text["x"], float) and isinstance(text["y"], float):
             where = axes.transAxes if text.get("in") == "axes" else axes.transData
             axes.text(
-                text["x"], text["y"], text["text"], transform=where, fontsize=8, clip_on=True, ha="center", va="center"
+                text["x"], text["y"], text["text"], transform=where, fontsize=9, clip_on=True, ha="center", va="center"
             )
 
 
@@ -245,7 +245,7 @@ def _draw_legend(axes: Axes, panel: Description) -> None:
     handles = {str(line.get_label()): line for line in axes.lines}
     entries = [name for name in _legend(panel) if name in handles]
     if entries:
-        axes.legend([handles[name] for name in entries], entries, loc="best", fontsize=7.5)
+        axes.legend([handles[name] for name in entries], entries, loc="best", fontsize=9)
 
 
 def _legend(panel: Description) -> Sequence[str]:

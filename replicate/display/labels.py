@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+from replicate.exhibits import Paper
+
 _KINDS = {"table": "Table", "fig": "Figure", "example": "Example", "box": "Box", "algorithm": "Algorithm"}
 
 
@@ -42,24 +44,60 @@ def label(exhibit: str) -> str:
     return f"{_KINDS.get(kind, kind.capitalize())} {', '.join([plain, *words])}"
 
 
+_ROMAN = {"M": 1000, "CM": 900, "D": 500, "CD": 400, "C": 100, "XC": 90, "L": 50, "XL": 40, "X": 10, "IX": 9, "V": 5,
+          "IV": 4, "I": 1}  # fmt: skip
+
+
+def _roman(number: int) -> str:
+    text = ""
+    for letters, worth in _ROMAN.items():
+        text += number // worth * letters
+        number %= worth
+    return text
+
+
+def _spellings(name: str) -> list[str]:
+    """Return how a title may begin with the exhibit's number: as we write it, or as papers do."""
+    kind, _, number = name.rpartition(" ")
+    roman = [f"{kind} {_roman(int(number))}"] if number.isdigit() else []
+    return [name, name.replace("Figure", "Fig."), *roman]
+
+
 def heading(exhibit: str, title: str) -> tuple[str, str]:
-    """Return label and title of an exhibit, without saying the label twice.
+    """Return label and title of an exhibit, without saying the label twice; a number is written as the title has it.
 
     Examples
     --------
     >>> heading("table-2", "Table 2: step response"), heading("table-2", "Step response")
     (('Table 2', 'Step response'), ('Table 2', 'Step response'))
-    >>> heading("claims", "Claims made in the text")
-    ('', 'Claims made in the text')
+    >>> heading("table-2", "Table II: step response"), heading("claims", "Claims made in the text")
+    (('Table II', 'Step response'), ('', 'Claims made in the text'))
     """
     name = label(exhibit)
     if not name:
         return "", title
-    for spelling in (name, name.replace("Figure", "Fig.")):
+    for spelling in _spellings(name):
         if title.lower().startswith(spelling.lower()):
             rest = title[len(spelling) :]
             if not rest.startswith((".", ":", ",", " –", " —")):
                 return "", title
             rest = rest.lstrip(" .:,–—")
-            return name, rest[:1].upper() + rest[1:]
+            return name if "." in spelling else spelling, rest[:1].upper() + rest[1:]
     return name, title
+
+
+def cited(paper: Paper) -> str:
+    """Return a paper as one would cite it: surnames and year.
+
+    Examples
+    --------
+    >>> names = ("Ann Lee", "Bo Kim", "Cy Wu")
+    >>> for count in (1, 2, 3):
+    ...     print(cited(Paper("id", "package", "Title", names[:count], "Citation.", 1999, (), ())))
+    Lee 1999
+    Lee and Kim 1999
+    Lee et al. 1999
+    """
+    surnames = [author.split(" ")[-1] for author in paper.authors]
+    names = f"{surnames[0]} et al." if len(surnames) > 2 else " and ".join(surnames)
+    return f"{names} {paper.year}"

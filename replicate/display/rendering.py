@@ -14,6 +14,7 @@ from markupsafe import Markup
 from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.distance import off
+from replicate.display.labels import cited
 from replicate.display.markdown import MarkdownBatch, without_marks
 from replicate.display.safe_html import policy
 from replicate.exhibits.plain_text import visible
@@ -65,6 +66,7 @@ def render(template: str, name: str, **context: Any) -> str:
         context,
         words=words,
         anchor=anchor,
+        cited=cited,
         scores=scores,
         consequences=consequences,
         numbers=numbers,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from replicate.display import numbers
 from replicate.display.addresses import trial_address
 from replicate.display.distance import off
+from replicate.display.spanners import Span, spans
 from replicate.exhibits import Reading, Table
 from replicate.exhibits.conventions import tallies
 from replicate.exhibits.frames import FrameCells
@@ -17,7 +18,6 @@ from replicate.exhibits.results import Ranges, TableResult
 from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
-_MANY_CELLS = 6
 _WRONG = {*ERRORS, "unexplained"}
 _TOWER, _MOST_STRETCHES = 14, 3  # lines of a table with one column from which on it is a tower; pieces at most
 
@@ -86,6 +86,7 @@ class Line:
     readings: list[str]
     values: list[Value]
     places: str  # of the readings among those of the table, from 2 on: the first choice of a list is "all"
+    repeats: list[bool]  # which values the line above shows already
 
 
 @dataclass(frozen=True)
@@ -94,9 +95,8 @@ class Note:
 
     number: int
     verdict: VerdictRow
-    where: list[tuple[str, str]]  # (row, column); an empty row means `count` rows of the column
+    where: dict[str, list[str]]  # the rows of each column, or the columns of each row, whichever is shorter
     corrections: list[VerdictRow]
-    count: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -113,6 +113,11 @@ class TableView:
     shortened: list[tuple[str, str]] = field(default_factory=list)  # quantities with truncated cells, and the count
     strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
     trials: dict[str, str] = field(default_factory=dict)  # by row: where its loop can be tried out
+
+    @property
+    def spans(self) -> list[Span]:
+        """The columns in groups that stand under one head."""
+        return spans([self.table.labels.get(column, column.replace("_", " ")) for column in self.columns])
 
     @property
     def differing(self) -> set[str]:
@@ -155,7 +160,12 @@ class TableView:
         for values in zip(*(entry.values for entry in row), strict=True):
             ids, _ = lines.setdefault(tuple(value.same for value in values), ([], list(values)))
             ids.append(values[0].reading.id)
-        return [Line(ids, values, " ".join(places[id] for id in ids)) for ids, values in lines.values()]
+        found: list[Line] = []
+        for ids, shown in lines.values():
+            above = [value.same for value in found[-1].values] if found else [None] * len(shown)
+            repeats = [one.same == said for one, said in zip(shown, above, strict=True)]
+            found.append(Line(ids, shown, " ".join(places[id] for id in ids), repeats))
+        return found
 
 
 def classes(verdicts: Iterable[str]) -> str:
@@ -287,11 +297,12 @@ def _notes(verdicts: Iterable[VerdictRow]) -> list[tuple[Note, list[Key]]]:
     notes = []
     for number, group in enumerate(groups.values(), 1):
         keys = [(verdict.row, verdict.column) for verdict in group]
-        where, count = keys, dict[str, int]()
-        if len(keys) > _MANY_CELLS:
-            columns = list(dict.fromkeys(column for _, column in keys))
-            where = [("", column) for column in columns]
-            count = {column: sum(key[1] == column for key in keys) for column in columns}
+        by_row: dict[str, list[str]] = {}
+        by_column: dict[str, list[str]] = {}
+        for row, column in keys:
+            by_row.setdefault(row, []).append(column)
+            by_column.setdefault(column, []).append(row)
+        where = by_row if len(by_row) <= len(by_column) else by_column
         corrections = [verdict for verdict in group if verdict.corrected]
-        notes.append((Note(number, group[0], where, corrections, count), keys))
+        notes.append((Note(number, group[0], where, corrections), keys))
     return notes

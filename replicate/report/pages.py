@@ -6,7 +6,7 @@ Every page stands alone: style and script are inside it, nothing is fetched, and
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import dropwhile, takewhile
 from pathlib import Path
@@ -16,12 +16,12 @@ from replicate.display.consequences import consequential
 from replicate.display.environment import versions
 from replicate.display.rendering import render
 from replicate.errors import TemplateError
-from replicate.exhibits import Claims, Exhibit, Paper
+from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
 from replicate.report.advice import advice
-from replicate.report.errata_sheet import sheets
+from replicate.report.errata_sheet import Erratum, Sheet, sheets
 from replicate.report.notes import Piece, pieces, place
 from replicate.report.search import KINDS, hits
 from replicate.report.single_file import self_contained
@@ -30,7 +30,7 @@ from replicate.report.views import ExhibitView, exhibit_views
 from replicate.resources import templates_dir
 from replicate.run.modules import distributions_used
 from replicate.verdicts.prose import Prose
-from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
+from replicate.verdicts.rows import Judgement, VerdictRow
 
 INDEX = "index.html"
 METHODS = "methods.html"
@@ -124,18 +124,14 @@ def build_report(
     about = about or Site()
     shared = {"about": about, "language": about.language, "theme": about.theme}
     advised = {id: advice(exhibit for page in pages for exhibit in page.exhibits) for id, pages in site.items()}
-    claims = {(paper.id, id): exhibit for paper in papers for id, exhibit in paper.exhibits.items()}
-    grave = [
-        (row, _address(site, row), _sentence(claims[row.paper, row.exhibit], row))
-        for row in consequential(judgement.verdicts)[:_MOST_GRAVE]
-    ]
+    found = sheets(papers, judgement)
+    grave = [_listed(found, row) for row in consequential(judgement.verdicts)[:_MOST_GRAVE]]
     stamp = versions(distributions_used(paper.package for paper in papers))
     overview = {"stamp": stamp, "site": site, "papers": papers, "advised": advised, "grave": grave}
     texts = {INDEX: render("index.html", INDEX, **overview, **shared)}
     name = METHODS if about.methods else VERDICTS
     verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")
     texts[name] = render("methods.html", name, verdicts=verdicts, **shared)
-    found = sheets(papers, judgement)
     mistakes = [erratum for sheet in found for erratum in sheet.errata]
     texts[ERRATA] = render("errata.html", ERRATA, sheets=found, **shared)
     listed = hits(
@@ -161,14 +157,16 @@ def build_report(
     return [out_dir / name for name in texts]
 
 
-def _sentence(exhibit: Exhibit, row: VerdictRow) -> str:
-    """Return the claim that a verdict is about; empty for a printed number."""
-    return exhibit.claims[row.row].text if isinstance(exhibit, Claims) and row.column == CLAIM_COLUMN else ""
-
-
-def _address(site: Mapping[str, Sequence[Page]], row: VerdictRow) -> str:
-    page = next(page for page in site[row.paper] if row.exhibit in page.by_id)
-    return address(page.file, row.exhibit, row.row, row.column)
+def _listed(found: Iterable[Sheet], row: VerdictRow) -> tuple[Paper, Erratum, VerdictRow, str]:
+    """Return an error with its paper, the erratum that it belongs to, and its address."""
+    sheet, erratum = next(
+        (sheet, erratum)
+        for sheet in found
+        if sheet.paper.id == row.paper
+        for erratum in sheet.errata
+        if row in erratum.rows
+    )
+    return sheet.paper, erratum, row, address(erratum.page, row.exhibit, row.row, row.column)
 
 
 def single_page(

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from replicate.display.addresses import address
-from replicate.display.labels import heading
+from replicate.display.labels import cited, heading
 from replicate.exhibits import Claims, Exhibit, Paper
 from replicate.report.errata_sheet import Erratum
 from replicate.verdicts.rows import CLAIM_COLUMN, Judgement
@@ -63,18 +63,6 @@ def hits(
             *(_erratum(paper, erratum) for erratum in errata[paper.id] if not erratum.claim),
         )
     ]
-
-
-def cited(paper: Paper) -> str:
-    """Return a paper as it is cited in a text.
-
-    Examples
-    --------
-    >>> cited(Paper("p", "p", "On loops", ("A. Author", "B. Other"), "", 1999, (), ()))
-    'Author et al. 1999'
-    """
-    others = " et al." if len(paper.authors) > 1 else ""
-    return f"{paper.authors[0].split(' ')[-1]}{others} {paper.year}"
 
 
 def _exhibit(paper: Paper, exhibit: Exhibit, page: str) -> Hit:

@@ -40,6 +40,10 @@ SIDEWAYS = """() => document.documentElement.scrollWidth <= innerWidth ? [] :
   [...document.querySelectorAll("body *")]
     .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !e.closest(".scroll, .drawing, pre, svg"))
     .slice(0, 5).map((e) => e.outerHTML.slice(0, 120))"""
+# Drawings whose letters are smaller than 11 pixels: an index may be, at seven tenths of what it belongs to.
+SMALL = """() => [...document.querySelectorAll("figure svg[role=img]")]
+  .map((e) => [e.id, e.getBoundingClientRect().width / e.viewBox.baseVal.width * e.style.getPropertyValue("--type")])
+  .filter(([, size]) => size && size < 10.99)"""
 STOPS = """() => [...document.querySelectorAll("[tabindex='0']")]
   .filter((e) => e.checkVisibility() && e.scrollWidth <= e.clientWidth + 1 && e.scrollHeight <= e.clientHeight + 1)
   .map((e) => e.outerHTML.slice(0, 120))"""

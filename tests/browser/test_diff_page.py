@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from browser.sight import SETTLED, SIDEWAYS, STOPS, UNFOLDED, Sight, violations
+from browser.sight import SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
 
 ROOT = Path(__file__).parents[2]
@@ -40,7 +40,7 @@ def page(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Path:
     (out / "cache").symlink_to(kept)
     shutil.copytree(ROOT / "figures", out / "accepted")
     rewritten(out / "accepted" / "khan" / "table-2.csv", "computed", 0.25, 3)
-    rewritten(out / "accepted" / "khan" / "fig-3.csv", "y", 0.02, 200)
+    rewritten(out / "accepted" / "khan" / "fig-3.csv", "y", 0.02, 100)
     names = ["khan/table-2", "khan/fig-3"]
     with pytest.MonkeyPatch.context() as patch:
         arguments = ["replicate", "diff", *names, "--accepted", str(out / "accepted"), "--out", str(out)]
@@ -66,6 +66,7 @@ def test_it_is_accessible_and_fits(page: Path, browser: Any, axe: str) -> None:
                 sight.evaluate(UNFOLDED)
                 sight.evaluate(SETTLED)
                 found[f"{width} px, {scheme}: too wide"] = sight.evaluate(SIDEWAYS)
+                found[f"{width} px, {scheme}: small letters"] = sight.evaluate(SMALL)
                 found[f"{width} px, {scheme}: tab stops that are none"] = sight.evaluate(STOPS)
                 found[f"{width} px, {scheme}: axe"] = violations(sight, axe)
     assert {name: what for name, what in found.items() if what} == {}

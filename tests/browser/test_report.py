@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from browser.sight import BY_COLOURS, BY_WIDTH, FOLD, SETTLED, SIDEWAYS, STOPS, UNFOLDED, Sight, violations
+from browser.sight import BY_COLOURS, BY_WIDTH, FOLD, SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
 from replicate.report.pages import INDEX, SEARCH
 
@@ -71,6 +71,7 @@ def test_every_page_is_accessible_and_fits(report: Path, browser: Any, axe: str)
             page.evaluate(UNFOLDED)
             page.evaluate(SETTLED)
             found[f"{path.name}: wider than a phone"] = page.evaluate(SIDEWAYS)
+            found[f"{path.name}: small letters in drawings"] = page.evaluate(SMALL)
             found[f"{path.name}: tab stops that are none"] = page.evaluate(STOPS) if path.name != "whatif.html" else []
             page.evaluate(FOLD)
             page.emulate_media(color_scheme="dark")
@@ -78,6 +79,8 @@ def test_every_page_is_accessible_and_fits(report: Path, browser: Any, axe: str)
             page.set_viewport_size({"width": 1280, "height": 900})
             page.emulate_media(color_scheme="light")
             page.evaluate(SETTLED)
+            stops = page.evaluate(STOPS) if path.name != "whatif.html" else []
+            found[f"{path.name}: tab stops that are none at 1280 px"] = stops
             found[f"{path.name}: axe, 1280 px, light"] = violations(page, axe)
     assert {name: what for name, what in found.items() if what} == {}
 

@@ -24,7 +24,7 @@ Specifications = Callable[[str, float], tuple[float, float, float, float]]
 
 table_1 = paper.table(
     "table-1",
-    "Overshoot, settling times and $M_s$ for $ph = 10$",
+    "Table I: overshoot, settling times and $M_s$ for $ph = 10$",
     rows=RULES_1,
     columns=QUANTITIES,
     caption="Process $e^{-hs}/(s+p)$ with $p = 1$, $h = 10$. $M_P$ in per cent of the set-point; $t_s$ and $t_d$ are "
@@ -36,7 +36,7 @@ table_1 = paper.table(
 )
 table_2 = paper.table(
     "table-2",
-    "Overshoot, settling times and $M_s$ for $ph = 1$ and $ph = 0.1$",
+    "Table II: overshoot, settling times and $M_s$ for $ph = 1$ and $ph = 0.1$",
     rows=RULES_2,
     columns=tuple(f"ph{ph}_{quantity}" for ph in ("1", "0.1") for quantity in QUANTITIES),
     caption="As Table I, with $p = 1$ and $h = 1$ (left) and $h = 0.1$ (right).",
