@@ -14,7 +14,6 @@ import signal
 import sys
 import tempfile
 import time
-from collections import deque
 from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection, wait
@@ -27,6 +26,7 @@ from replicate.exhibits.file_names import display_name
 from replicate.run.limits import MOST_OUTPUT
 from replicate.run.performance import Performance, with_errors
 from replicate.run.units import Unit, failed
+from replicate.run.waiting import Waiting
 from replicate.run.worker import BEGUN, FAILED, Surroundings, Task, serve
 
 _TICK = 0.5
@@ -56,6 +56,7 @@ class _Worker:
     connection: Connection
     output: Path
     task: Task | None = None
+    folders: list[str] = field(default_factory=list)  # whose units it has done, the latest last
     begun: float = 0.0
     claim: str = ""
     failed: str = ""
@@ -78,14 +79,14 @@ class LocalPool:
     _errors: dict[Unit, dict[str, str]] = field(default_factory=dict)
 
     def run(self, units: Mapping[Unit, Exhibit]) -> Generator[tuple[Unit, Performance], None, None]:
-        """Yield units as they are done; they are begun in the given order.
+        """Yield units as they are done; those of one folder of code are begun in the given order.
 
         Raises
         ------
         ReplicateError
             If no worker can be started.
         """
-        waiting = deque(Task(unit) for unit in units)
+        waiting = Waiting(units)
         workers: list[_Worker] = []
         with tempfile.TemporaryDirectory(prefix="replicate-", ignore_cleanup_errors=True) as folder:
             started = 0
@@ -97,7 +98,10 @@ class LocalPool:
                         started += 1
                     for worker in workers:
                         if worker.task is None and waiting:
-                            self._give(worker, waiting.popleft())
+                            taken = {other.folders[-1] for other in workers if other is not worker and other.folders}
+                            task = waiting.take(worker.folders, taken)
+                            worker.folders.append(waiting.folder(task))
+                            self._give(worker, task)
                     yield from self._harvest(workers, waiting, units)
             finally:
                 for worker in workers:
@@ -109,7 +113,7 @@ class LocalPool:
             worker.connection.send(task)
 
     def _harvest(
-        self, workers: list[_Worker], waiting: deque[Task], units: Mapping[Unit, Exhibit]
+        self, workers: list[_Worker], waiting: Waiting, units: Mapping[Unit, Exhibit]
     ) -> Iterator[tuple[Unit, Performance]]:
         ready = wait([entry for worker in workers for entry in (worker.connection, worker.process.sentinel)], _TICK)
         for worker in list(workers):
@@ -145,12 +149,12 @@ class LocalPool:
         )
 
     def _lost(
-        self, worker: _Worker, task: Task, why: str, exhibit: Exhibit, waiting: deque[Task]
+        self, worker: _Worker, task: Task, why: str, exhibit: Exhibit, waiting: Waiting
     ) -> Iterator[tuple[Unit, Performance]]:
         """Report a unit that has ended its worker; of claims only the one it was at, and the others are tried again."""
         if isinstance(exhibit, Claims) and worker.claim:
             self._errors.setdefault(task.unit, {})[worker.claim] = why
-            waiting.appendleft(Task(task.unit, (*task.without, worker.claim)))
+            waiting.put_back(Task(task.unit, (*task.without, worker.claim)))
             return
         seconds = time.monotonic() - worker.begun
         lost = Performance(failed(task.unit, exhibit, why), {}, seconds, output=_output(worker))
