@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
@@ -16,6 +16,7 @@ from replicate.run.limits import UNIT_TIMEOUT
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
+    from replicate.run.kept_texts import KeptTexts
     from replicate.run.library import Library
     from replicate.run.outcome import Outcome, Selection
     from replicate.run.parallel import Executor
@@ -69,6 +70,18 @@ class Computing:
                 unit_timeout=self.unit_timeout,
                 executor=self.executor,
             )
+
+    def kept_texts(self, rooms: Sequence[str], distributions: Sequence[str]) -> KeptTexts:
+        """Return what keeps texts that rooms of the framework compute, beside the results of the papers."""
+        from replicate.run.kept_texts import KeptTexts
+        from replicate.terminal.console import console
+
+        def report(name: str, why: str) -> None:
+            if self.verbose:
+                lines = console(stderr=True)
+                lines.print(f"computed {name}\n    because {why}", markup=False, highlight=False, soft_wrap=True)
+
+        return KeptTexts(None if self.no_cache else self.folder / "cache", rooms, distributions, report)
 
 
 def _options(

@@ -81,7 +81,7 @@ def handout(
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.counted_progress import counted_progress_on
-    from replicate.whatif import write_whatif
+    from replicate.whatif import DISTRIBUTIONS, ROOMS, write_whatif
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
@@ -138,7 +138,8 @@ def handout(
                 file_format=file_format,
                 sheet=sheet,
             )
-        written += write_whatif(outcome.papers, fresh / "handouts")  # exercises link to it
+        keep = run.kept_texts(ROOMS, DISTRIBUTIONS)
+        written += write_whatif(outcome.papers, fresh / "handouts", keep=keep)  # exercises link to it
     for path in written:
         echo(f"handout: {run.folder / 'handouts' / path.name}")
     exit_with(run.within, outcome)

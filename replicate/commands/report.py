@@ -28,7 +28,7 @@ def report(
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
-    from replicate.whatif import write_whatif
+    from replicate.whatif import DISTRIBUTIONS, ROOMS, write_whatif
 
     chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
@@ -48,7 +48,7 @@ def report(
             pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         index = run.folder / "report" / pages[0].name
-        write_whatif(outcome.papers, fresh / "report", back="index.html")
+        write_whatif(outcome.papers, fresh / "report", back="index.html", keep=run.kept_texts(ROOMS, DISTRIBUTIONS))
         mailed = [paper for paper in outcome.papers if paper.id in named] if single_file else []
         for paper in mailed:
             text = single_page(paper, outcome.results, outcome.judgement, data, about)

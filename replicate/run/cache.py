@@ -31,7 +31,7 @@ SUFFIX = ".result"
 _LONGEST_HEAD = 2**16
 _MOST_STATES = 4  # entries of one unit
 
-_NEVER = "it has not been computed before"
+NEVER = "it has not been computed before"
 
 
 @dataclass
@@ -59,7 +59,7 @@ class Cache:
                     os.utime(path)  # used just now: the last to be removed
                 return result, ""
             why = why or reason
-        return None, why or _NEVER
+        return None, why or NEVER
 
     def put(self, unit: Unit, result: Result, dependencies: Dependencies) -> None:
         """Keep a result. A full disk or a read-only folder costs the next run time, nothing else."""
@@ -72,7 +72,7 @@ class Cache:
         folder = self._folder(unit)
         with contextlib.suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
-            _write(folder / f"{state}{SUFFIX}", f"{head}\n".encode() + rest)
+            write_whole(folder / f"{state}{SUFFIX}", f"{head}\n".encode() + rest)
             for old in self._entries(unit)[_MOST_STATES:]:
                 old.unlink(missing_ok=True)
 
@@ -94,7 +94,9 @@ class Cache:
         entries = list(stored(self.folder))
         for entry in entries:
             entry.path.unlink(missing_ok=True)
-            for folder in (entry.path.parent, entry.path.parent.parent, entry.path.parent.parent.parent):
+            for folder in entry.path.parents:
+                if self.folder is None or not folder.is_relative_to(self.folder):
+                    break
                 with contextlib.suppress(OSError):  # not empty
                     folder.rmdir()
         return len(entries), sum(entry.size for entry in entries)
@@ -176,7 +178,7 @@ def _checked(value: Any) -> Dependencies:
     return value
 
 
-def _write(path: Path, content: bytes) -> None:
+def write_whole(path: Path, content: bytes) -> None:
     """Write a file aside and rename it: a reader, also one in another run, sees the whole file or none."""
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=".aside-")
     try:

@@ -103,14 +103,15 @@ class Looked:
 
     def difference(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> str:
         """Return what has changed since, in words; empty if nothing has."""
-        now = self.now(paper, recorded)
-        for group, present in now.items():
-            before = recorded.get(group, {})
-            if before == present:
-                continue
-            name = next(name for name in (*before, *present) if before.get(name) != present.get(name))
-            return _said(group, name, before.get(name), present.get(name), paper)
-        return ""
+        return first_difference(recorded, self.now(paper, recorded), paper.id)
+
+    def rooms(self, rooms: Iterable[str], distributions: Iterable[str]) -> Dependencies:
+        """Return the present state of rooms of the framework and of installed distributions."""
+        return {
+            "python": self._environment,
+            "framework": {name: digest for room in rooms for name, digest in self._room(room).items()},
+            "distribution": {name: self._version(name) for name in distributions},
+        }
 
     def _room(self, room: str) -> dict[str, str]:
         place: Traversable = files(_ROOT) / room
@@ -172,19 +173,31 @@ class Looked:
         return hashlib.sha256(file.read_bytes()).hexdigest()[:_LENGTH]
 
 
+def first_difference(
+    recorded: Mapping[str, Mapping[str, str]], now: Mapping[str, Mapping[str, str]], paper: str = ""
+) -> str:
+    """Return in words what has changed between two states; empty if nothing has."""
+    for group, present in now.items():
+        before = recorded.get(group, {})
+        if before != present:
+            name = next(name for name in (*before, *present) if before.get(name) != present.get(name))
+            return _said(group, name, before.get(name), present.get(name), paper)
+    return ""
+
+
 def _is_own(paper: Paper, module: str) -> bool:
     """Say whether a module's file counts with the paper's folder."""
     inside = module == paper.package or module.startswith(f"{paper.package}.")
     return inside and not _PROSE.fullmatch(f"{module.rpartition('.')[2]}.py")
 
 
-def _said(group: str, name: str, before: str | None, now: str | None, paper: Paper) -> str:
+def _said(group: str, name: str, before: str | None, now: str | None, paper: str) -> str:
     if group == "distribution":
         return f"{name} was {before}, is {now}"
     if group == "python":
         subject = "Python" if name == "version" else name
         return f"{subject} was '{before}', is '{now}'"
-    where = {"framework": f"{_ROOT}/{name}", "paper": f"{paper.id}/{name}", "module": f"module {name}"}.get(group, name)
+    where = {"framework": f"{_ROOT}/{name}", "paper": f"{paper}/{name}", "module": f"module {name}"}.get(group, name)
     if before is None:
         return f"{where} is new"
     return f"{where} {'is gone' if now in {None, _GONE} else 'has changed'}"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
@@ -16,9 +18,7 @@ from replicate.display.safe_html import policy
 from replicate.exhibits import Paper
 from replicate.figures.style import dark_curves
 from replicate.resources import templates_dir
-from replicate.whatif.reference import markers, reference
 from replicate.whatif.rows import Row, rows_of
-from replicate.whatif.still import still
 
 NAME = TRIALS
 
@@ -26,10 +26,21 @@ NAME = TRIALS
 #: which angle of the dead time, in radians, a frequency response is looked at.
 CONSTANTS = {"nodes": 24, "mostPieces": 12000, "decayPerPiece": 8, "mostTurns": 2000}
 
+#: Rooms of the framework whose code computes what stands on the page, and what they use.
+ROOMS = ("display", "errors", "exhibits", "figures", "loops", "resources", "whatif")
+DISTRIBUTIONS = ("matplotlib", "numpy", "scipy")
+
+Keep = Callable[[str, Callable[[], str]], str]
+"""Returns the text that an earlier run kept under a name that says all it depends on, or has it made."""
+
 _SCRIPTS = ("kernel.js", "notation.js", "measures.js", "charts.js", "plane.js", "views.js", "page.js")
 
 
-def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") -> str:
+def _made(_name: str, make: Callable[[], str]) -> str:
+    return make()
+
+
+def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", keep: Keep = _made) -> str:
     """Return the page.
 
     Parameters
@@ -38,6 +49,8 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") ->
         Loops to choose from, at least one; the page opens with the first.
     back
         Address of the overview, if the page belongs to a report.
+    keep
+        Keeps what takes long to compute; nothing by default.
 
     Raises
     ------
@@ -48,9 +61,9 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") ->
     style, *scripts = (folder.joinpath(name).read_text(encoding="utf-8") for name in ("whatif.css", *_SCRIPTS))
     style += dark_curves()
     script = f"const CONSTANTS = {json.dumps(CONSTANTS)};\n" + "\n".join(scripts)
-    data = {"rows": [asdict(row) for row in rows], "markers": markers(rows), "reference": reference()}
+    data = {"rows": [asdict(row) for row in rows], "markers": _markers(rows, keep), "reference": _reference(keep)}
     text = json.dumps(data, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
-    drawing = still(rows[0])
+    drawing = _still(rows[0], keep)
     styles = [style, *_style_elements(drawing)]
     return (
         html_environment()
@@ -69,13 +82,49 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "") ->
     )
 
 
-def write_whatif(papers: Iterable[Paper], folder: Path, back: str = "") -> list[Path]:
+def write_whatif(papers: Iterable[Paper], folder: Path, back: str = "", keep: Keep = _made) -> list[Path]:
     """Write the page of the papers' rows into a folder; return the file, or nothing where no paper declares a row."""
     rows = rows_of(papers)
     if not rows:
         return []
-    (folder / NAME).write_bytes(whatif_page(rows, back=back).encode())
+    (folder / NAME).write_bytes(whatif_page(rows, back=back, keep=keep).encode())
     return [folder / NAME]
+
+
+def _markers(rows: Sequence[Row], keep: Keep) -> dict[str, Any]:
+    """Return where the tuning rules that apply put their controllers, by the text of the plant."""
+
+    def made(plant: str) -> str:
+        from replicate.whatif.reference import markers
+
+        return json.dumps(markers(plant))
+
+    return {
+        plant: json.loads(keep(f"what if: tuning rules for {plant}", partial(made, plant)))
+        for plant in dict.fromkeys(row.plant for row in rows)
+    }
+
+
+def _reference(keep: Keep) -> Any:
+    """Return the loop of the page's self-test."""
+
+    def made() -> str:
+        from replicate.whatif.reference import reference
+
+        return json.dumps(reference())
+
+    return json.loads(keep("what if: the self-test", made))
+
+
+def _still(row: Row, keep: Keep) -> str:
+    """Return the picture that stands where no script runs."""
+
+    def made() -> str:
+        from replicate.whatif.still import still
+
+        return still(row)
+
+    return keep(f"what if: the picture of {row.label}, {row.plant} with {row.controller}", made)
 
 
 def _style_elements(svg: str) -> list[str]:

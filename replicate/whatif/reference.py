@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from replicate.loops import PID, Loop, Plant, design_pi
+from replicate.loops import PID, Loop, design_pi
 from replicate.loops.errors import LoopError
 from replicate.loops.notation import parse_controller, parse_plant
 from replicate.loops.tune import amigo, simc, ziegler_nichols
-from replicate.whatif.rows import Row
 
 #: The loop with which the page tests itself: second order, with dead time, derivative filter and set-point weight.
 REFERENCE = ("e^{-0.7s}/((s+1)(0.5s+1))", "k=1.1,ki=0.9,kd=0.3,derivative_filter=0.05,b=0.8")
@@ -43,12 +42,9 @@ def reference() -> dict[str, Any]:
     }
 
 
-def markers(rows: Iterable[Row]) -> dict[str, list[dict[str, Any]]]:
-    """Return where the tuning rules that apply put their controllers, by the text of the plant."""
-    return {text: _rules(parse_plant(text)) for text in dict.fromkeys(row.plant for row in rows)}
-
-
-def _rules(plant: Plant) -> list[dict[str, Any]]:
+def markers(text: str) -> list[dict[str, Any]]:
+    """Return where the tuning rules that apply to a plant put their controllers."""
+    plant = parse_plant(text)
     rules: tuple[tuple[str, Callable[[], Any]], ...] = (
         ("SIMC", lambda: simc(plant, plant.dead_time)),
         ("AMIGO", lambda: amigo(plant)),
