@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import base64
 import re
-from collections.abc import Mapping
-from functools import cache, partial
+from collections.abc import Callable, Mapping
+from contextvars import ContextVar
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import jinja2
@@ -58,11 +60,9 @@ def render(template: str, name: str, **context: Any) -> str:
         If a text of the page cannot be converted.
     """
     batch = MarkdownBatch(name)
-    loader = html_environment()
-    loader.filters |= {
-        "md": batch.block, "inline": batch.inline, "plain": batch.plain, "key": partial(_key, batch),
-    }  # fmt: skip
-    text = loader.get_template(template).render(
+    _BATCH.set(batch)
+    page = _page_environment(templates_dir()).get_template(template)
+    text = page.render(
         context,
         words=words,
         anchor=anchor,
@@ -77,6 +77,32 @@ def render(template: str, name: str, **context: Any) -> str:
         policy=Markup(_POLICY),  # noqa: S704
     )
     return visible(with_policy(batch.substitute(text).replace(_STYLE, style_sheet(context.get("theme") or {}))))
+
+
+@cache
+def _page_environment(folder: Path) -> jinja2.Environment:  # noqa: ARG001  -- other templates, another environment
+    """Return the environment of all pages, whose templates are compiled once; `_BATCH` is that of the page at hand."""
+    environment = html_environment()
+    environment.filters |= {
+        "md": _registering(MarkdownBatch.block),
+        "inline": _registering(MarkdownBatch.inline),
+        "plain": _registering(MarkdownBatch.plain),
+        "key": _registering(_key),
+    }
+    return environment
+
+
+_BATCH: ContextVar[MarkdownBatch] = ContextVar("batch")
+
+
+def _registering(method: Callable[..., Markup]) -> Callable[..., Markup]:
+    """Return a filter that registers a text with the page at hand; never evaluated where a template is compiled."""
+
+    @jinja2.pass_context
+    def register(_context: object, *arguments: Any) -> Markup:
+        return method(_BATCH.get(), *arguments)
+
+    return register
 
 
 def _script(name: str) -> Markup:
