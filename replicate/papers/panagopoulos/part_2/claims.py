@@ -9,7 +9,7 @@ from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
 from replicate.papers.panagopoulos.part_2.designs import optimal, pi_controller, pid_design, printed
-from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
+from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment, loop_of
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import G4, NEAR_INTEGRATING, PLANTS, ROWS, split
 from replicate.papers.panagopoulos.part_2.recommended import load_numbers
@@ -130,7 +130,7 @@ def zero_weight() -> Finding:
     for row in ROWS:
         c = printed(REPLACEMENT, row)
         if printed_number(REPLACEMENT, row, "b") == 0.0:
-            above[row] = setpoint_gain(c, Resonance.of(PLANTS[split(row)[0]], c), 0.0, 0.0)
+            above[row] = setpoint_gain(c, Resonance.of(loop_of(split(row)[0], c)), 0.0, 0.0)
     count = sum(value > 1.0 for value in above.values())
     return Finding(
         "holds" if count else "fails",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from replicate.loops import PID, Loop
-from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
-from replicate.papers.panagopoulos.part_2.processes import PLANTS
+from replicate.loops import PID
+from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment, loop_of
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_as_printed, weight
 
 COLUMNS = ("k", "Ti", "Td", "b", "Tsp", "IE", "IE/IAE", "w0", "ts", "Mp")
@@ -55,10 +54,9 @@ class Properties:
         UnstableLoopError
             If the loop is unstable.
         """
-        plant = PLANTS[process]
-        loop = Loop(plant, controller)
+        loop = loop_of(process, controller)
         sensitivity = loop.sensitivity_peak()
-        peak = Resonance.of(plant, controller)
+        peak = Resonance.of(loop)
         load = load_experiment(process, controller).output
         return cls(
             controller.k,

@@ -15,8 +15,9 @@ from math import hypot, inf, sqrt
 
 import numpy as np
 
-from replicate.loops import PID, Loop, Plant
-from replicate.papers.panagopoulos.part_2.processes import PLANTS
+from replicate.loops import PID, Loop
+from replicate.papers.panagopoulos.part_2.load_experiment import loop_of
+from replicate.papers.panagopoulos.part_2.processes import split
 
 COARSE_GRID = np.logspace(-2.0, 2.0, 50)  # rad/s; 50 points is what Matlab's logspace(-2, 2) makes
 
@@ -29,15 +30,15 @@ class Resonance:
     value: float
 
     @classmethod
-    def of(cls, plant: Plant, controller: PID) -> Resonance:
+    def of(cls, loop: Loop) -> Resonance:
         """Return the peak of a loop, from the exact frequency response."""
-        peak = Loop(plant, controller).complementary_peak()
+        peak = loop.complementary_peak()
         return cls(peak.frequency, peak.value)
 
     @classmethod
-    def on_coarse_grid(cls, plant: Plant, controller: PID) -> Resonance:
+    def on_coarse_grid(cls, loop: Loop) -> Resonance:
         """Return the largest |T| on `COARSE_GRID`."""
-        value = Loop(plant, controller)(1j * COARSE_GRID)
+        value = loop(1j * COARSE_GRID)
         size = np.abs(value / (1.0 + value))
         i = int(np.argmax(size))
         return cls(float(COARSE_GRID[i]), float(size[i]))
@@ -126,7 +127,7 @@ def setpoint_gain(c: PID, peak: Resonance, b: float, filter_time: float) -> floa
 
 def with_setpoint(row: str, controller: PID) -> PID:
     """Return a controller with the weight and, where the weight is zero, the filter that bring |G_sp| to one."""
-    peak = Resonance.of(PLANTS[row[:2]], controller)
+    peak = Resonance.of(loop_of(split(row)[0], controller))
     return PID(
         controller.k,
         controller.ki,

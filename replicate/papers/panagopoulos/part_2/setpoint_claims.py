@@ -8,6 +8,7 @@ from replicate.exhibits.evidence import number, share
 from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos.part_2.claims import ROUNDING, claims
 from replicate.papers.panagopoulos.part_2.designs import optimal
+from replicate.papers.panagopoulos.part_2.load_experiment import loop_of
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROWS, split
 from replicate.papers.panagopoulos.part_2.setpoint import (
     Resonance,
@@ -46,7 +47,7 @@ def eq_16() -> Finding:
     gains, right = [], []
     for row in ROWS:
         c = optimal(row)
-        peak = Resonance.of(PLANTS[split(row)[0]], c)
+        peak = Resonance.of(loop_of(split(row)[0], c))
         if weight_from_peak(c, peak) == 0.0:
             gains.append(setpoint_gain(c, peak, 0.0, filter_as_printed(c, peak)))
             right.append(setpoint_gain(c, peak, 0.0, filter_corrected(c, peak)))
@@ -73,7 +74,7 @@ def filter_b_one() -> Finding:
     for row in ROWS:
         name = split(row)[0]
         c = optimal(row)
-        time = full_weight_filter_corrected(c, Resonance.of(PLANTS[name], c))
+        time = full_weight_filter_corrected(c, Resonance.of(loop_of(name, c)))
         if time == 0.0:
             continue
         plain, with_filter = (

@@ -12,6 +12,7 @@ from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import setpoint
 from replicate.papers.panagopoulos.part_2.designs import optimal
+from replicate.papers.panagopoulos.part_2.load_experiment import loop_of
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance
 
@@ -95,7 +96,7 @@ def _frame(
     rows = {}
     for row in ROWS:
         c = optimal(row)
-        peak = Resonance.of(PLANTS[split(row)[0]], c)
+        peak = Resonance.of(loop_of(split(row)[0], c))
         wanted, bound = setpoint.weight_from_peak(c, peak), limit(c)
         time, full = filter_time(c, peak), full_filter(c, peak)
         b = min(wanted, bound) if bound == bound else 0.0  # noqa: PLR0124  -- NaN

@@ -40,11 +40,11 @@ class Definition:
         scale = "of the peak" if self.relative else "of the step"
         return f"{self.signal}, {scale}, {'both sides' if self.two_sided else 'above'}"
 
-    def of(self, deviation: Signal) -> float:
-        """Return the settling time of a deviation that ends at zero."""
-        level = self.band * (max(float(deviation.peak()), -float(deviation.trough())) if self.relative else 1.0)
-        times = [*deviation.crossings(level), *(deviation.crossings(-level) if self.two_sided else ())]
-        return float(max(times, default=0.0))
+    def of(self, table: str, row: str) -> float:
+        """Return the settling time for the printed gains."""
+        level = self.band * (largest(table, row, self.signal) if self.relative else 1.0)
+        levels = (level, -level) if self.two_sided else (level,)
+        return max(last_crossing(table, row, self.signal, level) for level in levels)
 
 
 @cache
@@ -59,6 +59,19 @@ def deviation(table: str, row: str, signal: SignalName) -> Signal:
     coefficients = response.coefficients.copy()
     coefficients[:, 0] -= response.final
     return Signal(response.breaks, coefficients, final=0.0)
+
+
+@cache
+def largest(table: str, row: str, signal: SignalName) -> float:
+    """Return the largest deviation to either side."""
+    moved = deviation(table, row, signal)
+    return max(float(moved.peak()), -float(moved.trough()))
+
+
+@cache
+def last_crossing(table: str, row: str, signal: SignalName, level: float) -> float:
+    """Return the last time at which a deviation crosses a level; 0 where it does not."""
+    return float(max(deviation(table, row, signal).crossings(level), default=0.0))
 
 
 def definitions() -> Iterator[Definition]:
@@ -76,7 +89,7 @@ def hits(table: str, definition: Definition) -> int:
     for row in ROWS:
         wanted = printed_number(table, row, "ts")
         if wanted == wanted:  # noqa: PLR0124  -- NaN: lost in the scan
-            count += abs(definition.of(deviation(table, row, definition.signal)) - wanted) <= WITHIN * wanted
+            count += abs(definition.of(table, row) - wanted) <= WITHIN * wanted
     return count
 
 

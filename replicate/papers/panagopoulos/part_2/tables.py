@@ -7,10 +7,10 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import rank
-from replicate.loops import PID, Loop, Plant
+from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
-from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment
+from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment, loop_of
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
@@ -68,21 +68,22 @@ def _from_gains(row: str, given: Mapping[str, float]) -> dict[str, float]:
     return {column: number for column, number in found.items() if column not in {*GAINS, *given}}
 
 
-def _with_filter(peak_of: Callable[[Plant, PID], Resonance], *, complete: bool) -> RowFunction:
+def _with_filter(peak_of: Callable[[Loop], Resonance], *, complete: bool) -> RowFunction:
     """Return the row with (16) over the frequency of a peak; without the integrals of responses if not complete."""
 
     def compute(row: str, given: Mapping[str, float]) -> dict[str, float]:
-        plant, controller = PLANTS[split(row)[0]], _controller(given)
-        exact = Resonance.of(plant, controller)
+        controller = _controller(given)
+        loop = loop_of(split(row)[0], controller)
+        exact = Resonance.of(loop)
         # whether there is a filter at all is decided by the exact peak
-        size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(plant, controller))
+        size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(loop))
         if complete:
             return _from_gains(row, given) | {"Tsp": size}
         found = {
             "b": weight(controller, exact),
             "Tsp": size,
             "IE": 1.0 / controller.ki,
-            "w0": Loop(plant, controller).sensitivity_peak().frequency,
+            "w0": loop.sensitivity_peak().frequency,
             "Mp": exact.value,
         }
         return {column: number for column, number in found.items() if column not in given}
