@@ -9,7 +9,7 @@ import numpy as np
 
 from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number, share
-from replicate.loops import PI, Loop
+from replicate.loops import PI, Loop, sweep
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.claims import PROCESSES, Source, ascending, claims, column, stable_rules
 from replicate.papers.bayhan.processes import (
@@ -106,17 +106,17 @@ def slow_rise() -> Finding:
 )
 def near_optimal_tau_cl() -> Finding:
     def best(which: Source) -> tuple[float, float]:
-        times = {}
-        for step in range(1, 101):
-            tau_cl = step / 100
-            kp = competing_rules()["IMC"].evaluate(**{**EXAMPLE_41.symbols, "tau_cl": tau_cl}).kp
-            ki = kp / EXAMPLE_41.tau if which == "text" else 1.0 / EXAMPLE_41.tau
-            method = specifications if which == "text" else sampled_specifications
-            time = method(EXAMPLE_41, PI(k=float(kp), ki=float(ki)))["settling_time"]
-            if not math.isnan(time):
-                times[tau_cl] = time
-        optimum = min(times, key=lambda tau_cl: times[tau_cl])
-        return optimum, times[optimum]
+        tried = [step / 100 for step in range(1, 101)]
+        controllers = []
+        for tau_cl in tried:
+            kp = float(competing_rules()["IMC"].evaluate(**{**EXAMPLE_41.symbols, "tau_cl": tau_cl}).kp)
+            controllers.append(PI(k=kp, ki=kp / EXAMPLE_41.tau if which == "text" else 1.0 / EXAMPLE_41.tau))
+        if which == "text":
+            times = sweep(EXAMPLE_41.plant, controllers, "settling_time")["settling_time"][0]
+        else:
+            times = [sampled_specifications(EXAMPLE_41, controller)["settling_time"] for controller in controllers]
+        fastest = int(np.nanargmin(times))
+        return tried[fastest], float(times[fastest])
 
     (text, fastest), (authors, _) = best("text"), best("authors")
     paper_time = column(EXAMPLE_41, "text", "settling_time")["IMC"]
