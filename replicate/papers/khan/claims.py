@@ -13,7 +13,7 @@ from replicate.papers.khan import paper
 from replicate.papers.khan.break_point import double_pole, visible
 from replicate.papers.khan.fit_quality import first_peak_quality, overshoot_quality, rise_time_quality
 from replicate.papers.khan.processes import plant
-from replicate.papers.khan.sweep import stability_limit, sweep
+from replicate.papers.khan.sweep import first_peak, stability_limit, sweep
 
 claims = paper.claims()
 
@@ -36,13 +36,14 @@ def steady_state() -> Finding:
 @claims.claim("almost-linear", "For large $Kh$ the overshoot is almost linear in $Kh$.", where="Section II-B")
 def almost_linear() -> Finding:
     def bend(ph: float) -> float:
-        part = sweep(ph, np.linspace(0.4, 0.95, 56) * stability_limit(ph))
-        line = np.polynomial.Polynomial.fit(part.kh, part.first_peak, 1)
+        gains = np.linspace(0.4, 0.95, 56) * stability_limit(ph)
+        peaks = first_peak(ph, gains)
+        line = np.polynomial.Polynomial.fit(gains, peaks, 1)
 
         def deviation(kh: float) -> float:
-            return abs(float(sweep(ph, np.array([kh])).first_peak[0]) - float(line(kh)))
+            return abs(float(first_peak(ph, np.array([kh]))[0]) - float(line(kh)))
 
-        return largest(deviation, part.kh, np.abs(part.first_peak - line(part.kh)))[1]
+        return largest(deviation, gains, np.abs(peaks - line(gains)))[1]
 
     bends = {ph: bend(ph) for ph in (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)}
     worst = max(bends, key=bends.__getitem__)
@@ -60,8 +61,8 @@ def almost_linear() -> Finding:
 )
 def small_ph() -> Finding:
     values = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)
-    parts = [sweep(ph, np.array([0.80, 0.81]) * stability_limit(ph)) for ph in values]
-    slopes = [float(np.diff(part.first_peak)[0] / np.diff(part.kh)[0]) for part in parts]
+    gains = {ph: np.array([0.80, 0.81]) * stability_limit(ph) for ph in values}
+    slopes = [float(np.diff(first_peak(ph, kh))[0] / np.diff(kh)[0]) for ph, kh in gains.items()]
     starts = [visible(ph, 0.01) for ph in values]
     falling = all(np.diff(slopes) < 0.0) and all(np.diff(starts) < 0.0)
     return Finding(

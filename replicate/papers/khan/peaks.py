@@ -1,7 +1,7 @@
-"""Peaks and crossings of many responses at once, polished together on their piecewise polynomials.
+"""First peaks of many responses at once, polished together on their piecewise polynomials.
 
-The samples only say where to look; every value returned is a root of the polynomial's slope, or of the
-polynomial itself, by Newton's method.
+The samples only say where to look; every value returned is that at a root of the polynomial's slope, by Newton's
+method.
 """
 
 from __future__ import annotations
@@ -41,10 +41,6 @@ class Responses:
         self._x = chebyshev.nodes(SAMPLES - 1)
         self._samples = (coefficients @ chebyshev.evaluation(size - 1, SAMPLES)).reshape(self.loops, -1)
 
-    def maximum(self) -> tuple[Array, Array]:
-        """Return the highest value of every response and its time."""
-        return self._top(np.arange(self.loops), np.argmax(self._samples, axis=1))
-
     def first_maximum(self) -> Array:
         """Return the first local maximum above the final value; the final value where there is none."""
         value = self.final.copy()
@@ -57,30 +53,6 @@ class Responses:
             first = np.argmax(above[loops] & falling, axis=1)
             value[loops] = np.maximum(self._top(loops, first)[0], self.final[loops])
         return value
-
-    def first_reach(self, fraction: float) -> Array:
-        """Return when every response first reaches a fraction of its final value.
-
-        Raises
-        ------
-        ValueError
-            If one does not reach it inside the horizon.
-        """
-        level = fraction * self.final
-        reached = self._samples >= level[:, None]
-        if not np.all(reached.any(axis=1)):
-            msg = f"a response does not reach {fraction:g} of its final value by t = {self.pieces * self.length:g}"
-            raise ValueError(msg)
-        piece, sample = np.divmod(np.argmax(reached, axis=1), SAMPLES)
-        low, high = self._x[np.maximum(sample - 1, 0)], self._x[sample]
-        series = self._series(np.arange(self.loops), piece)
-        series[0] -= level
-        slope = cheb.chebder(series)
-        x = 0.5 * (low + high)
-        for _ in range(NEWTON_STEPS):
-            step = cheb.chebval(x, series, tensor=False) / cheb.chebval(x, slope, tensor=False)
-            x = np.clip(x - step, low, high)
-        return np.asarray((piece + 0.5 * (x + 1.0)) * self.length)
 
     def _series(self, loops: Index, piece: Index) -> Array:
         return np.ascontiguousarray(self.coefficients[loops, piece].T)

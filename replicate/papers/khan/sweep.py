@@ -1,14 +1,14 @@
 r"""Exact overshoot and rise time under proportional control, for many gains at once, time scaled to h = 1.
 
 The loop of Figure 2 then has two parameters, the normalised dead time ph and the gain Kh:
-:math:`\dot y(t) = -ph\,y(t) + Kh\,[1 - y(t-1)]`, with final value Kh/(Kh + ph). All gains of one ph advance
-together, one matrix product per piece of the dead time.
+:math:`\dot y(t) = -ph\,y(t) + Kh\,[1 - y(t-1)]`, with final value Kh/(Kh + ph). All gains of one ph are one sweep of
+`replicate.loops`; only the first peak, where a later one may be higher, is looked for here.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,12 +16,13 @@ from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from replicate.loops import PI, Plant
+from replicate.loops import sweep as sweep_of_loops
 from replicate.loops.responses import responses
 from replicate.papers.khan.peaks import ROUNDING, Responses
 
 Array = NDArray[np.float64]
 
-SHORTEST = 30.0  # dead times; the highest peak comes long before, which `sweep` checks
+HORIZON = 30.0  # dead times; the highest peak comes long before, which `sweep` checks
 
 # The dense grid: finer in ph where the curves change most, with the edges of the paper's cases on it.
 PH = np.round(np.concatenate([np.arange(0.0, 0.5, 0.025), np.arange(0.5, 3.0, 0.05), np.arange(3.0, 10.1, 0.2)]), 3)
@@ -38,8 +39,6 @@ class Sweep:
         Normalised dead time and gain.
     overshoot
         Largest value of the output beyond its final value, in per cent of that: the paper's definition.
-    first_peak
-        The same for the first local maximum. Close to the stability limit a later peak can be higher.
     rise_time
         From 10 % to 90 % of the final value, in dead times.
     share
@@ -49,9 +48,17 @@ class Sweep:
     ph: Array
     kh: Array
     overshoot: Array
-    first_peak: Array
     rise_time: Array
     share: Array
+
+    @cached_property
+    def first_peak(self) -> Array:
+        """The overshoot of the first local maximum; close to the stability limit a later peak can be higher."""
+        found = np.empty_like(self.kh)
+        for ph in np.unique(self.ph):
+            mine = self.ph == ph
+            found[mine] = first_peak(float(ph), self.kh[mine])
+        return found
 
     def where(self, mask: NDArray[np.bool_]) -> Sweep:
         """Return the loops that the mask selects."""
@@ -59,7 +66,7 @@ class Sweep:
 
     def parts(self) -> tuple[Array, ...]:
         """Return all arrays in the order of the fields."""
-        return self.ph, self.kh, self.overshoot, self.first_peak, self.rise_time, self.share
+        return self.ph, self.kh, self.overshoot, self.rise_time, self.share
 
 
 @cache
@@ -79,37 +86,48 @@ def sweep(ph: float, kh: Array) -> Sweep:
     ValueError
         If a gain is not in (0, stability limit), or the highest peak comes late in the horizon.
     """
+    kh = _stable(ph, kh)
+    # below the breakpoint one real pole, s = W(-Kh e^ph) - ph, may be slow: the horizon must still hold the rise
+    slow = kh < np.exp(-1.0 - ph)
+    decay = ph - lambertw(-kh[slow] * np.exp(ph)).real
+    until = float(np.ceil(max(HORIZON, 2.0 + 3.5 / decay.min(initial=1.0))))
+    controllers = [PI(float(k)) for k in kh]
+    found = sweep_of_loops(_plant(ph), controllers, ("overshoot", "peak_time", "rise_time"), until)
+    overshoot, at, rise_time = (found[name][0] for name in found.metrics)
+    if np.any((overshoot > 0.001) & (at > 0.7 * until)):
+        msg = f"ph = {ph:g}: the highest peak comes late; {until:g} dead times are too few"
+        raise ValueError(msg)
+    return Sweep(np.full(kh.size, ph), kh, 100.0 * overshoot, rise_time, kh / stability_limit(ph))
+
+
+def first_peak(ph: float, kh: Array) -> Array:
+    """Return how far the first local maximum exceeds the final value, in per cent of that; 0 where it does not.
+
+    Raises
+    ------
+    ValueError
+        If a gain is not in (0, stability limit).
+    """
+    kh = _stable(ph, kh)
+    found = responses(_plant(ph), [PI(float(k)) for k in kh], HORIZON, setpoint=1.0, load=0.0)
+    length = float(found[0][0][1])  # all pieces are equal: the horizon is a whole number of dead times
+    final = kh / (kh + ph)
+    excess = Responses(np.array([y for _, y, _ in found]), length, final).first_maximum() / final - 1.0
+    return np.where(excess > ROUNDING, 100.0 * excess, 0.0)
+
+
+def _plant(ph: float) -> Plant:
+    return Plant([1.0], [1.0, ph], dead_time=1.0)
+
+
+def _stable(ph: float, kh: Array) -> Array:
+    """Return gains that are all inside the stability limit."""
     kh = np.asarray(kh, dtype=float)
     limit = stability_limit(ph)
     if not np.all((kh > 0.0) & (kh < limit)):
         msg = f"ph = {ph:g}: stable gains are 0 < Kh < {limit:.6g}, not {kh.min():.6g} to {kh.max():.6g}"
         raise ValueError(msg)
-    # below the breakpoint one real pole, s = W(-Kh e^ph) - ph, may be slow: the horizon must still hold the rise
-    slow = kh < np.exp(-1.0 - ph)
-    decay = ph - lambertw(-kh[slow] * np.exp(ph)).real
-    until = float(np.ceil(max(SHORTEST, 2.0 + 3.5 / decay.min(initial=1.0))))
-    plant = Plant([1.0], [1.0, ph], dead_time=1.0)
-    found = responses(plant, [PI(float(k)) for k in kh], until, setpoint=1.0, load=0.0)
-    length = float(found[0][0][1])  # all pieces are equal: the horizon is a whole number of dead times
-    final = kh / (kh + ph)
-    outputs = Responses(np.array([y for _, y, _ in found]), length, final)
-    highest, at = outputs.maximum()
-    if np.any((highest > 1.001 * final) & (at > 0.7 * until)):
-        msg = f"ph = {ph:g}: the highest peak comes late; {until:g} dead times are too few"
-        raise ValueError(msg)
-    return Sweep(
-        np.full(kh.size, ph),
-        kh,
-        _percent(highest, final),
-        _percent(outputs.first_maximum(), final),
-        outputs.first_reach(0.9) - outputs.first_reach(0.1),
-        kh / limit,
-    )
-
-
-def _percent(peak: Array, final: Array) -> Array:
-    excess = peak / final - 1.0
-    return np.where(excess > ROUNDING, 100.0 * excess, 0.0)
+    return kh
 
 
 @cache
