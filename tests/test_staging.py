@@ -298,14 +298,29 @@ def test_a_report_beside_a_thesis(replicate: Run) -> None:
     assert err.count("\n") == 1
 
 
-def test_a_report_over_files_of_others_is_refused_before_anything_is_computed(replicate: Run) -> None:
-    Path("figures/lab").mkdir(parents=True)
-    Path("figures/lab/fig-1.svg").write_text("accepted long ago")
+@pytest.mark.parametrize(
+    "name",
+    ["figures/lab/fig-1.svg", "figures/lab/fig-1.png", "figures/lab/fig-1.csv", "tables/lab/table-1.as-written.csv"],
+)
+def test_a_report_over_files_of_others_is_refused_before_anything_is_computed(replicate: Run, name: str) -> None:
+    Path(name).parent.mkdir(parents=True)
+    Path(name).write_text("accepted long ago")
     status, out, err = replicate("report", "lab", "-j1", "--out", ".")
     assert (status, out) == (2, "")
-    assert err.startswith("replicate: figures/lab/fig-1.svg: is in the way")
+    assert err.startswith(f"replicate: {name}: is in the way, and no earlier run wrote it; move it away, or choose")
+    assert "delete" not in err  # least of all the present folder
     assert err.count("\n") == 1
-    assert [path.name for path in Path().iterdir()] == ["figures"]
+    assert [path.name for path in Path().iterdir()] == [name.partition("/")[0]]
+
+
+def test_only_what_looks_like_a_report_may_be_deleted(replicate: Run) -> None:
+    Path("build/report").mkdir(parents=True)
+    Path("build/results.csv").write_text("an older version's")
+    status, _, err = replicate("report", "lab", "-j1")
+    assert status == 2
+    assert "if an older version left it, delete build (make clean)" in err
+    Path("build/thesis.tex").write_text("mine")
+    assert "delete" not in replicate("report", "lab", "-j1")[2]
 
 
 def test_accepting_in_a_folder_of_others_is_refused(replicate: Run) -> None:

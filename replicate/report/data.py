@@ -13,7 +13,7 @@ from replicate.display.addresses import address, pages_of
 from replicate.display.consequences import errors
 from replicate.display.csv_text import csv_text, curves_text, table_text
 from replicate.display.junit import junit
-from replicate.exhibits import Figure, Paper
+from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.report.columns import COLUMN_COLUMNS, column_rows
 from replicate.report.pages import DATA
@@ -57,13 +57,15 @@ EXHIBIT_COLUMNS = ("paper", "exhibit", "kind", "title", "status", "reason")
 
 def expected_files(papers: Iterable[Paper]) -> list[str]:
     """Return files that a run will write, as far as they are known before, by name inside the output folder."""
-    figures = (
-        f"figures/{paper.id}/{exhibit.id}.svg"
-        for paper in papers
-        for exhibit in paper.exhibits.values()
-        if isinstance(exhibit, Figure)
-    )
-    return ["results.csv", "verdicts.csv", "exhibits.csv", "junit.xml", "report/index.html", *figures]
+    found = ["results.csv", "verdicts.csv", "errata.csv", "exhibits.csv", "columns.csv", "junit.xml"]
+    found.append("report/index.html")
+    for paper in papers:
+        for exhibit in paper.exhibits.values():
+            if isinstance(exhibit, Figure):
+                found += [f"figures/{paper.id}/{exhibit.id}{ending}" for ending in (".svg", ".png", ".csv")]
+            elif isinstance(exhibit, Table):
+                found += [f"tables/{paper.id}/{exhibit.id}.{reading}.csv" for reading in exhibit.readings]
+    return found
 
 
 def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> dict[str, bytes]:

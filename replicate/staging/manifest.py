@@ -19,6 +19,12 @@ MANIFEST = f"{ROOM}/manifest.json"
 
 _FORMAT = 1
 
+# What runs leave at the top of an output folder: only of such a folder may one say that it can be deleted.
+_LEFT = {
+    *("results.csv", "verdicts.csv", "errata.csv", "exhibits.csv", "columns.csv", "junit.xml", "report", "tables"),
+    *("figures", "cache", "charts", "diff", "handouts", "sweeps"),
+}
+
 
 @dataclass(frozen=True)
 class Manifest:
@@ -112,12 +118,18 @@ def _foreign(target: Path, manifest: Manifest, name: str, fresh: Path | None) ->
         return ""
     if known is not None:
         return "was changed after the run that wrote it, so it is not replaced; move it away or delete it"
-    if manifest.parts:
-        return "is in the way, and no earlier run wrote it; move it away, or choose another folder with --out"
-    return (
-        "is in the way, and no earlier run of this version wrote it; choose another folder with --out, or, if an "
-        f"older version left it, delete {target} (make clean)"
-    )
+    if not manifest.parts and _looks_like_ours(target):
+        return (
+            "is in the way, and no earlier run of this version wrote it; choose another folder with --out, or, if an "
+            f"older version left it, delete {target} (make clean)"
+        )
+    return "is in the way, and no earlier run wrote it; move it away, or choose another folder with --out"
+
+
+def _looks_like_ours(target: Path) -> bool:
+    """Whether a folder holds what a report leaves, and nothing at its top that a report does not."""
+    there = {entry.name for entry in target.iterdir()} - {ROOM}
+    return {"results.csv", "report"} <= there <= _LEFT
 
 
 def _not_a_file(target: Path, manifest: Manifest, name: str) -> str:
