@@ -201,7 +201,7 @@ def test_a_place_that_cannot_be_written(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "text", ["", "[]", "{}", '{"format": 1, "parts": {"report": {"../x": "0"}}}', '{"format": 99}']
+    "text", ["", "[]", "[" * 10**5, "{}", '{"format": 1, "parts": {"report": {"../x": "0"}}}', '{"format": 99}']
 )
 def test_a_damaged_manifest_is_named(tmp_path: Path, text: str) -> None:
     write(tmp_path, {"a": "old"})

@@ -167,7 +167,7 @@ class Store:
         try:
             entry = json.loads(lines[-1]) if lines else {}
             return str(entry["accepted"])
-        except (ValueError, KeyError, TypeError):
+        except (ValueError, KeyError, TypeError, RecursionError):
             why = f"{log}:{len(lines)}: is no acceptance, needed: an object with 'accepted' in each line"
             raise FigureRecordError(why) from None
 

@@ -72,7 +72,7 @@ def _read(path: Path, name: str, now: dict[str, dict[str, str]]) -> tuple[str | 
         difference = first_difference(recorded, now)
     except FileNotFoundError:
         return None, NEVER
-    except (OSError, ValueError, TypeError, AttributeError):
+    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
         return None, "its entry in the cache is damaged"
     if difference or not isinstance(text, str):
         return None, difference or "its entry in the cache is damaged"

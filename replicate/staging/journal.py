@@ -193,6 +193,6 @@ def _read(room: Path) -> Journal | None:
         content = json.loads(path.read_text(encoding="utf-8"))
         lists = {key: tuple(map(checked_name, content[key])) for key in ("put", "remove", "kept")}
         return Journal(**lists, undo=bool(content["undo"]))
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
         msg = f"{path}: is not a journal that replicate wrote; look at what lies beside it, then delete it"
         raise OutputError(msg) from error

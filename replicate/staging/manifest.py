@@ -53,7 +53,7 @@ class Manifest:
             return cls(
                 {part: {checked_name(name): str(digest) for name, digest in files.items()} for part, files in parts}
             )
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             msg = f"{path}: is not a list of files that this version of replicate wrote; delete {target} (make clean)"
             raise OutputError(msg) from error
 

@@ -94,7 +94,7 @@ def _folder(folder: Path, sweep: SweepFile, file_format: str) -> Iterator[None]:
                 msg = f"{folder}: holds {foreign[0]}, which is no sweep's: name another folder with --out"
                 raise OutputError(msg) from None
             keep_file(path, (json.dumps(about, indent=1) + "\n").encode())
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             msg = f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}"
             raise OutputError(msg) from error
         else:
