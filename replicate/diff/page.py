@@ -67,6 +67,16 @@ class DiffView:
         """Id of the section."""
         return self.diff.name.replace("/", "-")
 
+    @property
+    def texts(self) -> list[str]:
+        """What changed, in words, but for the cells, which have a table of their own with the names of the paper."""
+        listed = {cell.name for cell in self.diff.cells}
+        texts = [change.text for change in self.diff.changes if change.where not in listed]
+        if listed:
+            count = len(self.diff.cells)
+            texts.append(f"{count} cell{'s' if count > 1 else ''} changed, listed below")
+        return [*texts[:-1], f"{texts[-1]}; {self.diff.same}"] if self.diff.same else texts
+
 
 def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> str:
     """Return the page of a comparison.
