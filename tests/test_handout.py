@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import synthetic
+from qti_schema import faults
 
 import replicate
 from replicate.errors import PaperDefinitionError, TemplateError
@@ -20,7 +21,10 @@ from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.handout import build_handouts, with_handout
 from replicate.handout.edition import Document, edition
 from replicate.handout.formulas import convert
+from replicate.handout.placing import exercises_of
 from replicate.handout.printout import markup, pdf
+from replicate.handout.qti import qti_package
+from replicate.handout.questions import questions_of
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.slides import slides
 from replicate.handout.tree import elements
@@ -173,6 +177,11 @@ def test_pdfs_are_accessible_and_say_where_they_come_from(made: Made) -> None:
         spoken = re.findall(rb"/Type/StructElem/S/(?:Figure|Formula)\b.*?endobj", content, re.DOTALL)
         assert len(spoken) > 20
         assert all(re.search(rb"/Alt[(<]", element) for element in spoken)
+
+
+def test_the_exercises_are_valid_questions_by_the_schema_of_qti(made: Made) -> None:
+    exercises = exercises_of(made.outcome.papers[0])
+    assert faults(qti_package(list(questions_of(made.documents[True], exercises, None)))) == []
 
 
 def test_slides_tell_the_story_with_numbers_of_the_results(made: Made) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import pytest
 import toy_class
+from qti_schema import faults
 
 from replicate.handout import ClassSet, Sheet, build_handouts
 
@@ -230,6 +231,17 @@ def test_an_item_has_the_parts_of_the_standard_in_its_order(toy: ClassSet) -> No
         assert all(formula.get("alttext") for formula in body.iter(f"{M}math"))
     blocks = {"itemBody", "div", "p", "pre", "rubricBlock", "extendedTextInteraction", "textEntryInteraction", "img"}
     assert names == {f"{Q}{name}" for name in blocks}
+
+
+def test_a_package_is_valid_by_the_published_schema(toy: ClassSet) -> None:
+    *_, (_, content) = toy.files(STUDENTS, "1", "qti")
+    assert faults(content) == []
+    broken = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(content)) as good, zipfile.ZipFile(broken, "w") as bad:
+        for name in good.namelist():
+            text = good.read(name)
+            bad.writestr(name, text.replace(b"<itemBody", b"<itemBody colour='red'"))
+    assert len(faults(broken.getvalue())) == len(items(package(toy)))  # the schema sees what is not of the standard
 
 
 def test_an_item_scores_what_the_key_accepts(toy: ClassSet) -> None:
