@@ -72,8 +72,8 @@ conformance: $(VENV)/.developed ## exact values of hard loops: ours must have ni
 	$(BIN)/python -m replicate.loops.conformance --library python-control
 
 .PHONY: goldens
-goldens: $(VENV)/.developed ## compute the exact values of replicate/loops/goldens.json again (some minutes)
-	$(BIN)/python tools/goldens/make.py
+goldens: $(VENV)/.developed ## compute the exact values of replicate/loops/goldens.json again: make goldens [ARGS="--check ID ..."]
+	$(BIN)/python tools/goldens/make.py $(ARGS)
 
 ##@ Working on it
 

@@ -98,6 +98,10 @@ class LoopTransfer:
         s = np.asarray(s, dtype=complex)
         return np.asarray(horner(num, s) / horner(den, s) * np.exp(-s * self.dead_time))
 
+    def without_longest(self, s: ComplexArray) -> ComplexArray:
+        """Evaluate L(s) times exp(s longest_dead_time)."""
+        return np.asarray(np.polyval(self.num, s) / np.polyval(self.den, s))
+
     def characteristic(self, s: Any) -> ComplexArray:
         """Evaluate f(s) = D(s) + N(s) g(s) exp(-s dead_time)."""
         num, den = self._coefficients

@@ -127,10 +127,15 @@ class SumTransfer(LoopTransfer):
             return np.asarray(controller * self.plant(s))
         return np.asarray(self._fed_back(s) / np.polyval(self.den, s))
 
-    def _fed_back(self, s: ComplexArray) -> ComplexArray:
+    def without_longest(self, s: ComplexArray) -> ComplexArray:
+        """Evaluate L(s) times exp(s longest_dead_time)."""
+        return np.asarray(self._fed_back(s, self.longest_dead_time) / np.polyval(self.den, s))
+
+    def _fed_back(self, s: ComplexArray, less: float = 0.0) -> ComplexArray:
+        """Return D L, with dead times that are ``less`` shorter."""
         total = np.zeros(s.shape, dtype=complex)
         for num, delay in zip(self.nums, self.dead_times, strict=True):
-            total = total + np.polyval(num, s) * np.exp(-s * delay)
+            total = total + np.polyval(num, s) * np.exp(-s * (delay - less))
         return total
 
     def characteristic(self, s: Any) -> ComplexArray:

@@ -24,13 +24,16 @@ from replicate.loops.plant import Plant
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+MOST_NODES = 400  # of the discretisation, however many poles are asked for
+SPARE = 8  # turns of the dead time beyond the number of poles
+ITERATIONS = 30  # each gains a digit or more where the frequency is high
 RADII, ANGLES = 160, 60  # of the grid for plants given by a function
 NEAREST = 1e-9  # rad from the negative real axis at which it is seen whether a function has a cut there
 REAL = 1e-6  # imaginary part, relative to the modulus, of a value that is real
 
 
-def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer) -> ComplexArray:
-    """Return approximate poles, Im >= 0: where to look for the exact ones."""
+def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
+    """Return approximate poles, Im >= 0, at least so many: where to look for the exact ones."""
     chain = build_chain(plant, controller, integral=controller.ki != 0.0, derivative=controller.kd != 0.0)
     chain = chain.balanced(gains(controller))
     # the set-point filter's states are outside the loop
@@ -48,6 +51,7 @@ def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer)
     # enough nodes to resolve the phase that the loop can turn during one dead time at its fastest relevant frequency
     crossing = transfer.beyond(max(0.3, 0.5 * (1.0 + transfer.feedthrough)))
     degree = int(min(160, max(24, np.ceil(1.2 * crossing * longest) + 16)))
+    degree = max(degree, min(MOST_NODES, 3 * count + 16))
     d = _differentiation_matrix(degree) * (2.0 / longest)
     # unknowns: X and u(t + theta) at the nodes theta = -L..0; the last node is u itself, given by the controller
     size = n + degree
@@ -70,6 +74,17 @@ def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer)
 def _differentiation_matrix(degree: int) -> Array:
     slopes = cheb.chebval(chebyshev.nodes(degree), cheb.chebder(np.eye(degree + 1), axis=0))  # (degree+1 basis, nodes)
     return np.asarray(slopes.T @ chebyshev.values_to_coefficients(degree))
+
+
+def asymptotic_starts(transfer: LoopTransfer, count: int) -> ComplexArray:
+    """Return about where the poles of high frequency are: s L = ln(-N(s)/D(s)) + 2 pi i m, L the longest dead time."""
+    turns = 2j * np.pi * np.arange(count + SPARE)
+    longest = transfer.longest_dead_time
+    s = turns / longest
+    with np.errstate(all="ignore"):
+        for _ in range(ITERATIONS):
+            s = (np.log(-transfer.without_longest(s)) + turns) / longest
+    return s[np.isfinite(s) & (s.imag >= 0.0)]
 
 
 def starts_on_grid(transfer: LoopTransfer) -> ComplexArray:

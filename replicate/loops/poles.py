@@ -14,9 +14,9 @@ from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
-from replicate.loops.pole_starts import generator_eigenvalues, has_cut, starts_on_grid
+from replicate.loops.pole_starts import asymptotic_starts, generator_eigenvalues, has_cut, starts_on_grid
 from replicate.loops.stability import argument_change
-from replicate.loops.zero_search import Box, zero_in_circle, zeros_in_box
+from replicate.loops.zero_search import Box, Zero, zero_in_circle, zeros_in_box
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -31,7 +31,13 @@ EPS = float(np.finfo(float).eps)
 CLOSE = 0.03  # distance, relative to the modulus, of points that may be one multiple pole
 STALLED = 1e-8  # size of f, relative to its terms, near a zero that Newton's method cannot reach
 NOISE = 200.0  # rounding errors of f, in units of eps times its terms, within which it is zero
-MOST_TURNS = 3000.0  # rad of the longest dead time up to which poles are counted
+FEW = 4  # poles, up to which the discretisation alone has always been enough
+STRIP, MOST_STRIPS = (
+    0.7,
+    12,
+)  # width of a strip in which further poles are looked for, in units of 1/L, and their number
+MOST_TURNS = 3000.0  # rad of the longest dead time up to which poles are counted,
+MANY_TURNS = 30_000.0  # and where more than a few are asked for
 TIE = 1e-9  # relative difference of real parts that are equal
 
 
@@ -51,7 +57,9 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     elif transfer.num.size == 0:  # no feedback: what is left are the poles of the open loop
         starts = transfer.open_loop_poles
     elif plant.parts:
-        starts = generator_eigenvalues(plant, controller, transfer)
+        starts = generator_eigenvalues(plant, controller, transfer, count)
+        if count > FEW:
+            starts = np.concatenate([starts, asymptotic_starts(transfer, count)])
     else:
         starts = starts_on_grid(transfer)
     if starts.size == 0 and (transfer.is_polynomial or transfer.num.size == 0):  # a static loop
@@ -67,7 +75,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         points = np.append(points[np.abs(points) > 1e-9 * np.abs(points).max(initial=0.0)], 0.0)
     found = _ordered(_distinct(transfer, points, count))
     if plant.parts and not transfer.is_polynomial and transfer.num.size:
-        found = _completed(transfer, found, count)
+        found = _completed(transfer, found, count) if found else found
     if not found and plant.parts:
         msg = "no closed-loop pole was found"
         raise LoopError(msg)
@@ -76,9 +84,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
 
 def merged(first: ComplexArray, second: ComplexArray, count: int) -> ComplexArray:
     """Return the rightmost of two sets of poles in the order of `rightmost_poles`, equal ones once."""
-    found = [complex(p) for p in first]
-    found += [complex(p) for p in second if all(abs(p - q) > 1e-8 * abs(p) for q in first)]
-    return np.array(_ordered(found)[:count], dtype=complex)
+    return np.array(_merged(first.tolist(), second.tolist())[:count], dtype=complex)
 
 
 def _ordered(poles: list[complex]) -> list[complex]:
@@ -153,28 +159,62 @@ def _stalled(transfer: LoopTransfer, points: ComplexArray) -> ComplexArray:
 def _completed(transfer: LoopTransfer, found: list[complex], count: int) -> list[complex]:
     """Return the poles with those that are missing to the right of the last one asked for.
 
-    All poles to the right of a vertical line are counted along it. The line lies between two poles found.
+    All poles to the right of a vertical line are counted along it. The line lies between two poles found; where it is
+    too long to be followed, fewer are counted, and the rest is found strip after strip to the left.
     """
-    known = found[:count]
-    if not known:
+    few = min(count, len(found))
+    line, expected = _line_after(transfer, found, few), None
+    while few and (expected := _count_right_of(transfer, line, few)) is None:
+        few //= 2
+        line = _line_after(transfer, found, few) if few else line
+    if expected is None:
         return found
-    last = known[-1].real
+    right, left = [p for p in found if p.real > line], [p for p in found if p.real <= line]
+    if expected != sum(2 if p.imag else 1 for p in right):
+        top, edge = _reach(transfer, line)
+        zeros = _zeros_in(transfer, Box(line, edge, -0.0123 * top, top))
+        if zeros is None:
+            return found
+        # a multiple zero is where its parts are, as far as they were told apart
+        places = [zero.place * (1.0 + 1e-9 * n) for zero in zeros for n in range(zero.order)]
+        right = _distinct(transfer, np.array(places, dtype=complex), count)
+    if few < count and not transfer.feedthrough:
+        right = _extended(transfer, right, line, count)
+    return _merged(right, left)
+
+
+def _line_after(transfer: LoopTransfer, found: list[complex], count: int) -> float:
+    """Return the real part of a vertical line to the left of so many poles, and to the right of the next."""
+    last = found[count - 1].real
     after = [p.real for p in found[count:] if p.real < last - 1e-6 * abs(last)]
     line = 0.5 * (last + after[0]) if after else last - 0.05 * abs(last)
     # the nearer the line is to the poles, the lower the frequencies up to which it has to be followed
-    line = max(line, last - 0.2 * max(abs(last), 1.0 / _longest(transfer)))
-    expected = _count_right_of(transfer, line)
-    right = [p for p in found if p.real > line]
-    if expected is None or expected == sum(2 if p.imag else 1 for p in right):
-        return found
-    top, edge = _reach(transfer, line)
-    box = Box(line, edge, -0.0123 * top, top)
-    zeros = zeros_in_box(transfer.characteristic, transfer.characteristic_slope, box)
-    if zeros is None:
-        return found
-    # a multiple zero is where its parts are, as far as they were told apart
-    places = [zero.place * (1.0 + 1e-9 * n) for zero in zeros for n in range(zero.order)]
-    return _ordered(_distinct(transfer, np.array([*places, *(p for p in found if p.real <= line)]), count))
+    return max(line, last - 0.2 * max(abs(last), 1.0 / _longest(transfer)))
+
+
+def _extended(transfer: LoopTransfer, found: list[complex], right: float, count: int) -> list[complex]:
+    """Return all poles to the right of a line with more to its left, until there are as many as asked for."""
+    for _ in range(MOST_STRIPS):
+        line = right - STRIP / _longest(transfer)
+        if len(found) >= count or _count_right_of(transfer, line, count) is None:
+            break
+        top, _ = _reach(transfer, line)
+        zeros = _zeros_in(transfer, Box(line, right, -0.0123 * top, top))
+        if zeros is None:
+            break
+        places = np.array([zero.place for zero in zeros], dtype=complex)
+        found = _merged(found, _distinct(transfer, places, len(zeros)))
+        right = line
+    return found
+
+
+def _zeros_in(transfer: LoopTransfer, box: Box) -> list[Zero] | None:
+    return zeros_in_box(transfer.characteristic, transfer.characteristic_slope, box, turning=_longest(transfer))
+
+
+def _merged(first: list[complex], second: list[complex]) -> list[complex]:
+    """Return two lists of poles as one, equal ones once, in order."""
+    return _ordered([*first, *(p for p in second if all(abs(p - q) > 1e-8 * abs(p) for q in first))])
 
 
 def _longest(transfer: LoopTransfer) -> float:
@@ -189,13 +229,13 @@ def _reach(transfer: LoopTransfer, line: float) -> tuple[float, float]:
     return top, max(top, 1.1 * abs(line))
 
 
-def _count_right_of(transfer: LoopTransfer, line: float) -> int | None:
-    """Return the number of zeros of f with Re s > line, or None if that cannot be said."""
+def _count_right_of(transfer: LoopTransfer, line: float, asked: int) -> int | None:
+    """Return the number of zeros of f with Re s > line, of which so many are asked for; None if it cannot be said."""
     growth = float(np.exp(-min(line, 0.0) * _longest(transfer)))
     if transfer.feedthrough * growth >= 0.98:
         return None
     top, edge = _reach(transfer, line)
-    if top * _longest(transfer) > MOST_TURNS:
+    if top * _longest(transfer) > (MOST_TURNS if asked <= FEW else MANY_TURNS):
         return None
     box = Box(line, edge, -0.0, top)
     steps = max(64, int(4.0 * top * _longest(transfer)))

@@ -25,6 +25,7 @@ Function = Callable[[ComplexArray], ComplexArray]
 
 CIRCLE_POINTS = 64
 EDGE_POINTS = 24
+PER_RADIAN = 3.0  # points of an edge for each rad that the argument may turn
 SMALLEST = 1e-9  # size of a rectangle, relative to the modulus, in which several zeros are one
 CUTS = (0.5, 0.4837, 0.5309, 0.4511)  # where a rectangle is cut; the next one if a zero lies on the cut
 
@@ -65,9 +66,19 @@ class Box:
         return Box(self.left, self.right, self.bottom, cut), Box(self.left, self.right, cut, self.top)
 
 
-def zeros_in_box(f: Function, slope: Function, box: Box) -> list[Zero] | None:
-    """Return all zeros in a rectangle, or None if one lies on its edge."""
-    count = count_in_box(f, box)
+def zeros_in_box(f: Function, slope: Function, box: Box, turning: float = 0.0) -> list[Zero] | None:
+    """Return all zeros in a rectangle, or None if one lies on its edge.
+
+    Parameters
+    ----------
+    f, slope
+        The function and its derivative.
+    box
+        The rectangle.
+    turning
+        How fast the argument of f may turn along an edge, rad per unit of length.
+    """
+    count = count_in_box(f, box, turning)
     if count is None:
         return None
     found: list[Zero] = []
@@ -86,7 +97,7 @@ def zeros_in_box(f: Function, slope: Function, box: Box) -> list[Zero] | None:
             continue
         for share in CUTS:
             halves = part.halves(share)
-            counts = [count_in_box(f, half) for half in halves]
+            counts = [count_in_box(f, half, turning) for half in halves]
             if None not in counts:
                 pending += [(half, number) for half, number in zip(halves, counts, strict=True) if number]
                 break
@@ -95,13 +106,15 @@ def zeros_in_box(f: Function, slope: Function, box: Box) -> list[Zero] | None:
     return found
 
 
-def count_in_box(f: Function, box: Box) -> int | None:
-    """Return the number of zeros in a rectangle, or None if one lies on its edge."""
+def count_in_box(f: Function, box: Box, turning: float = 0.0) -> int | None:
+    """Return the number of zeros in a rectangle, or None if one lies on its edge; see `zeros_in_box`."""
     corners = [
         complex(box.left, box.bottom), complex(box.right, box.bottom),
         complex(box.right, box.top), complex(box.left, box.top), complex(box.left, box.bottom),
     ]  # fmt: skip
-    path = np.concatenate([np.linspace(a, b, EDGE_POINTS)[:-1] for a, b in pairwise(corners)])
+    path = np.concatenate(
+        [np.linspace(a, b, max(EDGE_POINTS, int(PER_RADIAN * turning * abs(b - a))))[:-1] for a, b in pairwise(corners)]
+    )
     turn = argument_change(f, np.append(path, corners[0]))
     return None if turn is None else round(turn / (2.0 * np.pi))
 

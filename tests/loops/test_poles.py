@@ -144,3 +144,46 @@ def test_time_scaling_scales_poles(name: str) -> None:
         ),
     )
     assert same_pole(slow.rightmost_pole(), PROBLEMS[name].loop.rightmost_pole() / c, rel=1e-8)
+
+
+# ---- as many poles as are asked for, and all of them -----------------------------------------------------------------
+
+#: Terms of a plant over a common denominator: the denominator, and (numerator, dead time) of each term.
+MANY = {
+    "lag": ([1.0, 1.0], [([1.0], 1.0)]),
+    "eight lags": (np.poly([-1.0] * 8).tolist(), [([1.0], 1.0)]),
+    "two dead times": ([2.0, 3.0, 1.0], [([2.0, 1.0], 0.5), ([0.5, 0.5], 1.3)]),
+    "three dead times": (
+        [1.0, 2.5, 2.0, 0.5],
+        [([1.0, 1.5, 0.5], 1.0), ([0.7, 0.35], 2.0**0.5), ([0.3, 0.6, 0.3], 0.9)],
+    ),
+    "one term without": ([1.0, 1.0], [([1.0], 0.0), ([0.5], 1.0)]),
+}
+
+
+@pytest.mark.parametrize("count", [1, 3, 5, 12, 30])
+@pytest.mark.parametrize("name", MANY)
+def test_as_many_poles_as_are_asked_for_and_none_is_missing(name: str, count: int) -> None:
+    den, terms = MANY[name]
+    loop = Loop(Plant.from_terms([(num, den, dead_time) for num, dead_time in terms]), PI(0.3, 0.2))
+    poles = loop.poles(count)
+    assert poles.size == count
+
+    def function(s: np.ndarray) -> np.ndarray:
+        fed_back = sum(np.polyval(num, s) * np.exp(-s * dead_time) for num, dead_time in terms)
+        return np.asarray(s * np.polyval(den, s) + (0.3 * s + 0.2) * fed_back)
+
+    further = loop.poles(count + 6).real
+    last = poles[-1].real
+    line = 0.5 * (last + float(np.max(further[further < last - 1e-6 * abs(last)])))
+    radius = 30.0 + 3.0 * float(np.max(np.abs(poles)))
+    assert zeros_right_of(function, line, radius) == sum(2 if pole.imag else 1 for pole in poles)
+
+
+def test_poles_of_a_hold_at_any_number() -> None:
+    # (1 - e^{-s})/s under P: s = -k (1 - e^{-s}) in closed form, s + k = W_m(k e^k), without the removable s = 0
+    k = 0.4
+    loop = Loop(Plant.from_terms([([1.0], [1.0, 0.0], 0.0), ([-1.0], [1.0, 0.0], 1.0)]), PI(k))
+    exact = [complex(mp.lambertw(k * mp.exp(k), m)) - k for m in range(-1, 40)]
+    exact = sorted((s for s in exact if s.imag >= 0.0 and abs(s) > 1e-9), key=lambda s: -s.real)[:25]
+    assert np.max(np.abs(loop.poles(25) - np.array(exact)) / np.abs(exact)) < 1e-12

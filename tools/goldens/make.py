@@ -1,14 +1,16 @@
 """Write replicate/loops/goldens.json: exact values of hard control loops with dead time, from mpmath alone.
 
-    python tools/goldens/make.py [ID ...]
+    python tools/goldens/make.py [--check] [ID ...]
 
-Takes some minutes; with ids it prints these loops instead of writing the file. The package itself is not used.
+With ids it prints these loops instead of writing the file; with --check it says which loops of the file, all or those
+named, do not come out again to the last digit, and fails if there are any. The package itself is not used.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -100,16 +102,37 @@ def _number(value: mp.mpf | None) -> float | None:
     return None if value is None else float(mp.nstr(value, SIGNIFICANT + 1, strip_zeros=False))
 
 
-def main(ids: list[str]) -> None:
-    """Compute all loops, or print the given ones."""
+def main(arguments: list[str]) -> int:
+    """Compute all loops, or print or check the given ones; return 1 if one differs from the file."""
+    ids = [argument for argument in arguments if argument != "--check"]
     cases = load()
+    unknown = set(ids) - {case.id for case in cases}
+    if unknown:
+        sys.stderr.write(f"no loop has the id {', '.join(sorted(unknown))}\n")
+        return 2
     chosen = [case for case in cases if not ids or case.id in ids]
     with ProcessPoolExecutor(2) as pool:
-        records = list(pool.map(golden, chosen))
-    if ids:
-        sys.stdout.write(json.dumps(records, indent=1) + "\n")
-        return
-    write(records)
+        records = pool.map(golden, chosen)
+        if "--check" in arguments:
+            return check(records)
+        if ids:
+            sys.stdout.write(json.dumps(list(records), indent=1) + "\n")
+        else:
+            write(list(records))
+    return 0
+
+
+def check(records: Iterable[dict[str, Any]]) -> int:
+    """Say which loops are not those of the file; return 1 if one is not."""
+    accepted = {record["id"]: record for record in json.loads(GOLDENS.read_text(encoding="utf-8"))["loops"]}
+    differing = 0
+    for record in records:
+        known = accepted.get(record["id"], {})
+        wrong = [name for name in record.keys() | known.keys() if record.get(name) != known.get(name)]
+        differing += bool(wrong)
+        sys.stdout.write(f"{record['id']}: {', '.join(sorted(wrong)) + ' differ' if wrong else 'as in the file'}\n")
+        sys.stdout.flush()
+    return 1 if differing else 0
 
 
 def write(records: list[dict[str, Any]]) -> None:
@@ -120,4 +143,4 @@ def write(records: list[dict[str, Any]]) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    sys.exit(main(sys.argv[1:]))
