@@ -78,9 +78,10 @@ goldens: $(VENV)/.developed ## compute the exact values of replicate/loops/golde
 ##@ Working on it
 
 .PHONY: lint
-lint: $(VENV)/.developed ## ruff (rules and format) and mypy --strict
+lint: $(VENV)/.developed ## ruff (rules and format), mypy --strict, and oxlint for the script of the what-if page
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/oxlint --deny-warnings templates
 	$(BIN)/mypy
 
 COMPILE := --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \

@@ -18,13 +18,10 @@ def whatif(
 ) -> None:
     """Make a page in which a control loop can be tried out."""
     from replicate.loops.errors import LoopError
-    from replicate.loops.notation import parse_controller, parse_plant
     from replicate.staging import write_signed
     from replicate.whatif import Row, whatif_page
 
     try:
-        parse_plant(plant)
-        parse_controller(controller)
         page = whatif_page([Row("as given", plant, controller)], title)
     except LoopError as error:
         raise ReplicateError(str(error)) from error

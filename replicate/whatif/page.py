@@ -17,14 +17,41 @@ from replicate.display.rendering import html_environment
 from replicate.display.safe_html import policy
 from replicate.exhibits import Paper
 from replicate.figures.style import dark_curves
+from replicate.loops.errors import LoopError
+from replicate.loops.tune import marked_rules
+from replicate.loops.tune.models import LINKED
 from replicate.resources import templates_dir
-from replicate.whatif.rows import Row, rows_of
+from replicate.whatif.rows import Row, rows_of, why_not_drawn
+from replicate.whatif.script import script
 
 NAME = TRIALS
 
-#: Constants of the browser's kernel: degree of a piece, pieces at most, fastest pole times length of a piece, and up to
-#: which angle of the dead time, in radians, a frequency response is looked at.
-CONSTANTS = {"nodes": 24, "mostPieces": 12000, "decayPerPiece": 8, "mostTurns": 2000}
+#: Constants of the script: degree of a piece, pieces at most, fastest pole times length of the first piece, last
+#: coefficients of a smooth piece, dead times after which jumps are too smooth to be seen, up to which angle of the dead
+#: time, in radians, a frequency response is looked at, how near to each other roots are one; then the sensitivity peaks
+#: whose contours are drawn, and the settling band.
+CONSTANTS = {
+    "nodes": 24,
+    "mostPieces": 12000,
+    "decayPerPiece": 8,
+    "rounding": 1e-13,
+    "laps": 16,
+    "mostTurns": 2000,
+    "linked": LINKED,
+    "levels": [1.2, 1.4, 1.6, 2.0],
+    "band": 0.02,
+}
+
+#: What the page gives to copy; `PLANT` and `CONTROLLER` are put in there.
+PYTHON = """from replicate.loops import Loop
+from replicate.loops.notation import parse_controller, parse_plant
+
+loop = Loop(parse_plant(PLANT), parse_controller(CONTROLLER))
+y, u, d, m = loop.step(), loop.respond().control, loop.load_step(), loop.margins()
+print(f"overshoot {100 * y.overshoot():.4g} %, settling time {y.settling_time():.4g}, rise time {y.rise_time():.4g}")
+print(f"IAE {y.iae():.4g} (set point), {d.iae():.4g} (load), total variation of u {u.total_variation():.4g}")
+print(f"Ms {loop.sensitivity_peak().value:.4g}, margins: gain {m.gain:.4g}, phase {m.phase:.4g}, delay {m.delay:.4g}")
+"""
 
 #: Rooms of the framework whose code computes what stands on the page, and what they use.
 ROOMS = ("display", "errors", "exhibits", "figures", "loops", "resources", "whatif")
@@ -32,8 +59,6 @@ DISTRIBUTIONS = ("matplotlib", "numpy", "scipy")
 
 Keep = Callable[[str, Callable[[], str]], str]
 """Returns the text that an earlier run kept under a name that says all it depends on, or has it made."""
-
-_SCRIPTS = ("kernel.js", "notation.js", "measures.js", "charts.js", "plane.js", "views.js", "page.js")
 
 
 def _made(_name: str, make: Callable[[], str]) -> str:
@@ -55,13 +80,20 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", ke
     Raises
     ------
     LoopError
-        If a plant or controller is not understood; the message names the column.
+        If a plant or controller is not understood; the message names the column. If the page cannot draw the loop.
     """
-    folder = templates_dir() / "whatif"
-    style, *scripts = (folder.joinpath(name).read_text(encoding="utf-8") for name in ("whatif.css", *_SCRIPTS))
-    style += dark_curves()
-    script = f"const CONSTANTS = {json.dumps(CONSTANTS)};\n" + "\n".join(scripts)
-    data = {"rows": [asdict(row) for row in rows], "markers": _markers(rows, keep), "reference": _reference(keep)}
+    for reason in map(why_not_drawn, rows):
+        if reason:
+            raise LoopError(reason)
+    style = (templates_dir() / "whatif" / "whatif.css").read_text(encoding="utf-8") + dark_curves()
+    data = {
+        "rows": [asdict(row) for row in rows],
+        "rules": marked_rules(),
+        "optimal": _optimal(rows, keep),
+        "reference": _reference(keep),
+        "python": PYTHON,
+        "constants": CONSTANTS,
+    }
     text = json.dumps(data, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c")
     drawing = _still(rows[0], keep)
     styles = [style, *_style_elements(drawing)]
@@ -72,9 +104,9 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", ke
             title=title,
             back=back,
             rows=rows,
-            policy=policy(styles, [script]),
+            policy=policy(styles, [script()]),
             style=Markup(style),  # noqa: S704 -- the project's own
-            script=Markup(script),  # noqa: S704
+            script=Markup(script()),  # noqa: S704
             data=Markup(text),  # noqa: S704 -- JSON without "<"
             still=Markup(drawing),  # noqa: S704 -- drawn here; its texts are escaped
             version=replicate.__version__,
@@ -84,23 +116,23 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", ke
 
 def write_whatif(papers: Iterable[Paper], folder: Path, back: str = "", keep: Keep = _made) -> list[Path]:
     """Write the page of the papers' rows into a folder; return the file, or nothing where no paper declares a row."""
-    rows = rows_of(papers)
+    rows = [row for row in rows_of(papers) if not why_not_drawn(row)]
     if not rows:
         return []
     (folder / NAME).write_bytes(whatif_page(rows, back=back, keep=keep).encode())
     return [folder / NAME]
 
 
-def _markers(rows: Sequence[Row], keep: Keep) -> dict[str, Any]:
-    """Return where the tuning rules that apply put their controllers, by the text of the plant."""
+def _optimal(rows: Sequence[Row], keep: Keep) -> dict[str, Any]:
+    """Return the controllers of largest integral gain, by the text of the plant."""
 
     def made(plant: str) -> str:
-        from replicate.whatif.reference import markers
+        from replicate.whatif.reference import optimal
 
-        return json.dumps(markers(plant))
+        return json.dumps(optimal(plant))
 
     return {
-        plant: json.loads(keep(f"what if: tuning rules for {plant}", partial(made, plant)))
+        plant: json.loads(keep(f"what if: optimal controllers for {plant}", partial(made, plant)))
         for plant in dict.fromkeys(row.plant for row in rows)
     }
 

@@ -1,19 +1,20 @@
-"""What Python computes for the page: the loop of its self-test, and where tuning rules put their controllers."""
+"""What Python computes for the page: the loop of its self-test, and the optimal controllers of a plant."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from replicate.loops import PID, Loop, design_pi
+from replicate.loops import Loop, design_pi
 from replicate.loops.errors import LoopError
 from replicate.loops.notation import parse_controller, parse_plant
-from replicate.loops.tune import amigo, simc, ziegler_nichols
 
 #: The loop with which the page tests itself: second order, with dead time, derivative filter and set-point weight.
 REFERENCE = ("e^{-0.7s}/((s+1)(0.5s+1))", "k=1.1,ki=0.9,kd=0.3,derivative_filter=0.05,b=0.8")
+
+#: Sensitivity peaks for which the controllers of largest integral gain are marked.
+DESIGNED = (1.4, 2.0)
 
 _TIMES = 40
 _END = 12.0
@@ -42,22 +43,19 @@ def reference() -> dict[str, Any]:
     }
 
 
-def markers(text: str) -> list[dict[str, Any]]:
-    """Return where the tuning rules that apply to a plant put their controllers."""
-    plant = parse_plant(text)
-    rules: tuple[tuple[str, Callable[[], Any]], ...] = (
-        ("SIMC", lambda: simc(plant, plant.dead_time)),
-        ("AMIGO", lambda: amigo(plant)),
-        ("ZN", lambda: ziegler_nichols(plant)),
-        ("Ms 1.4", lambda: design_pi(plant, ms=1.4).controller),
-        ("Ms 2.0", lambda: design_pi(plant, ms=2.0).controller),
-    )
+def optimal(plant: str) -> list[dict[str, Any]]:
+    """Return the PI controllers of largest integral gain for two sensitivity peaks, for the gain plane of a plant.
+
+    Parameters
+    ----------
+    plant
+        In the notation of `replicate.loops`. A peak that no controller reaches is left out.
+    """
     found = []
-    for name, rule in rules:
+    for ms in DESIGNED:
         try:
-            controller = rule()
-        except (LoopError, ValueError):  # the rule does not apply to this plant
+            controller = design_pi(parse_plant(plant), ms=ms).controller
+        except (LoopError, ValueError):  # no such controller
             continue
-        if isinstance(controller, PID):
-            found.append({"name": name, "k": controller.k, "ki": controller.ki, "kd": controller.kd})
+        found.append({"name": f"Ms {ms}", "k": controller.k, "ki": controller.ki, "kd": controller.kd})
     return found

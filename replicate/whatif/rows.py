@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from replicate.display.addresses import trial_label
 from replicate.exhibits import Paper, Table
+from replicate.loops.notation import parse_controller, parse_plant
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,27 @@ class Row:
     label: str
     plant: str
     controller: str
+
+
+MOST_POLES = 15
+
+
+def why_not_drawn(row: Row) -> str:
+    """Return why the page cannot draw a loop, which `replicate.loops` may well be able to compute; empty if it can.
+
+    Raises
+    ------
+    LoopError
+        If plant or controller is not understood.
+    """
+    plant, controller = parse_plant(row.plant), parse_controller(row.controller)
+    if not plant.is_rational or plant.den.size > MOST_POLES + 1:
+        return f"the page draws rational plants with one dead time, of order {MOST_POLES} at most, not {row.plant}"
+    if plant.num.size == plant.den.size and not plant.dead_time:
+        return f"the page does not draw a plant that answers at once, as {row.plant} does"
+    if controller.measurement_filter or not isinstance(controller.setpoint_filter, (int, float)):
+        return f"the page draws no measurement filter, and a number as setpoint_filter, not {row.controller}"
+    return ""
 
 
 def rows_of(papers: Iterable[Paper]) -> list[Row]:

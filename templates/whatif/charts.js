@@ -1,18 +1,16 @@
 // Diagrams as elements of SVG: numbers as text, axes, curves.
-"use strict";
 
-const Charts = (() => {
-const SVG = "http://www.w3.org/2000/svg";
+export const SVG = "http://www.w3.org/2000/svg";
 
 // A number in so many digits; `all` keeps zeros at the end.
-function shown(x, digits = 4, all = false) {
+export function shown(x, digits = 4, all = false) {
   if (x === Infinity) return "∞";
   if (x === undefined || Number.isNaN(x)) return "–";
   const text = Math.abs(x) >= 1e5 || (x && Math.abs(x) < 1e-4) ? x.toExponential(digits - 1) : x.toPrecision(digits);
   return (all || text.includes("e") ? text : String(Number(text))).replace("-", "−");
 }
 
-function element(name, attributes, parent, text) {
+export function element(name, attributes, parent, text) {
   const made = document.createElementNS(SVG, name);
   for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
   if (text !== undefined) made.textContent = text;
@@ -30,7 +28,8 @@ function ticks(low, high, count = 5) {
 }
 
 // An empty diagram in an <svg>: axes, and functions from values to places.
-function diagram(svg, box, { width = 460, height = 260, x = "", y = "" }) {
+export function diagram(svg, box, { height, x, y }) {
+  const width = 460;
   svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
   svg.replaceChildren();
   const left = 52, right = width - 10, top = 10, bottom = height - (x ? 36 : 20);
@@ -53,7 +52,4 @@ function diagram(svg, box, { width = 460, height = 260, x = "", y = "" }) {
   return { inside, px, py, box, left, right, top, bottom };
 }
 
-const path = (points, { px, py }) => points.map(([x, y], i) => `${i && Number.isFinite(y) ? "L" : "M"}${px(x).toFixed(1)} ${py(y).toFixed(1)}`).join("");
-
-return { SVG, shown, element, diagram, path };
-})();
+export const path = (points, { px, py }) => points.map(([x, y], i) => `${i && Number.isFinite(y) ? "L" : "M"}${px(x).toFixed(1)} ${py(y).toFixed(1)}`).join("");

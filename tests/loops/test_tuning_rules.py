@@ -121,7 +121,7 @@ def test_a_rule_of_the_literature_is_borrowed_not_copied(tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("reference", "message"),
     [
-        ("cohen", r"rule Z: same_as = 'cohen' is not known; allowed: cohen-coon, "),
+        ("cohen", r"rule Z: same_as = 'cohen' is not known; allowed: amigo, amigo-integrator, cohen-coon, "),
         ("cohen-coon/x", r"rule Z: same_as = 'cohen-coon/x': cohen-coon has no variant 'x'; allowed: printed, "),
     ],
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from replicate.loops.controller import PI, PID
 from replicate.loops.plant import Plant
 from replicate.loops.tune.models import exact_first_order
+from replicate.loops.tune.rule_files import first_order_rules
 
 SOURCE = "K. J. Astrom, T. Hagglund, J. Process Control 14 (2004) 635"
 VALIDITY = "K e^{-Ls}/(Ts+1) and K e^{-Ls}/s with L > 0; PID is conservative for L/(L+T) below 0.3"
@@ -46,14 +47,13 @@ def amigo(plant: Plant, *, derivative: bool = False) -> PI | PID:
     """
     model = exact_first_order(plant, "AMIGO")
     L = model.dead_time
-    if model.integrators:
-        if derivative:
-            return PID.ideal(0.45 / (model.gain * L), 8.0 * L, 0.5 * L, b=0.0)
-        return PI.from_integral_time(0.35 / (model.gain * L), 13.4 * L)
-    T = model.time_constants[0]
+    if derivative and model.integrators:
+        return PID.ideal(0.45 / (model.gain * L), 8.0 * L, 0.5 * L, b=0.0)
     if derivative:
+        T = model.time_constants[0]
         gain = (0.2 + 0.45 * T / L) / model.gain
         integral = (0.4 * L + 0.8 * T) / (L + 0.1 * T) * L
         return PID.ideal(gain, integral, 0.5 * L * T / (0.3 * L + T), b=0.0 if L <= T else 1.0)
-    gain = (0.15 + (0.35 - L * T / (L + T) ** 2) * T / L) / model.gain
-    return PI.from_integral_time(gain, 0.35 * L + 13.0 * L * T**2 / (T**2 + 12.0 * L * T + 7.0 * L**2))
+    rule = first_order_rules()["amigo-integrator" if model.integrators else "amigo"]
+    gains = rule.evaluate(K=model.gain, L=L, **({} if model.integrators else {"tau": model.time_constants[0]}))
+    return PI.from_integral_time(float(gains.kp), float(gains.ti))

@@ -48,6 +48,27 @@ def formula(text: str) -> Formula:
     >>> formula("tau/(K*(tau_cl + L))")({"tau": 1.0, "K": 1.0, "tau_cl": 0.25, "L": 1.0})
     0.8
     """
+    tree = _parsed(text)
+    return lambda symbols: _evaluate(tree, symbols)
+
+
+def formula_tree(text: str) -> float | str | list[Any]:
+    """Return an arithmetic expression as data: a number, the name of a symbol, or ``[operation, left, right]``.
+
+    Parameters
+    ----------
+    text
+        As for `formula`, with the same errors.
+
+    Examples
+    --------
+    >>> formula_tree("2*L**0.5 - 1")
+    ['-', ['*', 2, ['**', 'L', 0.5]], 1]
+    """
+    return _tree(_parsed(text))
+
+
+def _parsed(text: str) -> ast.expr:
     try:
         tree = ast.parse(text, mode="eval").body
     except SyntaxError as error:
@@ -60,7 +81,24 @@ def formula(text: str) -> Formula:
         if not (isinstance(node, allowed) and number and known):
             msg = f"'{text}' may hold numbers, names and + - * / ** only"
             raise TuningRuleError(msg)
-    return lambda symbols: _evaluate(tree, symbols)
+    return tree
+
+
+_SIGNS = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}
+
+
+def _tree(node: ast.expr) -> float | str | list[Any]:
+    match node:
+        case ast.Constant(value=int() | float() as value):
+            return value
+        case ast.Name(id=name):
+            return name
+        case ast.UnaryOp(operand=operand):
+            return ["*", -1, _tree(operand)]
+        case ast.BinOp(left=left, op=op, right=right):
+            return [_SIGNS[type(op)], _tree(left), _tree(right)]
+        case _:  # pragma: no cover - `_parsed` has refused everything else
+            raise AssertionError
 
 
 def _evaluate(node: ast.expr, symbols: Mapping[str, Number]) -> Number:

@@ -23,7 +23,8 @@ why = "what is wrong in print, and how one knows"
 
 In place of ``Ti`` a form may give ``Ki``, the integral gain of the parallel form ``Kp + Ki/s``. In place of formulas it
 may say ``same_as = "cohen-coon"``, or ``same_as = "cohen-coon/decimals-033"`` for a variant. A rule that is one case of
-a pair says for which processes it was made: ``holds = { quantity = "p*h", low = 0.01, high = 0.2 }``.
+a pair says for which processes it was made: ``holds = { quantity = "p*h", low = 0.01, high = 0.2 }``. ``where`` defines
+symbols that the formulas use besides the parameters, ``unit`` a factor of the gains.
 """
 
 from __future__ import annotations
@@ -36,11 +37,11 @@ from importlib.resources.abc import Traversable
 from typing import Any
 
 from replicate.loops.errors import TuningRuleError
-from replicate.loops.tune.formulas import formula
+from replicate.loops.tune.formulas import formula, formula_tree
 from replicate.loops.tune.rules import Range, TuningRule
 
 PRINTED = "printed"
-CLASSICAL = "classical_rules.toml"
+CLASSICAL, FIRST_ORDER = "classical_rules.toml", "first_order_rules.toml"
 
 
 def load_rules(source: Traversable, variant: str = PRINTED) -> dict[str, TuningRule]:
@@ -82,6 +83,8 @@ def load_rules(source: Traversable, variant: str = PRINTED) -> dict[str, TuningR
             key, name, gain, integral if second == "Ti" else None,
             record.get("source", ""), record.get("range", ""), tex, form.get("why", ""),
             integral_gain=integral if second == "Ki" else None, holds=holds,
+            where={symbol: formula(text) for symbol, text in record.get("where", {}).items()},
+            unit=formula(record["unit"]) if "unit" in record else None,
         )  # fmt: skip
     return rules
 
@@ -108,8 +111,13 @@ def _form(record: Mapping[str, Any], variant: str) -> dict[str, Any]:
 
 @cache
 def _classical_forms() -> dict[str, dict[str, Any]]:
-    file = importlib.resources.files("replicate.loops.tune") / CLASSICAL
-    return {record["id"]: record for record in tomllib.loads(file.read_text(encoding="utf-8"))["rule"]}
+    return {record["id"]: record for file in (CLASSICAL, FIRST_ORDER) for record in _records(file)}
+
+
+def _records(name: str) -> list[dict[str, Any]]:
+    file = importlib.resources.files("replicate.loops.tune") / name
+    records: list[dict[str, Any]] = tomllib.loads(file.read_text(encoding="utf-8"))["rule"]
+    return records
 
 
 def _range(record: Mapping[str, Any]) -> Range:
@@ -134,3 +142,38 @@ def classical_rules(variant: str = PRINTED) -> Mapping[str, TuningRule]:
         Which version of each rule; the printed one where a rule has no such version.
     """
     return load_rules(importlib.resources.files("replicate.loops.tune") / CLASSICAL, variant)
+
+
+@cache
+def first_order_rules() -> Mapping[str, TuningRule]:
+    """Return the rules for first-order and integrating processes that several parts of the package use.
+
+    Symbols are ``K``, ``tau``, ``L``; of an integrating process ``K`` and ``L``.
+    """
+    return load_rules(importlib.resources.files("replicate.loops.tune") / FIRST_ORDER)
+
+
+def marked_rules() -> list[dict[str, Any]]:
+    """Return the rules that a gain plane marks, as data for JSON; a formula is what `formula_tree` returns.
+
+    Each has ``name``, ``process`` (``lag`` or ``integrator``), ``reduces`` (whether the half rule comes first),
+    ``where`` (pairs of symbol and formula, in order), ``Kp``, ``Ti`` or ``Ki``, and for one case of several ``holds``:
+    quantity, low, high.
+    """
+    return [_marked(record) for record in _records(FIRST_ORDER)]
+
+
+def _marked(record: Mapping[str, Any]) -> dict[str, Any]:
+    form = _form(record, record["mark"]["form"])
+    second = "Ki" if "Ki" in form else "Ti"
+    scaled = {"Kp": form["Kp"], second: form[second]}
+    if "unit" in record:
+        scaled = {name: text if name == "Ti" else f"({record['unit']})*({text})" for name, text in scaled.items()}
+    holds = record.get("holds")
+    return {
+        "name": record["mark"]["name"],
+        "process": record["process"],
+        "reduces": record.get("reduces", False),
+        "where": [[symbol, formula_tree(text)] for symbol, text in record.get("where", {}).items()],
+        "holds": [formula_tree(holds["quantity"]), holds["low"], holds["high"]] if holds else None,
+    } | {name: formula_tree(text) for name, text in scaled.items()}

@@ -91,6 +91,10 @@ class TuningRule:
         For a variant other than the printed one: what differs and how one knows.
     holds
         For one case of several: where it applies.
+    where
+        What else the formulas use, in order; each counts where no such parameter is given.
+    unit
+        What the gains are multiplied by, where the rule is made for a process of another gain; `None` for 1.
     """
 
     id: str
@@ -103,6 +107,8 @@ class TuningRule:
     why: str = ""
     integral_gain: Formula | None = None
     holds: Range | None = None
+    where: Mapping[str, Formula] = field(default_factory=dict)
+    unit: Formula | None = None
 
     def evaluate(self, **symbols: Number) -> Gains:
         """Return the gains for the given parameters, exactly if parameters and formulas are exact.
@@ -118,10 +124,13 @@ class TuningRule:
             If the formulas need a parameter that is not given.
         """
         try:
+            for name, formula in self.where.items():
+                symbols.setdefault(name, formula(symbols))
+            unit = self.unit(symbols) if self.unit is not None else 1
             if self.integral_gain is not None:
-                return Gains.parallel(self.gain(symbols), self.integral_gain(symbols))
+                return Gains.parallel(unit * self.gain(symbols), unit * self.integral_gain(symbols))
             assert self.integral_time is not None  # noqa: S101  -- `load_rules` demands one of the two
-            return Gains(self.gain(symbols), self.integral_time(symbols))
+            return Gains(unit * self.gain(symbols), self.integral_time(symbols))
         except KeyError as error:
             msg = f"rule {self.id} needs {error.args[0]}; given are {', '.join(sorted(symbols))}"
             raise TuningRuleError(msg) from error

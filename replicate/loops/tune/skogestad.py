@@ -7,6 +7,7 @@ from replicate.loops.controller import PI, PID
 from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
 from replicate.loops.tune.models import half_rule, lag_model
+from replicate.loops.tune.rule_files import first_order_rules
 
 SOURCE = "S. Skogestad, J. Process Control 13 (2003) 291, eqs. (23)-(25) and table 1"
 VALIDITY = "plants with real lags, integrators and dead time; tau_c >= 0, and tau_c = L for a good trade-off"
@@ -55,12 +56,16 @@ def simc(plant: Plant, tau_c: float | None = None, *, derivative: bool = False) 
     lags = model.time_constants
     if double:
         return PID.series(1.0 / (model.gain * 4.0 * speed**2), 4.0 * speed, 4.0 * speed)
+    rules, symbols = first_order_rules(), {"K": model.gain, "L": model.dead_time, "tau_c": chosen}
     if model.integrators:
-        gain, integral = 1.0 / (model.gain * speed), 4.0 * speed
+        gains = rules["simc-integrator"].evaluate(**symbols)
     elif lags:
-        gain, integral = lags[0] / (model.gain * speed), min(lags[0], 4.0 * speed)
+        gains = min(
+            (rules[id].evaluate(**symbols, tau=lags[0]) for id in ("simc", "simc-slow")), key=lambda one: one.ti
+        )
     else:  # a dead time alone: the limit of small T1 is an integrating controller
         return PI(0.0, 1.0 / (model.gain * speed))
+    gain, integral = float(gains.kp), float(gains.ti)
     second = lags[1 - model.integrators :]
     if derivative and second:
         return PID.series(gain, integral, second[0])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from replicate.loops.tune import Number
+from replicate.loops.tune import Number, first_order_rules
 
 
 class Assignment(NamedTuple):
@@ -20,27 +20,23 @@ class Assignment(NamedTuple):
     c1: Number
 
 
+RULE = first_order_rules()["pole-assignment"]
+
+
 def delta(L: Number, tau: Number, a: Number) -> Number:
     """Return the common denominator of (21) to (24)."""
-    return (a**2 * L**2 + 6 * a * tau * L + 12 * tau**2) ** 2  # (25)
+    return RULE.where["delta"]({"L": L, "tau": tau, "a": a})  # (25)
 
 
 def kp(K: Number, L: Number, tau: Number, a: Number) -> Number:
     """Return the proportional gain; the "=" that opens each continuation line of the scan is a "+"."""
-    return (  # (21)
-        a**4 * (2 * a - 1) * L**4 + 12 * (a - 1) * a**3 * tau * L**3
-        - 12 * a**2 * (2 * a - 1) * tau**2 * L**2 - 144 * (a - 1) * a * tau**3 * L
-        + 144 * (2 * a - 1) * tau**4
-    ) / (K * delta(L, tau, a))  # fmt: skip
+    return RULE.gain({"K": K, "L": L, "tau": tau, "a": a, "delta": delta(L, tau, a)})  # (21)
 
 
 def ki(K: Number, L: Number, tau: Number, a: Number) -> Number:
     """Return the integral gain."""
-    return (  # (22)
-        a**2 * (a**4 * L**4 + 12 * a**3 * tau * L**3)
-        + a**2 * (-12 * a**2 * tau * (L + tau) * L**2)
-        + a**2 * (-144 * a * tau**3 * L + 144 * tau**3 * (L + tau))
-    ) / (tau * K * delta(L, tau, a))  # fmt: skip
+    assert RULE.integral_gain is not None  # noqa: S101  -- the rule gives ki, no integral time
+    return RULE.integral_gain({"K": K, "L": L, "tau": tau, "a": a, "delta": delta(L, tau, a)})  # (22)
 
 
 def c0(L: Number, tau: Number, a: Number) -> Number:

@@ -15,7 +15,7 @@ def trials(table: str, plants: Mapping[str, str], weights: Mapping[str, float]) 
     Parameters
     ----------
     plants
-        The plant by row; a row whose plant is a pure dead time or given by a function is left out.
+        The plant by row; a row whose plant is given by a function is left out.
     weights
         The set-point weight by row, 1 where it has none.
     """
@@ -23,7 +23,7 @@ def trials(table: str, plants: Mapping[str, str], weights: Mapping[str, float]) 
     found = {}
     for row, name in plants.items():
         plant = PLANTS[name]
-        if not plant.is_rational or plant.num.size >= plant.den.size:
+        if not plant.is_rational:
             continue
         k = printed[row, "k"]
         ki = printed[row, "ki"] if (row, "ki") in printed else k / printed[row, "Ti"]

@@ -9,11 +9,11 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 from replicate.exhibits import rank
-from replicate.loops import PIDesign, Plant, design_pi
+from replicate.loops import PI, PIDesign, Plant, design_pi
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
-from replicate.papers.panagopoulos.part_1.plants import filtered_dead_time
+from replicate.papers.panagopoulos.part_1.plants import PLANTS, filtered_dead_time
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -74,6 +74,20 @@ table_4 = paper.table(
     shared_labels=COLUMNS,
     labels={key: f"${key.replace('=', ' = ').replace('inf', INFINITY)}$" for key in FACTORS},
 )
+
+
+def _trials() -> dict[str, tuple[str, str]]:
+    """Return the dead time behind each filter, as the printed ratio gives it, with the printed gains."""
+    printed, found = paper.printed_numbers(table_4.id), {}
+    for row, m in FACTORS.items():
+        k, ki = printed[row, "k"], printed[row, "ki"]
+        filter_time = k / ki / printed[row, "Ti/Tf"] if math.isfinite(m) else 0.0
+        plant = filtered_dead_time(filter_time) if filter_time else PLANTS["G7"]
+        found[row] = plant.notation(), PI(k, ki).notation()
+    return found
+
+
+table_4.trials = _trials
 
 for _column in ("IE", "sigma"):
     _finite = [row for row, m in FACTORS.items() if math.isfinite(m)]

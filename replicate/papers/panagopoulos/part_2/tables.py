@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -92,9 +94,13 @@ def _with_filter(peak_of: Callable[[Loop], Resonance], *, complete: bool) -> Row
 
 
 def _trials(table: Table) -> dict[str, tuple[str, str]]:
-    """Return plant and printed controller of the rows that have no set-point filter."""
-    plain = [row for row in ROWS if printed_number(table.id, row, "Tsp") == 0.0]
-    return {row: (PLANTS[split(row)[0]].notation(), printed(table.id, row).notation()) for row in plain}
+    """Return plant and printed controller, with the printed set-point filter where there is one."""
+    found = {}
+    for row in ROWS:
+        filter_time = printed_number(table.id, row, "Tsp")
+        controller = replace(printed(table.id, row), setpoint_filter=0.0 if math.isnan(filter_time) else filter_time)
+        found[row] = PLANTS[split(row)[0]].notation(), controller.notation()
+    return found
 
 
 def _add_readings(table: Table) -> None:

@@ -1,0 +1,124 @@
+// The gain plane of a plant: where loops are stable, and what their sensitivity peak is.
+
+import { divide, sizes } from "./polynomials.js";
+import { controllerAt, named, plantAt } from "./loop.js";
+import { isStable } from "./poles.js";
+import { grid } from "./margins.js";
+
+const COLUMNS = 72, ROWS = 54; // cells of the map; only its curves between cells are interpolated
+
+const place = (box, row, column) => [box.left + (box.right - box.left) * column / COLUMNS, box.bottom + (box.top - box.bottom) * row / ROWS];
+const at = (field, [row, column]) => field[row * (COLUMNS + 1) + column];
+const corners = (row, column) => [[row, column], [row, column + 1], [row + 1, column + 1], [row + 1, column]];
+const stableAt = (plant, controller, plane, box, [x, y]) => isStable(plant, named(controller, plane, x, y || 1e-9 * (box.top + box.bottom)));
+
+// Two of the three gains at which a closed-loop pole lies at i w; `plane` is "ki" (kd fixed) or "kd" (ki fixed).
+function boundary(plant, controller, plane, w) {
+  const [re, im] = divide([-1, 0], plantAt(plant, w)); // C(i w) must be this
+  const [dr, di] = divide([0, w], [1, w * controller.filter]); // the derivative part for kd = 1
+  const kd = plane === "ki" ? controller.kd : (im + controller.ki / w) / di;
+  return [re - kd * dr, plane === "ki" ? (kd * di - im) * w : kd];
+}
+
+// Gains with a pole on the imaginary axis.
+export function border(plant, controller, plane) {
+  const scales = [1 / (plant.deadTime || 1), ...sizes([...plant.poles, ...plant.zeros])];
+  const points = [], end = Math.max(...scales) * 40;
+  for (let w = Math.min(...scales) / 1e3; w < end; w *= 1.01) points.push(boundary(plant, controller, plane, w));
+  return points.filter((point) => point.every((gain) => Math.abs(gain) < 1e6));
+}
+
+// The part of the plane that holds the stable gains that belong together with small ones, and the gains at hand.
+export function extent(plant, controller, plane) {
+  const curve = border(plant, controller, plane), sign = Math.sign(plant.num.at(-1)) || 1; // the integral gain has the plant's
+  const points = curve.filter(([x, y], i) => {
+    if (i % 6) return false;
+    const [nx, ny] = curve[Math.min(i + 1, curve.length - 1)], length = Math.hypot(nx - x, ny - y) || 1, step = 0.02 * Math.hypot(x, y) / length;
+    return [step, -step].some((side) => {
+      const point = named(controller, plane, x - side * (ny - y), y + side * (nx - x));
+      return sign * point[plane] >= 0 && isStable(plant, point);
+    });
+  });
+  if (isStable(plant, controller)) points.push([controller.k, controller[plane]]);
+  if (!points.length) return null;
+  points.push([0, 0]);
+  const [[left, right], [bottom, top]] = [0, 1].map((i) => [Math.min, Math.max].map((end) => end(...points.map((point) => point[i]))));
+  const wide = (right - left) || 1, tall = 0.08 * ((top - bottom) || 1);
+  return { left: left - 0.04 * wide, right: right + 0.06 * wide, bottom: bottom < 0 ? bottom - tall : 0, top: top > 0 || !bottom ? top + tall : 0 };
+}
+
+// Stability and log Ms on a grid of the plane; the plant is evaluated once for each frequency.
+export function gainMap(plant, controller, plane, box) {
+  const w = grid(plant, named(controller, plane, box.right, box.top || box.bottom), 0.2), table = [];
+  for (let i = 0; i < w.length; i += Math.max(1, Math.floor(w.length / 500))) {
+    const fixed = controllerAt(named(controller, plane, 0, 0), w[i]), unit = controllerAt(named({ ki: 0, kd: 0, filter: controller.filter }, plane, 0, 1), w[i]);
+    table.push([...plantAt(plant, w[i]), ...fixed, ...unit]);
+  }
+  const stable = [], level = [];
+  for (let row = 0; row <= ROWS; row++) {
+    for (let column = 0; column <= COLUMNS; column++) {
+      const [x, y] = place(box, row, column), here = stableAt(plant, controller, plane, box, [x, y]);
+      let least = here ? Infinity : 0;
+      if (here) {
+        for (const [pr, pi, fr, fi, ur, ui] of table) {
+          const cr = x + fr + y * ur, ci = fi + y * ui, re = 1 + pr * cr - pi * ci, im = pr * ci + pi * cr;
+          least = Math.min(least, re * re + im * im);
+        }
+      }
+      stable.push(here);
+      level.push(-Math.log(least) / 2);
+    }
+  }
+  return { box, stable, level };
+}
+
+// Segments inside cells where a field on the grid crosses a level: marching squares.
+export function contour({ box, stable, level }, value) {
+  const segments = [];
+  for (let row = 0; row < ROWS; row++) {
+    for (let column = 0; column < COLUMNS; column++) {
+      const ring = corners(row, column), cuts = [];
+      if (!ring.every((corner) => at(stable, corner))) continue;
+      ring.forEach((one, i) => {
+        const other = ring[(i + 1) % 4], a = at(level, one) - value, b = at(level, other) - value, part = a / (a - b);
+        if ((a < 0) !== (b < 0)) cuts.push(place(box, one[0] + (other[0] - one[0]) * part, one[1] + (other[1] - one[1]) * part));
+      });
+      while (cuts.length > 1) segments.push(cuts.splice(0, 2));
+    }
+  }
+  return segments;
+}
+
+// The stable cells as polygons, their corners on the border found by bisection with the exact test.
+export function region({ box, stable }, plant, controller, plane) {
+  const polygons = [], known = new Map();
+  const between = (one, other) => {
+    const key = [one, other].sort(([r, c], [row, column]) => r - row || c - column).join();
+    if (!known.has(key)) {
+      let a = place(box, ...one), b = place(box, ...other), middle;
+      for (let i = 0; i < 8; i++) {
+        middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+        if (stableAt(plant, controller, plane, box, middle) === at(stable, one)) a = middle; else b = middle;
+      }
+      known.set(key, middle);
+    }
+    return known.get(key);
+  };
+  for (let row = 0; row < ROWS; row++) {
+    let run = -1; // whole cells side by side are one rectangle
+    for (let column = 0; column <= COLUMNS; column++) {
+      const ring = corners(row, column), count = column < COLUMNS ? ring.filter((corner) => at(stable, corner)).length : 0;
+      if (count === 4 && run < 0) run = column;
+      if (count !== 4 && run >= 0) {
+        polygons.push([[row, run], [row, column], [row + 1, column], [row + 1, run]].map((corner) => place(box, ...corner)));
+        run = -1;
+      }
+      if (count % 4 === 0) continue;
+      polygons.push(ring.flatMap((one, i) => {
+        const other = ring[(i + 1) % 4];
+        return [...(at(stable, one) ? [place(box, ...one)] : []), ...(at(stable, one) === at(stable, other) ? [] : [between(one, other)])];
+      }));
+    }
+  }
+  return polygons;
+}

@@ -1,0 +1,74 @@
+"""`replicate whatif`: a page for one loop, errors in one line, and no file of somebody else's replaced."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from replicate.exhibits import Paper
+from replicate.whatif import NAME, Row, whatif_page, write_whatif
+
+Run = Callable[..., tuple[int, str, str]]
+PLANT = ("--plant", "e^{-s}/(s+1)")
+
+
+def test_a_page_is_made_and_made_again(replicate: Run, tmp_path: Path) -> None:
+    out = tmp_path / "lecture" / "loop.html"
+    for gain in ("0.6", "0.7"):
+        status, _, _ = replicate("whatif", *PLANT, "--controller", f"k={gain},ki=0.5", "--out", str(out))
+        assert status == 0
+        assert f"k={gain},ki=0.5" in out.read_text(encoding="utf-8")
+    assert [path.name for path in out.parent.iterdir()] == [out.name]
+
+
+def test_a_file_of_somebody_else_stays(replicate: Run, tmp_path: Path) -> None:
+    out = tmp_path / "notes.html"
+    out.write_text("mine", encoding="utf-8")
+    status, _, said = replicate("whatif", *PLANT, "--controller", "k=0.6", "--out", str(out))
+    assert status == 2
+    assert "is in the way, and is not as an earlier run wrote it" in said
+    assert out.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize(
+    ("plant", "controller", "reason"),
+    [
+        ("1/(s+1)(s+2)", "k=1", "column 8: is this above or below the division?"),
+        ("e^{-s}/(s+1)", "PI", "'PI' is not known; allowed are k, ki, kd"),
+        ("e^{-sqrt(s)}", "k=1", "rational plants with one dead time, of order 15 at most"),
+        ("e^{-s}/(s+1)+e^{-2s}/(s+2)", "k=1", "rational plants with one dead time"),
+        ("1/(s+1)^16", "k=1", "of order 15 at most"),
+        ("(s+1)/(s+2)", "k=1", "answers at once"),
+        ("1/(s+1)", "k=1,measurement_filter=0.1", "draws no measurement filter"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_one_line(
+    replicate: Run, tmp_path: Path, plant: str, controller: str, reason: str
+) -> None:
+    out = tmp_path / "f.html"
+    status, _, said = replicate("whatif", "--plant", plant, "--controller", controller, "--out", str(out))
+    assert status == 2
+    assert reason in said
+    assert len(said.strip().splitlines()) == 1
+    assert not out.exists()
+
+
+def test_rows_that_are_not_drawn_are_left_out_of_a_report(tmp_path: Path) -> None:
+    paper = Paper(
+        id="mine", package="mine", title="T", authors=("A",), citation="C", year=2020, modules=(), numbered=()
+    )
+    table = paper.table("table-1", "Rows", rows=("a", "b"), columns=("k",), printed=False)
+    table.trials = lambda: {"a": ("e^{-sqrt(s)}", "k=1"), "b": ("e^{-s}/(s+1)", "k=0.5,ki=0.4")}
+    assert write_whatif([paper], tmp_path) == [tmp_path / NAME]
+    page = (tmp_path / NAME).read_text(encoding="utf-8")
+    assert "mine table-1: b" in page
+    assert "mine table-1: a" not in page
+
+
+def test_the_page_is_the_same_each_time() -> None:
+    rows = [Row("one", "e^{-s}/(s+1)", "k=0.6,ki=0.5"), Row("<two>", "1/(s+1)^3", "k=1,ki=0.5")]
+    page = whatif_page(rows, "What if?")
+    assert page == whatif_page(rows, "What if?")
+    assert "<two>" not in page
