@@ -10,7 +10,7 @@ from replicate.loops.design_pi import design_pi
 from replicate.loops.design_pid import design_pid, search_range
 from replicate.loops.errors import ImproperLoopError, LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.gamma_norm import Weight, gamma_norm, stability_margin
-from replicate.loops.loop import Loop, Response
+from replicate.loops.loop import Loop
 from replicate.loops.margins import Margins
 from replicate.loops.nu_gap import WindingCount, chordal_distance, nu_gap, winding_count
 from replicate.loops.nyquist_constraints import Constraint
@@ -19,7 +19,7 @@ from replicate.loops.pi_result import PIDesign
 from replicate.loops.pid_result import PIDDesign
 from replicate.loops.plant import Plant
 from replicate.loops.setpoint_weights import pid_setpoint_weight, setpoint_weight
-from replicate.loops.signal import Signal
+from replicate.loops.signal import Response, Signal
 from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.step_responses import step_responses
 from replicate.loops.sweep import SweepResult, sweep

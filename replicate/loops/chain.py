@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
+from replicate.loops.kept import Kept
 from replicate.loops.plant import Plant
 from replicate.loops.sum_plant import SumPlant
 
@@ -57,7 +58,7 @@ class Chain:
         feedback, drive = np.abs(g) @ np.abs(self.wx), np.abs(self.b).sum(axis=1)
         whole = np.zeros((n + 1, n + 1))
         whole[:n, :n], whole[:n, n], whole[n, :n] = self.a, drive, feedback
-        _, (scale, _) = scipy.linalg.matrix_balance(whole, permute=False, separate=True)
+        _, _, _, scale, _ = scipy.linalg.lapack.dgebal(whole, scale=1, permute=0)
         scale = scale[:n] / scale[n]
         return replace(
             self,
@@ -134,7 +135,19 @@ def build_chain(
     ImproperLoopError
         If an ideal derivative meets a plant whose output jumps with its input.
     """
-    pa, pb, pc, d = _plant_state_space(plant) if space is None else space
+    if space is None and plant.is_rational:
+        shape = (controller.c, controller.derivative_filter, controller.measurement_filter)
+        filters = (controller.measurement_filter_order, controller.setpoint_filter)
+        key = (plant.num.tobytes(), plant.den.tobytes(), *shape, *filters, integral, derivative)
+        return _CHAINS.get(key, lambda: _built(controller, integral, derivative, _plant_state_space(plant)))
+    return _built(controller, integral, derivative, _plant_state_space(plant) if space is None else space)
+
+
+_CHAINS: Kept[Chain] = Kept(64)
+
+
+def _built(controller: PID, integral: bool, derivative: bool, space: tuple[Array, Array, Array, Array]) -> Chain:
+    pa, pb, pc, d = space
     n_plant, inputs = pb.shape
     n_filter = controller.measurement_filter_polynomials()[1].size - 1
     n_integral = 1 if integral else 0

@@ -79,33 +79,6 @@ def basis(x: Array, degree: int) -> Array:
     return table
 
 
-def evaluate(series: Array, x: Array) -> Array:
-    """Evaluate the k-th Chebyshev series, a row of ``series``, at the k-th point, by Clenshaw's recurrence."""
-    ahead, after = np.zeros_like(x), np.zeros_like(x)
-    for column in series[:, :0:-1].T:
-        ahead, after = column + 2.0 * x * ahead - after, ahead
-    return np.asarray(series[:, 0] + x * ahead - after)
-
-
-def bracketed_roots(series: Array, left: Array, right: Array) -> Array:
-    """Return one root of each series (rows) between points of opposite sign: bisection, then Newton's method."""
-    low, high = np.array(left), np.array(right)
-    sign = np.sign(evaluate(series, low))
-    orders = np.arange(series.shape[1])
-    for _ in range(8):  # only the sign counts here
-        middle = 0.5 * (low + high)
-        values = np.einsum("pk,pk->p", series, np.cos(np.arccos(middle)[:, None] * orders))
-        below = np.sign(values) == sign
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    slopes = np.asarray(cheb.chebder(series, axis=1), dtype=float)
-    root = 0.5 * (low + high)
-    for _ in range(4):
-        slope = evaluate(slopes, root)
-        step = np.divide(evaluate(series, root), slope, out=np.zeros_like(root), where=slope != 0.0)
-        root = np.clip(root - step, low, high)
-    return root
-
-
 def real_roots(coefficients: Array) -> Array:
     """Return the sorted roots of a Chebyshev series in [-1, 1], from the colleague matrix, polished by Newton.
 
@@ -139,18 +112,19 @@ def cut(length: float, pieces: int, until: float) -> tuple[Array, float]:
 
 
 def cut_last(coefficients: Array, share: float) -> Array:
-    """Return piecewise series with the last piece restricted to a share of it from the left."""
+    """Return piecewise series, the pieces along the last axis but one, with the last restricted to a share of it."""
     if share < 1.0:
         coefficients = np.array(coefficients)
-        coefficients[-1] = restricted(coefficients[-1], -1.0, 2.0 * share - 1.0)
+        coefficients[..., -1, :] = restricted(coefficients[..., -1, :], -1.0, 2.0 * share - 1.0)
     return coefficients
 
 
 def restricted(series: Array, left: float, right: float) -> Array:
-    """Return the Chebyshev series of the same function on a part [left, right] of [-1, 1]."""
-    degree = series.size - 1
+    """Return the Chebyshev series of the same functions on a part [left, right] of [-1, 1]."""
+    degree = series.shape[-1] - 1
     x = left + 0.5 * (right - left) * (nodes(degree) + 1.0)
-    return np.asarray(values_to_coefficients(degree) @ cheb.chebval(x, series))
+    polynomials = np.cos(np.arange(degree + 1)[:, None] * np.arccos(np.minimum(np.maximum(x, -1.0), 1.0)))
+    return np.asarray(series @ polynomials @ values_to_coefficients(degree).T)
 
 
 def _frozen(array: NDArray[np.floating[Any]]) -> Array:

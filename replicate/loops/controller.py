@@ -23,6 +23,7 @@ from replicate.loops import checks
 from replicate.loops.controller_views import ControllerViews
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
+from replicate.loops.polynomials import product
 
 ComplexArray = NDArray[np.complex128]
 Array = NDArray[np.float64]
@@ -201,18 +202,19 @@ class PID(ControllerViews):
 
         The numerator has one degree more than the denominator for an ideal derivative without measurement filter.
         """
-        num = np.array([self.k])
-        den = np.array([1.0])
+        num, den = np.array([self.k]), np.array([1.0])
         if self.ki:
-            num, den = np.polyadd(np.polymul(num, [1.0, 0.0]), [self.ki]), np.array([1.0, 0.0])
+            num, den = np.array([self.k, self.ki]), np.array([1.0, 0.0])
         if self.kd:
-            lag = np.array([self.derivative_filter, 1.0]) if self.derivative_filter else np.array([1.0])
-            num = np.polyadd(np.polymul(num, lag), np.polymul([self.kd, 0.0], den))
-            den = np.polymul(den, lag)
+            lag = np.array([self.derivative_filter, 1.0] if self.derivative_filter else [1.0])
+            slope = product(np.array([self.kd, 0.0]), den)
+            num = product(num, lag)
+            slope[slope.size - num.size :] += num
+            num, den = slope, product(den, lag)
         filter_num, filter_den = self.measurement_filter_polynomials()
         if filter_den.size > 1 or isinstance(self.measurement_filter, tuple):
-            num, den = np.polymul(num, filter_num), np.polymul(den, filter_den)
-        return np.atleast_1d(num).astype(float), np.atleast_1d(den).astype(float)
+            num, den = product(num, filter_num), product(den, filter_den)
+        return num, den
 
     def measurement_filter_polynomials(self) -> tuple[Array, Array]:
         """Return (num, den) of the measurement filter."""

@@ -30,7 +30,6 @@ from replicate.loops.pi_maxima import Maximum, local_maxima
 from replicate.loops.pi_result import PIDesign, Status
 from replicate.loops.pi_tangency import closest_frequencies, corner_optimum, smooth_optimum
 from replicate.loops.plant import Plant
-from replicate.loops.sensitivity import sensitivity_peak
 from replicate.loops.setpoint_weights import setpoint_weight
 from replicate.loops.units import Units
 
@@ -75,20 +74,20 @@ def design_pi(plant: Plant, ms: float | None = None, mp: float | None = None) ->
 
 def _design(plant: Plant, circle: Circle) -> PIDesign:
     """Design for a plant of positive gain whose numbers are of the order of one."""
-    w = design_grid(plant)
+    problem = _Problem(plant, circle, design_grid(plant))
     solutions: list[PIDesign] = []
-    for maximum in local_maxima(plant, circle, w):
-        if not _stable(plant, maximum.k, maximum.inside):
+    for maximum in local_maxima(plant, circle, problem.w):
+        if not problem.is_stable(maximum.k, maximum.inside):
             continue
-        if maximum.open_end is not None and _stable(plant, *maximum.open_end):
+        if maximum.open_end is not None and problem.is_stable(*maximum.open_end):
             return _none("unbounded")
-        polished = _polish(plant, circle, w, maximum)
+        polished = problem.polished(maximum)
         if polished is not None and not any(abs(polished.ki - s.ki) <= 1e-7 * s.ki for s in solutions):
             solutions.append(polished)
     if not solutions:
         return _none("no-controller")
     ordered = sorted(solutions, key=lambda s: -s.ki)
-    ordered = [replace(s, b=setpoint_weight(plant, s.k, s.ki)) for s in ordered]
+    ordered = [replace(s, b=problem.setpoint_weight(s)) for s in ordered]
     return replace(ordered[0], solutions=tuple(ordered))
 
 
@@ -109,37 +108,53 @@ def _mirrored(design: PIDesign) -> PIDesign:
     return replace(design, k=-design.k, ki=-design.ki, solutions=solutions)
 
 
-def _polish(plant: Plant, circle: Circle, w: Array, found: Maximum) -> PIDesign | None:
-    """Return the verified optimum near a maximum of the grid: smooth if one tangency explains it, else a corner."""
-    smooth = smooth_optimum(plant, circle, w, found.frequency)
-    if smooth is not None and _plausible(smooth, found) and _verified(plant, circle, smooth):
-        return smooth
-    pairs = {closest_frequencies(plant, circle, w, found.k, found.ki), (min(found.neighbours), max(found.neighbours))}
-    for pair in sorted(pairs):
-        corner = corner_optimum(plant, circle, found.k, found.ki, *pair)
-        if corner is not None and _plausible(corner, found) and _verified(plant, circle, corner):
-            return corner
-    return None
+class _Problem:
+    """A plant, a circle, and a grid of frequencies; a loop that is asked several questions is made once."""
+
+    def __init__(self, plant: Plant, circle: Circle, w: Array) -> None:
+        self.plant, self.circle, self.w = plant, circle, w
+        self._loops: dict[tuple[float, float], Loop] = {}
+
+    def loop(self, k: float, ki: float) -> Loop:
+        """Return the loop of a PI controller."""
+        if (k, ki) not in self._loops:
+            self._loops[k, ki] = Loop(self.plant, PI(k, ki))
+        return self._loops[k, ki]
+
+    def is_stable(self, k: float, ki: float) -> bool:
+        """Whether a PI controller gives a stable loop."""
+        try:
+            return self.loop(k, ki).is_stable()
+        except LoopError:  # too close to the limit of stability to be resolved: not a design
+            return False
+
+    def polished(self, found: Maximum) -> PIDesign | None:
+        """Return the verified optimum near a maximum of the grid: smooth if one tangency explains it, else a corner."""
+        smooth = smooth_optimum(self.plant, self.circle, self.w, found.frequency)
+        if smooth is not None and _plausible(smooth, found) and self._verified(smooth):
+            return smooth
+        closest = closest_frequencies(self.plant, self.circle, self.w, found.k, found.ki)
+        for pair in sorted({closest, (min(found.neighbours), max(found.neighbours))}):
+            corner = corner_optimum(self.plant, self.circle, found.k, found.ki, *pair)
+            if corner is not None and _plausible(corner, found) and self._verified(corner):
+                return corner
+        return None
+
+    def _verified(self, design: PIDesign) -> bool:
+        """Whether the loop is stable and outside the circle at all frequencies, not only at the tangency."""
+        if design.ki <= 0.0 or not self.is_stable(design.k, design.ki):
+            return False
+        closest = self.loop(design.k, design.ki).closest_approach(self.circle.center)
+        return closest.value * self.circle.radius <= 1.0 + VERIFIED
+
+    def setpoint_weight(self, design: PIDesign) -> float:
+        """Return the set-point weight of a design."""
+        peak = self.loop(design.k, design.ki).complementary_peak()
+        return setpoint_weight(self.plant, design.k, design.ki, at=(peak.frequency, peak.value))
 
 
 def _plausible(design: PIDesign, found: Maximum) -> bool:
     return 0.3 * found.ki < design.ki < 3.0 * found.ki
-
-
-def _verified(plant: Plant, circle: Circle, design: PIDesign) -> bool:
-    """Whether the loop is stable and outside the circle at all frequencies, not only at the tangency."""
-    if design.ki <= 0.0 or not _stable(plant, design.k, design.ki):
-        return False
-    loop = Loop(plant, PI(design.k, design.ki))
-    inverse = sensitivity_peak(loop.transfer, loop.poles(), circle.center)
-    return inverse.value * circle.radius <= 1.0 + VERIFIED
-
-
-def _stable(plant: Plant, k: float, ki: float) -> bool:
-    try:
-        return Loop(plant, PI(k, ki)).is_stable()
-    except LoopError:  # too close to the limit of stability to be resolved: not a design
-        return False
 
 
 def _none(status: Status) -> PIDesign:

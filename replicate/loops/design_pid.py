@@ -110,7 +110,10 @@ def _design(
     pi = design_pi(plant, ms, mp)
     shape: Sequence[Constraint | str] = ("phase",) if plant.integrators else ("curvature", "phase")
     asked = [Constraint("sensitivity")]
-    asked += [_constraint(plant, pi.k, pi.ki, item) for item in (shape if constraints is None else constraints)]
+    shape = shape if constraints is None else constraints
+    named = any(not isinstance(item, Constraint) for item in shape) and np.isfinite(pi.ki)
+    limits = search_range(plant, pi.k, pi.ki) if named else (0.0, float("inf"))
+    asked += [_constraint(item, *limits) for item in shape]
     if _bandwidth_is_free(plant, shaped=len(asked) > 1):
         return _none("unbounded")
     search = Search(GridProblem(plant, circle, tuple(asked)))
@@ -166,13 +169,12 @@ def _none(status: Status) -> PIDDesign:
     return PIDDesign(nan, nan, nan, nan, nan, (), status)
 
 
-def _constraint(plant: Plant, k: float, ki: float, item: Constraint | str) -> Constraint:
+def _constraint(item: Constraint | str, low: float, high: float) -> Constraint:
     if isinstance(item, Constraint):
         return item
     if item not in ("curvature", "phase"):
         msg = f"constraint '{item}' is unknown; allowed: 'curvature', 'phase', or a Constraint"
         raise LoopError(msg)
-    low, high = search_range(plant, k, ki) if np.isfinite(ki) else (0.0, float("inf"))
     return Constraint("curvature" if item == "curvature" else "phase", low, high)
 
 

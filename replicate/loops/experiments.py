@@ -17,8 +17,8 @@ from replicate.loops import chebyshev, checks
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.inputs import Event, Input, Sine, Step
-from replicate.loops.loop import Loop, Response
-from replicate.loops.signal import Signal
+from replicate.loops.loop import Loop
+from replicate.loops.signal import Response, Signal
 
 DEGREE = 26  # of the pieces of a response to a sine,
 ANGLE = 2.0  # each of which is at most so long, in rad

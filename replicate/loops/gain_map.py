@@ -28,6 +28,7 @@ GAINS = np.concatenate([[-1.0, -0.3, -0.1, -0.03, 0.0], np.geomspace(0.01, 0.3, 
 DERIVATIVES = np.concatenate([[-0.3, -0.1, 0.0], np.geomspace(0.03, 0.3, 4), np.geomspace(0.42, 60.0, 16)])
 EDGE = 1.0 - 1e-9
 NO_GAP = 1e-9  # relative width below which a gap is none
+TOGETHER = 3  # proportional gains looked at together
 FREQUENCIES = 160  # of each constraint, on the map
 
 ZOOM = np.linspace(-1.0, 1.0, 7)  # the window of an ascent, in units of its half-width
@@ -129,7 +130,8 @@ def _thinned(jet: LoopJet) -> LoopJet:
 
 def _gaps(jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float = 0.0) -> Gaps:
     """Return the gaps of ki at the indices (i, j) of k and kd."""
-    return Gaps.between(*_forbidden(jets, circle, k, kd, slack), rounding=NO_GAP)
+    parts = (_forbidden(jets, circle, k[i : i + TOGETHER], kd, slack) for i in range(0, k.size, TOGETHER))
+    return Gaps.between(parts, rounding=NO_GAP)
 
 
 def _forbidden(
@@ -139,18 +141,20 @@ def _forbidden(
     low, high = [], []
     for kind, jet in jets:
         a, b, c = _quadratics(kind, jet, circle, k, kd, slack)
+        discriminant = b * b
+        discriminant -= 4.0 * a * c
+        real = discriminant > 0.0
         with np.errstate(all="ignore"):
-            root = np.sqrt(np.maximum(b**2 - 4.0 * a * c, 0.0))
-            q = -0.5 * (b + np.copysign(root, b))
+            q = -0.5 * (b + np.copysign(np.sqrt(np.maximum(discriminant, 0.0)), b))
             first, second = q / a, c / q
         left, right = np.fmin(first, second), np.fmax(first, second)
-        real = b**2 > 4.0 * a * c
-        opens_up = np.broadcast_to(a > 0.0, real.shape)
-        # a > 0: forbidden between the roots; a < 0: below the lower and above the upper one, or everywhere
-        low += [np.where(opens_up & real & (right > 0.0), left, np.where(opens_up, np.inf, 0.0))]
-        high += [np.where(opens_up, np.where(real, right, -np.inf), np.where(real, left, np.inf))]
-        low += [np.where(~opens_up & real, np.maximum(right, 0.0), np.inf)]
-        high += [np.where(~opens_up & real, np.inf, -np.inf)]
+        # a > 0: forbidden between the roots
+        up = a > 0.0
+        low.append(np.where(up & real & (right > 0.0), left, np.inf))
+        high.append(np.where(up & real, right, -np.inf))
+        if not up.all():  # a < 0: below the lower and above the upper one, or everywhere
+            low += [np.where(up, np.inf, 0.0) + np.zeros_like(b), np.where(real & ~up, np.maximum(right, 0.0), np.inf)]
+            high += [np.where(up, -np.inf, np.where(real, left, np.inf)), np.where(real & ~up, np.inf, -np.inf)]
     return np.concatenate(low, axis=-1), np.concatenate(high, axis=-1)
 
 

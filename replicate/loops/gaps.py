@@ -7,19 +7,23 @@ a gap that no connected one exceeds.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
+from operator import add
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Places = NDArray[np.intp]
 Index = tuple[int, ...]
 
+TOGETHER = 200  # ends of intervals that are compared with all intervals at once
 
-@dataclass(frozen=True)
-class Gap:
+
+class Gap(NamedTuple):
     """Ends of a gap, and which of the intervals bounds it from above."""
 
     bottom: float
@@ -35,27 +39,63 @@ class Gaps:
     uppermost: Array
 
     @classmethod
-    def between(cls, low: Array, high: Array, *, rounding: float) -> Gaps:
+    def between(cls, parts: Iterable[tuple[Array, Array]], *, rounding: float) -> Gaps:
         """Return the gaps above zero that the intervals (low, high) leave; intervals run along the last axis.
 
+        The parts follow each other along the first axis of the grid: what is small stays close to the processor.
         ``rounding`` is the relative width below which a gap is none. An interval that forbids nothing starts at inf.
         """
-        order = np.argsort(low, axis=-1)
-        low = np.take_along_axis(low, order, axis=-1)
-        covered = np.maximum.accumulate(np.take_along_axis(high, order, axis=-1), axis=-1)
-        floor = np.maximum(np.concatenate([np.zeros_like(low[..., :1]), covered[..., :-1]], axis=-1), 0.0)
         at: dict[Index, list[Gap]] = {}
-        for index in zip(*np.nonzero((low > floor * (1.0 + rounding)) & np.isfinite(low)), strict=True):
-            point = tuple(int(i) for i in index[:-1])
-            at.setdefault(point, []).append(Gap(float(floor[index]), float(low[index]), int(order[index])))
-        return cls(at, np.maximum(covered[..., -1], 0.0))
+        uppermost: list[Array] = []
+        first = 0
+        for low, high in parts:
+            shape = low.shape[:-1]
+            rows = low.reshape(-1, low.shape[-1]), high.reshape(-1, low.shape[-1])
+            points, *ends = _gaps(*rows, rounding)
+            places = zip(*(index.tolist() for index in np.unravel_index(points, shape)), strict=True)
+            for point, floor, top, bound in zip(places, *(part.tolist() for part in ends), strict=True):
+                gaps = at.setdefault((first + point[0], *point[1:]), [])
+                if not gaps or gaps[-1].top < top:
+                    gaps.append(Gap(floor, top, bound))
+            uppermost.append(np.maximum(high.max(axis=-1), 0.0))
+            first += shape[0]
+        return cls(at, np.concatenate(uppermost))
 
     def maxima(self) -> Iterator[tuple[Index, Gap, list[Gap]]]:
         """Yield (grid point, gap, connected gaps) for each gap whose upper end no connected gap exceeds."""
+        steps = [step for step in product((-1, 0, 1), repeat=self.uppermost.ndim) if any(step)]
         for point, gaps in self.at.items():
-            steps = [step for step in product((-1, 0, 1), repeat=len(point)) if any(step)]
-            around = [g for step in steps for g in self.at.get(tuple(np.add(point, step).tolist()), ())]
+            around = [g for step in steps for g in self.at.get(tuple(map(add, point, step)), ())]
             for gap in gaps:
                 connected = [g for g in around if g.bottom < gap.top and g.top > gap.bottom]
                 if all(gap.top >= g.top for g in connected):
                     yield point, gap, connected
+
+
+def _gaps(low: Array, high: Array, rounding: float) -> tuple[Places, Array, Array, Places]:
+    """Return row, bottom, top and bounding interval of each gap that intervals, in rows, leave; ascending."""
+    points, bounds = np.nonzero(_may_bound_a_gap(low, high, rounding))
+    tops = low[points, bounds]
+    floors = np.empty(tops.size)
+    for start in range(0, tops.size, TOGETHER):
+        some = slice(start, start + TOGETHER)
+        below = high[points[some]]
+        below[low[points[some]] >= tops[some, None]] = 0.0
+        floors[some] = np.max(below, axis=-1, initial=0.0)
+    free = np.nonzero(tops > floors * (1.0 + rounding))[0]
+    free = free[np.lexsort((tops[free], points[free]))]
+    return points[free], floors[free], tops[free], bounds[free]
+
+
+def _may_bound_a_gap(low: Array, high: Array, rounding: float) -> NDArray[np.bool_]:
+    """Return which lower ends are not covered by the next interval on either side, or by the one that reaches highest.
+
+    Neighbours overlap as long as the frequency that forbids them changes steadily: few ends are left.
+    """
+    reach = high * (1.0 + rounding)
+    free = np.isfinite(low) & (low > 0.0)
+    free[:, 1:] &= (low[:, :-1] >= low[:, 1:]) | (reach[:, :-1] < low[:, 1:])
+    free[:, :-1] &= (low[:, 1:] >= low[:, :-1]) | (reach[:, 1:] < low[:, :-1])
+    highest = np.argmax(high, axis=-1)[:, None]
+    free &= (np.take_along_axis(low, highest, axis=-1) >= low) | (np.take_along_axis(reach, highest, axis=-1) < low)
+    return free

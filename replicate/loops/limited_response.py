@@ -19,9 +19,9 @@ from replicate.loops.anti_windup import (
 from replicate.loops.errors import LoopError
 from replicate.loops.inputs import Input, Sine
 from replicate.loops.limited_steps import Jump, LimitedSteps
-from replicate.loops.loop import SETTLED, Loop, Response
+from replicate.loops.loop import SETTLED, Loop
 from replicate.loops.piece_flow import Row
-from replicate.loops.signal import Signal
+from replicate.loops.signal import Response, Signal
 
 MOST_EXTENSIONS = 40  # of the horizon, before a loop counts as one that never comes to rest
 Given = float | Input | Sequence[Input]

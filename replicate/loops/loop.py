@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Self
 
@@ -20,8 +19,9 @@ from replicate.loops.loop_views import LoopViews
 from replicate.loops.margins import Margins
 from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
+from replicate.loops.proven_pole import proven_pole_with_others
 from replicate.loops.responses import responses
-from replicate.loops.signal import Signal
+from replicate.loops.signal import Response, Signal
 from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.steady_state import steady_state
 from replicate.loops.units import Units
@@ -29,23 +29,8 @@ from replicate.loops.units import Units
 ComplexArray = NDArray[np.complex128]
 
 TAIL = 1e13  # time constants of the slowest mode after which an algebraic tail no longer counts
+CLEAR = 1e-6  # distance of a pole from the imaginary axis, relative to its modulus, that leaves no doubt
 SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rounding, exp(-34) = 2e-15
-
-
-@dataclass(frozen=True)
-class Response:
-    """Output and control signal of one experiment.
-
-    Attributes
-    ----------
-    output
-        The plant output y.
-    control
-        The control signal u.
-    """
-
-    output: Signal
-    control: Signal
 
 
 class Loop(LoopViews):
@@ -114,6 +99,9 @@ class Loop(LoopViews):
 
     @cached_property
     def _stable(self) -> bool:
+        proven = self.__dict__.get("_proven")
+        if proven and abs(proven[0].real) > CLEAR * abs(proven[0]):
+            return bool(proven[0].real < 0.0)
         return stability.is_stable(self._transfer)
 
     def is_stable(self) -> bool:
@@ -124,9 +112,16 @@ class Loop(LoopViews):
         """Return the number of closed-loop poles in the closed right half-plane."""
         return stability.unstable_poles(self._transfer)
 
-    @cached_property
-    def _poles(self) -> ComplexArray:
-        return poles.rightmost_poles(self._plant, self._controller, self._transfer, count=4)
+    def _found(self, count: int) -> ComplexArray:
+        return poles.rightmost_poles(self._plant, self._controller, self._transfer, count=count)
+
+    _poles = cached_property(lambda self: self._found(4))
+    _proven = cached_property(lambda self: proven_pole_with_others(self._transfer))
+
+    @property
+    def _landmarks(self) -> ComplexArray:
+        """The rightmost pole and some others that are close to the imaginary axis."""
+        return self._poles if self._proven is None else np.array(self._proven)
 
     def rightmost_pole(self) -> complex:
         """Return the closed-loop pole with the largest real part (of a pair the one with Im > 0).
@@ -138,12 +133,12 @@ class Loop(LoopViews):
         LoopError
             If there is none: the loop is static, or its plant is a function whose cut takes the place of poles.
         """
-        if self._poles.size == 0:
+        if self._landmarks.size == 0:
             msg = "a static loop has no poles; give a horizon to get its response"
             if not self.plant.parts:
                 msg = "the loop has no pole off the negative real axis, where its plant, a function, has a cut"
             raise LoopError(msg)
-        return complex(self._poles[0] / self._units.time)
+        return complex(self._landmarks[0] / self._units.time)
 
     def poles(self, count: int = 4) -> ComplexArray:
         """Return up to ``count`` rightmost closed-loop poles, descending real part, one of each conjugate pair.
@@ -151,8 +146,7 @@ class Loop(LoopViews):
         A multiple pole is listed once; of poles with equal real parts the one of the lowest frequency comes first.
         """
         count = checks.whole("the number of poles", count)
-        found = poles.rightmost_poles(self._plant, self._controller, self._transfer, count=count)
-        return np.asarray(found / self._units.time)
+        return np.asarray(self._found(count) / self._units.time)
 
     def _require_stable(self, what: str) -> None:
         if not self._stable:
@@ -170,12 +164,29 @@ class Loop(LoopViews):
             If the loop is unstable.
         """
         self._require_stable("sensitivity peak")
-        return self._peak(sensitivity.sensitivity_peak(self._transfer, self._poles))
+        return self._peak(sensitivity.sensitivity_peak(self._transfer, self._landmarks))
+
+    def closest_approach(self, center: float) -> FrequencyPeak:
+        """Return max 1/|center + L|, the inverse of the distance of the Nyquist curve from -center, center >= 1.
+
+        Parameters
+        ----------
+        center
+            With 1 it is the sensitivity peak.
+
+        Raises
+        ------
+        UnstableLoopError
+            If the loop is unstable.
+        """
+        self._require_stable("closest approach")
+        center = checks.positive("center", center, allowed="a number >= 1")
+        return self._peak(sensitivity.sensitivity_peak(self._transfer, self._landmarks, center))
 
     def complementary_peak(self) -> FrequencyPeak:
         """Return Mp = max |L/(1+L)| with its frequency; UnstableLoopError if the loop is unstable."""
         self._require_stable("complementary sensitivity peak")
-        return self._peak(sensitivity.complementary_peak(self._transfer, self._poles))
+        return self._peak(sensitivity.complementary_peak(self._transfer, self._landmarks))
 
     def _peak(self, scaled: FrequencyPeak) -> FrequencyPeak:
         return FrequencyPeak(scaled.value, scaled.frequency / self._units.time)
@@ -195,6 +206,7 @@ class Loop(LoopViews):
         UnstableLoopError
             If the loop is unstable.
         """
+        self._proven  # noqa: B018  -- the rightmost pole, needed below, says whether the loop is stable
         self._require_stable("settling horizon")
         if not self.plant.parts:
             # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
@@ -212,7 +224,10 @@ class Loop(LoopViews):
 
     def _slowest_decay(self) -> float:
         """Return the decay rate of the slowest mode: of the loop, of its neutral tail, or of the set-point filter."""
-        rates = [abs(self.rightmost_pole().real), *(-np.roots(self.controller.setpoint_filter_polynomials()[1]).real)]
+        rates = [abs(self.rightmost_pole().real)]
+        _, filter_den = self.controller.setpoint_filter_polynomials()
+        if filter_den.size > 1:
+            rates += (-np.roots(filter_den).real).tolist()
         if self._longest and self._transfer.feedthrough:  # the poles' real parts tend to this far from the axis
             rates.append(-np.log(self._transfer.feedthrough) / self._longest)
         return float(min(rates))

@@ -9,7 +9,7 @@ controller. The zeros of the *characteristic function* f are the closed loop's p
 from __future__ import annotations
 
 import cmath
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -17,13 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import polynomials
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.plant import Plant
+from replicate.loops.polynomials import horner, horner_with_slope, product, roots_of, roots_of_difference, trimmed
 from replicate.loops.sum_plant import SumPlant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -47,13 +51,13 @@ class LoopTransfer:
         from replicate.loops.other_transfers import FunctionTransfer, SumTransfer
 
         num, den = controller.feedback_polynomials()
-        num = np.trim_zeros(num, "f")
+        num = trimmed(num)
         if isinstance(plant, SumPlant):
             return SumTransfer.of_parts(plant, num, den)
         if not plant.is_rational:
             return FunctionTransfer(num, den, plant.dead_time, plant)
-        num = np.trim_zeros(np.asarray(np.polymul(num, plant.num), dtype=float), "f") if num.size else num
-        den = np.asarray(np.polymul(den, plant.den), dtype=float)
+        num = trimmed(product(num, plant.num)) if num.size else num
+        den = product(den, plant.den)
         transfer = LoopTransfer(num, den, plant.dead_time, plant)
         if transfer.num.size > den.size:
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
@@ -76,7 +80,23 @@ class LoopTransfer:
     @property
     def open_loop_poles(self) -> ComplexArray:
         """The poles of the open loop's rational part: the zeros of f where L is negligible."""
-        return roots_of(self.den)
+        return self._roots[1]
+
+    @cached_property
+    def _roots(self) -> tuple[ComplexArray, ComplexArray]:
+        return roots_of(self.num), roots_of(self.den)
+
+    @property
+    def zeros(self) -> ComplexArray:
+        """The zeros of L's rational part."""
+        return self._roots[0]
+
+    def shifted(self, by: float) -> LoopTransfer:
+        """Return L(s + by) of a rational loop: its closed-loop poles are those of L, moved by -by."""
+        num = polynomials.shifted(self.num, by) * math.exp(-by * self.dead_time)
+        moved = LoopTransfer(num, polynomials.shifted(self.den, by), self.dead_time, self.plant)
+        moved.__dict__["_roots"] = self._roots[0] - by, self._roots[1] - by
+        return moved
 
     @property
     def is_rational(self) -> bool:
@@ -173,20 +193,27 @@ class LoopTransfer:
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending."""
-        n, d = _squared_magnitude(self.num), _squared_magnitude(self.den)
-        roots = _roots(n, d)
+        n, d = polynomials.squared_magnitude(self.num), polynomials.squared_magnitude(self.den)
+        roots = roots_of_difference(n, d)
         real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots.real))]
-        w = np.sort(np.sqrt(real))
-        for _ in range(3):  # Newton on log |L|
-            slope = (1j * self.log_derivative(1j * w)).real
-            step = np.divide(np.log(np.abs(self(1j * w))), slope, out=np.zeros_like(w), where=slope != 0.0)
-            w = w - np.clip(step, -0.5 * w, 0.5 * w)
-        return np.sort(w)
+        return np.sort([self._polished_crossover(math.sqrt(x)) for x in real.tolist()])
+
+    def _polished_crossover(self, w: float) -> float:
+        """Return a gain crossover to rounding, by Newton's method on log |L|."""
+        for _ in range(3):
+            at = complex(0.0, w)
+            slope = -complex(self.log_derivative(at)).imag
+            size = abs(complex(self(at)))
+            step = math.log(size) / slope if size and slope else 0.0
+            w -= min(max(step, -0.5 * w), 0.5 * w)
+            if abs(step) <= EPS * w:
+                break
+        return w
 
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
         """Nonzero poles and zeros of L's rational part: where its frequency response bends."""
-        roots = np.concatenate([roots_of(self.num), roots_of(self.den)])
+        roots = np.concatenate(self._roots)
         return np.asarray(roots[np.abs(roots) > 0.0])
 
     def beyond(self, level: float) -> float:
@@ -213,47 +240,12 @@ class LoopTransfer:
         raise ImproperLoopError(msg)
 
 
-def roots_of(polynomial: Array) -> ComplexArray:
-    """Return the roots of a polynomial, descending powers; up to the second degree in closed form."""
-    degree = polynomial.size - 1
-    if degree <= 0:
-        return np.zeros(0, dtype=complex)
-    if degree == 1:
-        return np.array([-polynomial[1] / polynomial[0]], dtype=complex)
-    if degree == 2:
-        a, b, c = polynomial.tolist()
-        root = cmath.sqrt(b * b - 4.0 * a * c)
-        large = -0.5 * (b + root if b >= 0.0 else b - root)
-        return np.array([large / a, c / large if large else 0.0], dtype=complex)
-    return np.asarray(np.roots(polynomial), dtype=complex)
-
-
-def horner(coefficients: Sequence[float], s: Any) -> Any:
-    """Evaluate a polynomial, descending powers, at a number or an array; zero without coefficients."""
-    if not coefficients:
-        return 0.0 * s
-    value = coefficients[0] + 0.0 * s
-    for c in coefficients[1:]:
-        value = value * s + c
-    return value
-
-
-def horner_with_slope(coefficients: Sequence[float], s: Any) -> tuple[Any, Any]:
-    """Evaluate a polynomial and its derivative."""
-    slope = 0.0 * s
-    if not coefficients:
-        return slope, slope
-    value = coefficients[0] + slope
-    for c in coefficients[1:]:
-        slope = slope * s + value
-        value = value * s + c
-    return value, slope
-
-
 def stationary_frequencies(num: Array, den: Array) -> Array:
     """Return the positive frequencies at which |num/den| is stationary on the imaginary axis, ascending."""
-    n, d = _squared_magnitude(num), _squared_magnitude(den)
-    return _near_positive_axis(_roots(_polynomial_product(_slope(n), d), _polynomial_product(n, _slope(d))))
+    n, d = polynomials.squared_magnitude(num), polynomials.squared_magnitude(den)
+    return _near_positive_axis(
+        roots_of_difference(product(polynomials.derivative(n), d), product(n, polynomials.derivative(d)))
+    )
 
 
 def _near_positive_axis(found: ArrayLike) -> Array:
@@ -262,30 +254,3 @@ def _near_positive_axis(found: ArrayLike) -> Array:
     roots = np.asarray(found, dtype=complex)
     x = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 0.5 * np.abs(roots.real))]
     return np.sort(np.sqrt(x))
-
-
-def _roots(left: Array, right: Array) -> ComplexArray:
-    """Return the roots of the difference of two polynomials."""
-    size = max(left.size, right.size)
-    difference = np.zeros(size)
-    difference[size - left.size :] += left
-    difference[size - right.size :] -= right
-    nonzero = np.nonzero(difference)[0]
-    return roots_of(difference[nonzero[0] :]) if nonzero.size else np.zeros(0, dtype=complex)
-
-
-def _slope(polynomial: Array) -> Array:
-    return np.asarray(polynomial[:-1] * np.arange(polynomial.size - 1, 0, -1)) if polynomial.size > 1 else np.zeros(1)
-
-
-def _polynomial_product(left: Array, right: Array) -> Array:
-    return np.asarray(np.polymul(left, right), dtype=float)
-
-
-def _squared_magnitude(polynomial: Array) -> Array:
-    """Return the coefficients in x = w^2 of |p(i w)|^2."""
-    degree = polynomial.size - 1
-    signs = np.array([(-1.0) ** k for k in range(degree, -1, -1)])
-    product = np.polymul(polynomial, polynomial * signs)  # p(s) p(-s), even in s
-    even = product[::2]
-    return np.asarray(even * np.array([(-1.0) ** k for k in range(even.size - 1, -1, -1)]))

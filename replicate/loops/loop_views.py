@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from replicate.loops.controller import PID
     from replicate.loops.experiments import Given
     from replicate.loops.limited_response import LimitedResponse
-    from replicate.loops.loop import Loop, Response
+    from replicate.loops.loop import Loop
+    from replicate.loops.signal import Response
 
 
 class LoopViews:

@@ -26,6 +26,7 @@ from replicate.loops import chebyshev
 from replicate.loops.chain import Chain, build_chain, gains
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
+from replicate.loops.kept import Kept
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -35,6 +36,7 @@ RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at wh
 STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 2000  # beyond, pieces that adapt are faster
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
+TOGETHER = 16  # pieces that a single response moves at once
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,16 @@ class PieceMap:
 
 
 def piece_map(chain: Chain, length: float, degree: int = DEGREE) -> PieceMap:
+    """Return the map of a piece; loops of one plant whose gains are scaled alike share it."""
+    parts = (chain.a, chain.b, chain.e, chain.c, chain.d, chain.wx, chain.wv, chain.wr)
+    key = (length, degree, *(part.tobytes() for part in parts))
+    return _MAPS.get(key, lambda: _solved_map(chain, length, degree))
+
+
+_MAPS: Kept[PieceMap] = Kept(64)
+
+
+def _solved_map(chain: Chain, length: float, degree: int) -> PieceMap:
     """Solve the collocation system of one piece for all its inputs at once."""
     points, n = degree + 1, chain.e.size
     half_s = 0.5 * length * chebyshev.integration(degree)
@@ -58,8 +70,7 @@ def piece_map(chain: Chain, length: float, degree: int = DEGREE) -> PieceMap:
     right[:, :, :points] = half_s[:, None, :] * chain.b[None, :]
     right[:, :, points:-1] = np.eye(n)
     right[:, :, -1] = half_s.sum(axis=1)[:, None] * chain.e
-    system = np.eye(points * n) - np.kron(half_s, chain.a)
-    states = np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, -1) if n else right
+    states = _solved(half_s, chain.a, right)
 
     through = np.zeros((points, points + n + 1))
     through[:, :points] = np.eye(points)
@@ -67,6 +78,16 @@ def piece_map(chain: Chain, length: float, degree: int = DEGREE) -> PieceMap:
     basis = np.einsum("wi,pic->wpc", chain.wx, states) + chain.wv[:, :, None] * through
     basis[:, :, -1] += chain.wr[:, None]
     return PieceMap(basis, output, states[-1])
+
+
+def _solved(half_s: Array, a: Array, right: Array) -> Array:
+    """Solve (I - S/2 (x) A) X = right for the states at the nodes, shape (points, n, columns)."""
+    points, n = half_s.shape[0], a.shape[0]
+    if n == 0:
+        return right
+    system = (half_s[:, None, :, None] * -a[:, None, :]).reshape(points * n, points * n)
+    system.flat[:: points * n + 1] += 1.0
+    return np.asarray(np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, -1), dtype=float)
 
 
 def respond(
@@ -107,20 +128,16 @@ def respond(
             return None
         with np.errstate(over="ignore", invalid="ignore"):
             if plant.dead_time:
-                y, u = _march(chain, gain_matrix, length, splits, pieces, setpoint, load)
+                values = _march(chain, gain_matrix, length, splits, pieces, setpoint, load)
             else:
                 parts = [_march_closed(c, chain, length, pieces, setpoint, load) for c in closed]
-                y, u = np.stack([p[0] for p in parts]), np.stack([p[1] for p in parts])
-        _require_range(y, u, length)
-        y, u = y @ to_coefficients, u @ to_coefficients
-        remaining = max(_unresolved(y), _unresolved(u))
+                values = np.stack([[p[i] for p in parts] for i in range(2)])
+            found = values @ to_coefficients
+        remaining = _unresolved(found, length)
         # halving the pieces no longer helps once the tail is the rounding error of an ill-conditioned plant
         if remaining <= RESOLVED or (remaining < 1e-9 and remaining > 0.25 * previous):
             breaks, share = chebyshev.cut(length, pieces, until)
-            return [
-                (breaks, chebyshev.cut_last(one_y, share), chebyshev.cut_last(one_u, share))
-                for one_y, one_u in zip(y, u, strict=True)
-            ]
+            return [(breaks, y, u) for y, u in zip(*chebyshev.cut_last(found, share), strict=True)]
         previous = remaining
         splits *= 2
 
@@ -138,25 +155,24 @@ def _common_chain(plant: Plant, controllers: Sequence[PID]) -> tuple[Chain, Arra
     return chain.balanced(np.max(np.abs(gain_matrix), axis=1)), gain_matrix
 
 
-def _require_range(y: Array, u: Array, length: float) -> None:
-    largest = np.maximum(np.max(np.abs(y), axis=(0, 2)), np.max(np.abs(u), axis=(0, 2)))
-    beyond = np.nonzero(~(largest < LARGEST))[0]
-    if beyond.size:
-        msg = f"the response grows beyond {LARGEST:g} by t = {(beyond[0] + 1) * length:g}: choose a shorter horizon"
+def _unresolved(coefficients: Array, length: float) -> float:
+    """Return the size of the last two coefficients relative to the largest, the worst of all signals.
+
+    Shape (2, controllers, pieces, points), output and control signal; LoopError if they grow out of range.
+    """
+    sizes = np.abs(coefficients)
+    largest = sizes.max(axis=(2, 3))
+    if not np.all(largest < LARGEST):
+        beyond = int(np.argmin(sizes.max(axis=(0, 1, 3)) < LARGEST))
+        msg = f"the response grows beyond {LARGEST:g} by t = {(beyond + 1) * length:g}: choose a shorter horizon"
         raise LoopError(msg)
-
-
-def _unresolved(coefficients: Array) -> float:
-    """Return the size of the last two coefficients relative to the largest, the worst of all responses."""
-    scale = np.max(np.abs(coefficients), axis=(1, 2))
-    tail = np.max(np.abs(coefficients[:, :, -2:]), axis=(1, 2))
-    return float(np.max(tail / np.maximum(scale, 1e-300)))
+    return float(np.max(sizes[..., -2:].max(axis=(2, 3)) / np.maximum(largest, 1e-300)))
 
 
 def _march(
     chain: Chain, gain_matrix: Array, length: float, splits: int, pieces: int, setpoint: float, load: float
-) -> tuple[Array, Array]:
-    """Step through the pieces; returns node values of y and u, shape (controllers, pieces, points)."""
+) -> Array:
+    """Step through the pieces; returns node values of y and u, shape (2, controllers, pieces, points)."""
     fixed = piece_map(chain, length)
     points, n, sweep = DEGREE + 1, chain.e.size, gain_matrix.shape[1]
     history = np.zeros((pieces + splits, points, sweep))  # u, shifted by one dead time
@@ -172,6 +188,8 @@ def _march(
     inputs = np.zeros((points + n + 1, sweep))
     inputs[-1] = setpoint
     inputs[points:-1] = chain.start[:, None] * setpoint
+    if single and splits == 1 and pieces > TOGETHER and not (gain_matrix[3] * chain.setpoint_impulse).any():
+        return _march_together(blocks, inputs[:, 0], pieces, load)
     n_basis = blocks.shape[0] - points - n
     impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
     feedback = gain_matrix[3] * chain.wv[3, 0]  # an impulse in v passes through the ideal derivative into u
@@ -191,7 +209,44 @@ def _march(
             history[j + splits] = np.einsum("ws,wps->ps", gain_matrix, result[:n_basis].reshape(4, points, sweep))
         output[j] = result[n_basis : n_basis + points]
         inputs[points:-1] = result[n_basis + points :]
-    return np.moveaxis(output, 2, 0), np.moveaxis(history[splits:], 2, 0)
+    return np.stack([np.moveaxis(output, 2, 0), np.moveaxis(history[splits:], 2, 0)])
+
+
+def _march_together(blocks: Array, first: Array, pieces: int, load: float) -> Array:
+    """Step through the pieces of one response, many at once; returns node values as `_march`.
+
+    What enters a piece, z = (v at its nodes, state, set-point), is a fixed linear map of what enters the piece before:
+    the squares of that map carry 2, 4, 8 ... pieces on together.
+
+    Parameters
+    ----------
+    blocks
+        Rows of the control signal, the output and the state of a piece, from what enters it.
+    first
+        What enters the first piece.
+    load
+        The load that is added to the control signal of each piece before it enters the next.
+    """
+    points = DEGREE + 1
+    size = first.size
+    # a last row for what does not change, one: set-point and load
+    flow = np.zeros((size, size))
+    flow[:points, :-1], flow[points:-1, :-1] = blocks[:points, :-1], blocks[2 * points :, :-1]
+    flow[:points, -1] = blocks[:points, -1] * first[-1] + load
+    flow[points:-1, -1] = blocks[2 * points :, -1] * first[-1]
+    flow[-1, -1] = 1.0
+    entering = np.empty((size, -(-pieces // TOGETHER) * TOGETHER))
+    entering[:, 0], entering[-1, 0] = first, 1.0
+    done = 1
+    while done < entering.shape[1]:
+        step = min(done, TOGETHER)
+        np.matmul(flow, entering[:, done - step : done], out=entering[:, done : done + step])
+        done += step
+        if done <= TOGETHER:
+            flow = flow @ flow
+    entering[-1] = first[-1]
+    leaving = (blocks[: 2 * points] @ entering[:, :pieces]).reshape(2, points, pieces)
+    return np.moveaxis(leaving[::-1, None], 2, 3)
 
 
 @dataclass(frozen=True)
@@ -230,8 +285,7 @@ def _march_closed(
     right = np.zeros((points, n, n + 1))
     right[:, :, :n] = np.eye(n)
     right[:, :, n] = half_s.sum(axis=1)[:, None] * drive
-    system = np.eye(points * n) - np.kron(half_s, closed.a)
-    flow = np.linalg.solve(system, right.reshape(points * n, -1)).reshape(points, n, n + 1) if n else right
+    flow = _solved(half_s, closed.a, right)
     states = np.empty((pieces, points, n))
     x = np.append((chain.b[:, 0] * closed.impulse + chain.start) * setpoint, 1.0)
     for j in range(pieces):

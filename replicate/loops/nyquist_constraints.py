@@ -16,14 +16,15 @@ Reference: Panagopoulos, thesis (2000), supplement to paper II, (1) to (5).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from math import factorial
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.circles import Circle
 from replicate.loops.errors import LoopError
-from replicate.loops.jets import controller_basis_jets, plant_jet, series_product
+from replicate.loops.jets import plant_jet
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -73,11 +74,23 @@ class LoopJet:
     @classmethod
     def of(cls, plant: Plant, w: Array, order: int = 2) -> LoopJet:
         """Return the basis (G, G/(i w), i w G) and its first ``order`` derivatives."""
+        w = np.asarray(w, dtype=float)
         jet = plant_jet(plant, w, order)
-        basis = controller_basis_jets(w, order)
-        products = np.stack([series_product(jet, part) for part in basis], axis=1)
-        factorials = np.array([1.0, 1.0, 2.0, 6.0])[: order + 1]
-        return cls(np.asarray(w, dtype=float), products * factorials[:, None, None])
+        phi = np.empty((order + 1, 3, w.size), dtype=complex)
+        phi[:, 0] = jet
+        phi[:, 2] = 1j * w * jet
+        phi[1:, 2] += 1j * jet[:-1]
+        rest = -1j * jet
+        phi[0, 1] = rest[0] / w
+        for n in range(1, order + 1):  # i w times this series is G's
+            phi[n, 1] = (rest[n] - phi[n - 1, 1]) / w
+        for n in range(2, order + 1):
+            phi[n] *= factorial(n)
+        return cls(w, phi)
+
+    def at(self, places: NDArray[Any]) -> LoopJet:
+        """Return the basis at some of the frequencies, given by index or by flags."""
+        return LoopJet(self.w[places], np.ascontiguousarray(self.phi[:, :, places]))
 
     def values(self, kind: Kind, circle: Circle, x: Array, margin: float = 0.0) -> tuple[Array, Array]:
         """Return the constraint's values (>= 0 where it holds), shape (n,), and gradients in x, shape (n, 3)."""

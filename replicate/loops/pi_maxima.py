@@ -18,6 +18,7 @@ from replicate.loops.plant import Plant
 Array = NDArray[np.float64]
 
 GAIN_POINTS = 260
+TOGETHER = 44  # gains looked at together
 NO_GAP = 1e-12  # relative width below which a gap is none
 
 
@@ -40,11 +41,11 @@ def local_maxima(plant: Plant, circle: Circle, w: Array) -> list[Maximum]:
     c, s = circle.center * np.cos(phase), circle.center * np.sin(phase)
     gains = _gain_grid(np.concatenate([-c / r, (-c - circle.radius) / r, (-c + circle.radius) / r]), r)
     # the forbidden interval of ki at each (k, w): (r ki / w + C sin phi)^2 < R^2 - (r k + C cos phi)^2
-    inside = circle.radius**2 - (gains[:, None] * r + c) ** 2
-    half = np.sqrt(np.maximum(inside, 0.0))
-    high = np.where(inside > 0.0, (half - s) * (w / r), -np.inf)
-    low = np.where(high > 0.0, (-half - s) * (w / r), np.inf)
-    gaps = Gaps.between(low, high, rounding=NO_GAP)
+    parts = (
+        _forbidden(gains[i : i + TOGETHER, None] * r + c, s, w / r, circle.radius)
+        for i in range(0, gains.size, TOGETHER)
+    )
+    gaps = Gaps.between(parts, rounding=NO_GAP)
     found = []
     for (i,), gap, connected in gaps.maxima():
         middle = 0.5 * (max([gap.bottom, *(g.bottom for g in connected)]) + gap.top)
@@ -55,6 +56,16 @@ def local_maxima(plant: Plant, circle: Circle, w: Array) -> list[Maximum]:
             open_end = (float(gains[i]), middle)
         found.append(Maximum(float(gains[i]), gap.top, middle, float(w[gap.bound]), neighbours, open_end))
     return found
+
+
+def _forbidden(across: Array, s: Array, scale: Array, radius: float) -> tuple[Array, Array]:
+    """Return the ends of the forbidden intervals of ki, (+-sqrt(R^2 - across^2) - s) scale; inf, -inf where none is."""
+    squares = radius**2 - across * across
+    half = np.sqrt(np.maximum(squares, 0.0))
+    high, low = (half - s) * scale, (-half - s) * scale
+    high[squares <= 0.0] = -np.inf
+    low[high <= 0.0] = np.inf
+    return low, high
 
 
 def _gain_grid(loci: Array, r: Array) -> Array:

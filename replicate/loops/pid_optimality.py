@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar, nnls, root
+from scipy.optimize import nnls, root
 
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PID
@@ -19,7 +19,6 @@ from replicate.loops.loop import Loop
 from replicate.loops.nyquist_constraints import Constraint, LoopJet
 from replicate.loops.pid_result import ActiveConstraint, PIDDesign, Status
 from replicate.loops.plant import Plant
-from replicate.loops.sensitivity import sensitivity_peak
 from replicate.loops.setpoint_weights import pid_setpoint_weight
 
 Array = NDArray[np.float64]
@@ -29,6 +28,7 @@ TOUCHING_FIRST = 100.0  # weight of a constraint's value against its gradient wh
 LOST = 0.02  # of ki, between a point on the grid and the optimum near it
 MOST_EVALUATIONS = 500  # of the optimality system: from a good start it converges in a few dozen
 FEASIBLE = 2e-9
+ZOOMS, FINER = 5, np.linspace(0.0, 1.0, 17)  # steps and points between two frequencies in which a minimum is found
 SAME_TOUCH = 0.06  # touches closer than this relative distance in frequency are one
 
 
@@ -39,6 +39,7 @@ class GridProblem:
         self.plant = plant
         self.circle = circle
         self.constraints = constraints
+        self._last: tuple[tuple[float, ...], Loop | None] = ((), None)
         w = design_grid(plant)
         self.grids = []
         for constraint in constraints:
@@ -51,10 +52,11 @@ class GridProblem:
         self.edge = abs(float(plant.num[0])) if first_order else 0.0
         self.largest_kd = (circle.center - circle.radius) / self.edge if first_order else float("inf")
 
-    def values(self, index: int, x: Array) -> tuple[Array, Array]:
-        """Return values and gradients of a constraint on its grid, squashed to within -1 and 1."""
+    def values(self, index: int, x: Array, grid: LoopJet | None = None) -> tuple[Array, Array]:
+        """Return values and gradients of a constraint on its grid or a part of it, squashed to within -1 and 1."""
         constraint = self.constraints[index]
-        value, gradient = self.grids[index].values(constraint.kind, self.circle, x, constraint.margin)
+        grid = self.grids[index] if grid is None else grid
+        value, gradient = grid.values(constraint.kind, self.circle, x, constraint.margin)
         # far from zero the exact size does not matter, and large numbers would only harm the quadratic subproblem
         squash = 1.0 / (1.0 + np.abs(value))
         return value * squash, gradient * (squash**2)[:, None]
@@ -65,10 +67,18 @@ class GridProblem:
         slope = -2.0 * distance * self.edge * np.sign(x[2]) / self.circle.radius**2
         return distance**2 / self.circle.radius**2 - 1.0, np.array([0.0, 0.0, slope])
 
+    def loop(self, x: Array) -> Loop:
+        """Return the loop of gains (k, ki, kd); that of the last gains is kept."""
+        key = tuple(x.tolist())
+        if key != self._last[0]:
+            self._last = key, Loop(self.plant, PID(*key))
+        assert self._last[1] is not None  # noqa: S101  -- just made
+        return self._last[1]
+
     def is_stable(self, x: Array) -> bool:
         """Whether gains (k, ki, kd) give a stable loop."""
         try:
-            return Loop(self.plant, PID(*x)).is_stable()
+            return self.loop(x).is_stable()
         except LoopError:
             return False
 
@@ -178,10 +188,10 @@ class GridProblem:
         if x[1] <= 0.0:
             return False
         try:
-            loop = Loop(self.plant, PID(*x))
+            loop = self.loop(x)
             if not loop.is_stable():
                 return False
-            inverse = sensitivity_peak(loop.transfer, loop.poles(), self.circle.center)
+            inverse = loop.closest_approach(self.circle.center)
         except LoopError:
             return False
         if inverse.value * self.circle.radius > 1.0 + tolerance:
@@ -193,24 +203,24 @@ class GridProblem:
     def _lowest(self, index: int, x: Array) -> float:
         """Return the smallest value of a constraint on its range, polished between grid points."""
         constraint, w = self.constraints[index], self.grids[index].w
-
-        def value(log_w: float) -> float:
-            jet = LoopJet.of(self.plant, np.array([np.exp(log_w)]))
-            return float(jet.values(constraint.kind, self.circle, x, constraint.margin)[0][0])
-
         values = self.grids[index].values(constraint.kind, self.circle, x, constraint.margin)[0]
         lowest = float(values.min())
         inner = np.nonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]) & (values[1:-1] < 0.05))[0] + 1
-        for i in inner:
-            found = minimize_scalar(
-                value, bounds=(np.log(w[i - 1]), np.log(w[i + 1])), method="bounded", options={"xatol": 1e-10}
-            )
-            lowest = min(lowest, float(found.fun))
+        left, right = np.log(w[inner - 1]), np.log(w[inner + 1])
+        for _ in range(ZOOMS if inner.size else 0):
+            # all valleys at once: the lowest of some points, and from there between its neighbours
+            points = left[:, None] + (right - left)[:, None] * FINER
+            jet = LoopJet.of(self.plant, np.exp(points).ravel())
+            fine = jet.values(constraint.kind, self.circle, x, constraint.margin)[0].reshape(points.shape)
+            at = np.clip(np.argmin(fine, axis=1), 1, FINER.size - 2)
+            row = np.arange(inner.size)
+            lowest = min(lowest, float(fine.min()))
+            left, right = points[row, at - 1], points[row, at + 1]
         return lowest
 
     def _design(self, x: Array, active: tuple[ActiveConstraint, ...], status: Status) -> PIDDesign:
         k, ki, kd = (float(v) for v in x)
-        peak = Loop(self.plant, PID(k, ki, kd)).complementary_peak()
+        peak = self.loop(x).complementary_peak()
         b = pid_setpoint_weight(PID(k, ki, kd), peak.frequency, peak.value)
         touching = [part.frequency for part in active if part.kind == "sensitivity"]
         return PIDDesign(k, ki, kd, b, min(touching, default=float("nan")), active, status)

@@ -26,6 +26,9 @@ SLACKS = (1e-4, 1e-3)  # distance that a climb keeps from the constraints, which
 FINE = 6  # grid frequencies for each, where the shape is followed closely
 MOST_MAPS, LARGER = 3, 10.0  # how often, and by how much, a map is made larger
 DENSITIES = (1, 3)  # of the map, and of the one that is made if the first shows nothing
+THIN, VALLEY = 3, 2  # every third frequency is seen by a search, and these on each side of a valley
+ROUNDS = 3  # how often a search sees more
+SAME = 1e-4  # relative difference of gains below which two searches have found the same point
 SUMMITS = 4  # starts taken from the map of feasible gains
 RUNAWAY = 1e5  # gains this many times the start's: the search has left the problem
 
@@ -35,6 +38,7 @@ class Search:
 
     def __init__(self, problem: GridProblem) -> None:
         self.problem = problem
+        self._seen = [np.arange(grid.w.size) % THIN == 0 for grid in problem.grids]
 
     @cached_property
     def _jets(self) -> list[tuple[Kind, LoopJet]]:
@@ -85,6 +89,7 @@ class Search:
         Two that agree settle it, if no summit is left that is higher.
         """
         best: PIDDesign | None = None
+        self._finished: list[tuple[Array, PIDDesign | None]] = []
         left = list(heights)
         for where in [*heights[:1], *starts[:1], *heights[1:], *starts[1:]]:
             if isinstance(where, Summit):
@@ -120,7 +125,14 @@ class Search:
     def climbed(self, x: Array) -> PIDDesign | None:
         """Return the design to which a search from gains ``x`` leads."""
         point = self.climb(x)
-        return None if point is None else self.problem.finish(point)
+        if point is None:
+            return None
+        for known, design in self._finished:
+            if np.all(np.abs(point - known) <= SAME * np.abs(known)) and point[1] <= known[1] * (1.0 + SAME**2):
+                return design
+        design = self.problem.finish(point)
+        self._finished.append((point, design))
+        return design
 
     def climb(self, x: Array) -> Array | None:
         """Search again from what was found until ki no longer grows: a single run may stop short on a ridge."""
@@ -138,29 +150,66 @@ class Search:
         return best
 
     def _search(self, x: Array) -> Array | None:
-        """Return a local maximum on the grid by sequential quadratic programming, or None if it ends infeasible."""
+        """Return a local maximum on the grid, or None if the search ends infeasible.
+
+        Few frequencies limit a design: the search sees every third one and the valleys of the constraints, and those
+        that turn out to be violated.
+        """
+        point = x
+        for _ in range(ROUNDS):
+            self._seen = [part | self._valleys(i, point) for i, part in enumerate(self._seen)]
+            grids = [grid.at(part) for grid, part in zip(self.problem.grids, self._seen, strict=True)]
+            found = self._climbed(point, grids)
+            if found is None:
+                break
+            if self._lowest(found) >= -NEARLY:
+                return found
+            point = found
+        found = self._climbed(x, self.problem.grids)
+        return None if found is None or self._lowest(found) < -NEARLY else found
+
+    def _lowest(self, x: Array) -> float:
+        return min(float(self.problem.values(i, x)[0].min()) for i in range(len(self.problem.grids)))
+
+    def _valleys(self, index: int, x: Array) -> NDArray[np.bool_]:
+        """Return which frequencies lie in a valley of a constraint's value."""
+        with np.errstate(all="ignore"):
+            value = self.problem.values(index, x)[0]
+        padded = np.concatenate([[np.inf], value, [np.inf]])
+        low = np.nonzero((value <= padded[:-2]) & (value <= padded[2:]))[0]
+        near = np.zeros(value.size, dtype=bool)
+        near[np.clip(low[:, None] + np.arange(-VALLEY, VALLEY + 1), 0, value.size - 1)] = True
+        return near
+
+    def _climbed(self, x: Array, grids: Sequence[LoopJet]) -> Array | None:
+        """Return where sequential quadratic programming leads to, seeing some frequencies only."""
         problem = self.problem
         frequency = abs(x[1] / x[0]) if x[0] else 1.0
         scale = np.array([max(abs(x[0]), 1e-3 * x[1]), x[1], max(x[2], 0.3 * abs(x[0]) / max(frequency, 1e-12))])
 
         limit = problem.largest_kd / scale[2]
+        known: dict[bytes, tuple[Array, Array]] = {}
 
-        def values(z: Array) -> Array:
-            return np.concatenate([problem.values(i, z * scale)[0] for i in range(len(problem.grids))])
-
-        def gradients(z: Array) -> Array:
-            return np.concatenate([problem.values(i, z * scale)[1] * scale for i in range(len(problem.grids))])
+        def constraints(z: Array) -> tuple[Array, Array]:
+            # asked for values and for gradients at the same point
+            if z.tobytes() not in known:
+                known.clear()
+                parts = [problem.values(i, z * scale, grid) for i, grid in enumerate(grids)]
+                known[z.tobytes()] = np.concatenate([p[0] for p in parts]), np.concatenate([p[1] for p in parts])
+            return known[z.tobytes()]
 
         with np.errstate(all="ignore"):
             result = minimize(  # type: ignore[call-overload]  # the stubs want exact dict types, not literals
                 lambda z: -z[1],
                 x / scale,
                 jac=lambda _: np.array([0.0, -1.0, 0.0]),
-                constraints={"type": "ineq", "fun": values, "jac": gradients},
+                constraints={
+                    "type": "ineq", "fun": lambda z: constraints(z)[0], "jac": lambda z: constraints(z)[1] * scale
+                },
                 method="SLSQP",
                 bounds=None if np.isinf(limit) else [(None, None), (None, None), (-limit, limit)],
                 options={"maxiter": 100, "ftol": 1e-11},
-            )
-            if not np.all(np.abs(result.x) < RUNAWAY) or np.min(values(result.x)) < -NEARLY:
+            )  # fmt: skip
+            if not np.all(np.abs(result.x) < RUNAWAY) or np.min(constraints(result.x)[0]) < -NEARLY:
                 return None
         return np.asarray(result.x * scale)

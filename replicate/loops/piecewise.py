@@ -6,6 +6,7 @@ nothing is read from a sample grid. Samples serve only to find the pieces worth 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cached_property
 from typing import Self
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from numpy.typing import ArrayLike, NDArray
 
-from replicate.loops import chebyshev, checks
+from replicate.loops import chebyshev, checks, series_roots
 from replicate.loops.errors import LoopError, NotSettledError
 from replicate.loops.peaks import Peak
 
@@ -180,6 +181,12 @@ class Piecewise:
     def _samples(self) -> Array:
         return self.coefficients @ chebyshev.evaluation(self.degree, SAMPLES)
 
+    @property
+    def _excess(self) -> float:
+        """How far a polynomial may exceed its samples, as a fraction of their range (Ehlich and Zeller, 1964)."""
+        degree = min(self.degree, SAMPLES - 4)
+        return 0.5 / math.cos(0.5 * math.pi * degree / (SAMPLES - 1)) - 0.5
+
     def _time(self, piece: int, x: float) -> float:
         return float(self.breaks[piece] + 0.5 * (x + 1.0) * self._lengths[piece])
 
@@ -194,41 +201,40 @@ class Piecewise:
     def _extreme(self, sign: float) -> Peak:
         samples = sign * self._samples
         highest = samples.max(axis=1)
-        margin = MARGIN * float(np.ptp(self._samples))
-        # only pieces whose neighbourhood of samples comes close to the top can hold the extremum
-        spread = np.minimum(np.max(np.abs(np.diff(samples, axis=1)), axis=1), margin)
-        candidates = np.nonzero(highest + spread >= highest.max())[0]
+        scale = float(np.max(np.abs(self._samples)))
+        reserve = self._excess * (highest - samples.min(axis=1))
+        candidates = np.nonzero(highest + reserve >= highest.max())[0]
         best = Peak(-np.inf, float("nan"))
         # the settled tail of a slow loop is thousands of pieces that are constant to rounding: their samples say it all
-        flat = np.ptp(self._samples[candidates], axis=1) <= FLAT * float(np.max(np.abs(self._samples)))
+        flat = np.ptp(samples[candidates], axis=1) <= FLAT * scale
         if flat.any():
             tail = candidates[flat]
             # of values that are one to rounding the first counts, from the beginning of its piece on
-            same = highest[tail] >= highest[tail].max() - FLAT * float(np.max(np.abs(self._samples)))
+            same = highest[tail] >= highest[tail].max() - FLAT * scale
             place = int(tail[np.argmax(same)])
             best = Peak(float(highest[place]), self._time(place, -1.0))
-        for value, time in self._summits(candidates[~flat], sign, highest.max() - margin):
-            if sign * value > best:
-                best = Peak(sign * value, time)
+            candidates = candidates[~flat]
+        for value, time in self._summits(samples, candidates, sign, highest.max() - reserve[candidates]):
+            if value > best:
+                best = Peak(value, time)
         return Peak(sign * float(best), best.time)
 
-    def _summits(self, pieces: NDArray[np.intp], sign: float, level: float) -> list[tuple[float, float]]:
-        """Return (value, time) of the local extrema in some pieces whose samples reach a level, ends included."""
-        samples, nodes = sign * self._samples[pieces], chebyshev.nodes(SAMPLES - 1)
-        padded = np.pad(samples, ((0, 0), (1, 1)), constant_values=-np.inf)
-        top = (samples >= padded[:, :-2]) & (samples >= padded[:, 2:]) & (samples >= level)
+    def _summits(
+        self, samples: Array, pieces: NDArray[np.intp], sign: float, level: Array
+    ) -> list[tuple[float, float]]:
+        """Return (sign * value, time) of the maxima in some pieces whose samples reach a level, ends included."""
+        part, nodes = samples[pieces], chebyshev.nodes(SAMPLES - 1)
+        top = part >= level[:, None]
+        top[:, 1:] &= part[:, 1:] >= part[:, :-1]
+        top[:, :-1] &= part[:, :-1] >= part[:, 1:]
         rows, places = np.nonzero(top)
-        series = self.coefficients[pieces[rows]]
-        slopes = sign * (series @ chebyshev.differentiation(self.degree))
-        left, right = nodes[np.maximum(places - 1, 0)], nodes[np.minimum(places + 1, SAMPLES - 1)]
-        inside = (chebyshev.evaluate(slopes, left) > 0.0) & (chebyshev.evaluate(slopes, right) < 0.0)
-        x = nodes[places].copy()
-        if inside.any():
-            x[inside] = chebyshev.bracketed_roots(slopes[inside], left[inside], right[inside])
-        values = np.maximum(sign * chebyshev.evaluate(series, x), samples[rows, places])
-        return [
-            (sign * float(v), self._time(int(piece), at)) for v, piece, at in zip(values, pieces[rows], x, strict=True)
-        ]
+        series = sign * self.coefficients[pieces[rows]].T
+        x = series_roots.maxima(series, nodes[np.maximum(places - 1, 0)], nodes[np.minimum(places + 1, SAMPLES - 1)])
+        reached, sampled = cheb.chebval(x, series, tensor=False), part[rows, places]
+        # at rounding level the polynomial and its sample differ by nothing
+        inner = reached > sampled
+        values, x = np.where(inner, reached, sampled), np.where(inner, x, nodes[places])
+        return [(float(v), self._time(int(piece), at)) for v, piece, at in zip(values, pieces[rows], x, strict=True)]
 
     def peak(self) -> Peak:
         """Return the largest value on [0, horizon]; its ``.time`` is where it is reached."""

@@ -7,7 +7,6 @@ A `Plant` made by its constructor is rational times one dead time. `Plant.from_f
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from math import factorial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
 from replicate.loops.plant_views import PlantViews
+from replicate.loops.polynomials import horner, horner_with_slope, taylor
 
 if TYPE_CHECKING:
     import control
@@ -172,7 +172,7 @@ class Plant(PlantViews):
     def delay_free(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the part without (its shortest) dead time at complex ``s``."""
         s = np.asarray(s, dtype=complex)
-        return quotient(np.polyval(self.num, s), np.polyval(self.den, s))
+        return quotient(horner(self.num.tolist(), s), horner(self.den.tolist(), s))
 
     def __call__(self, s: ArrayLike) -> ComplexArray:
         """Evaluate G(s), dead time exact, at complex ``s`` of any shape: ``inf`` at a pole, ``nan`` at infinity."""
@@ -187,10 +187,8 @@ class Plant(PlantViews):
             Complex frequencies, any shape.
         """
         s = np.asarray(s, dtype=complex)
-        rational = np.polyval(np.polyder(self.num), s) / np.polyval(self.num, s) - np.polyval(
-            np.polyder(self.den), s
-        ) / np.polyval(self.den, s)
-        return np.asarray(rational - self.dead_time)
+        (n, n_slope), (d, d_slope) = (horner_with_slope(part.tolist(), s) for part in (self.num, self.den))
+        return np.asarray(n_slope / n - d_slope / d - self.dead_time)
 
     def taylor(self, s: ComplexArray, order: int) -> ComplexArray:
         """Return the Taylor coefficients of the part without dead time, shape (order + 1, len(s)).
@@ -204,11 +202,7 @@ class Plant(PlantViews):
         """
         from replicate.loops.jets import series_quotient
 
-        def series(polynomial: Array) -> ComplexArray:
-            rows = [np.polyval(np.polyder(polynomial, n), s) / factorial(n) for n in range(order + 1)]
-            return np.array(rows, dtype=complex)
-
-        return series_quotient(series(self.num), series(self.den))
+        return series_quotient(taylor(self.num.tolist(), s, order), taylor(self.den.tolist(), s, order))
 
     # ---- properties -----------------------------------------------------------------------------------------------
 
@@ -265,6 +259,7 @@ class Plant(PlantViews):
             a[0] = -self.den[1:]
             a[1:, :-1] += np.eye(order - 1)
             b[0] = 1.0
+        if order > 1:
             _, (scale, _) = scipy.linalg.matrix_balance(a, permute=False, separate=True)
             a, b, c = a * scale[None, :] / scale[:, None], b / scale, c * scale
         return a, b, c, feedthrough

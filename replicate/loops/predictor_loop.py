@@ -124,13 +124,7 @@ class PredictorLoop(Loop):
         moved = poles.rightmost_poles(self._together, self._primary, self._whole, count=count)
         return poles.merged(moved, self._hidden, count)
 
-    @cached_property
-    def _poles(self) -> ComplexArray:
-        return self._found(4)
-
-    def poles(self, count: int = 4) -> ComplexArray:
-        """Return up to ``count`` rightmost closed-loop poles as `Loop.poles` does, hidden ones included."""
-        return np.asarray(self._found(checks.whole("the number of poles", count)) / self._units.time)
+    _proven = None  # hidden poles belong to the loop, too
 
     @property
     def _longest(self) -> float:

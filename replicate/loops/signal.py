@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev, checks
+from replicate.loops import chebyshev, checks, series_roots
 from replicate.loops.errors import LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.peaks import Peak
 from replicate.loops.piecewise import MARGIN, SAMPLES, Piecewise
@@ -207,7 +208,7 @@ class Signal(SignalViews, Piecewise):
         order = np.lexsort((points, owners))
         owners, points = owners[order], points[order]
         running = np.asarray(cheb.chebint(weighted, axis=1), dtype=float)
-        values = chebyshev.evaluate(running[owners], points) * half[owners]
+        values = series_roots.evaluate(running[owners].T, points) * half[owners]
         same = owners[1:] == owners[:-1]
         return total + float(np.sum(np.abs(np.diff(values))[same]))
 
@@ -226,10 +227,28 @@ class Signal(SignalViews, Piecewise):
         rows, columns = rows[clear], columns[clear]
         nodes = chebyshev.nodes(SAMPLES - 1)
         owners = pieces[rows]
-        found = chebyshev.bracketed_roots(self._error[owners], nodes[columns], nodes[columns + 1])
+        found = series_roots.roots(
+            self._error[owners].T, nodes[columns], nodes[columns + 1], part[rows, columns], part[rows, columns + 1]
+        )
         slow = [(piece, chebyshev.real_roots(self._error[piece])) for piece in pieces[hidden]]
         owners = np.concatenate([owners, *(np.full(roots.size, piece, dtype=np.intp) for piece, roots in slow)])
         return owners, np.concatenate([found, *(roots for _, roots in slow)])
+
+
+@dataclass(frozen=True)
+class Response:
+    """Output and control signal of one experiment.
+
+    Attributes
+    ----------
+    output
+        The plant output y.
+    control
+        The control signal u.
+    """
+
+    output: Signal
+    control: Signal
 
 
 def _times_argument(series: Array, middle: Array, half: Array) -> Array:

@@ -15,7 +15,9 @@ Reference: Michiels and Niculescu, "Stability, Control, and Computation for Time
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import cmath
+import math
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -24,7 +26,7 @@ from scipy.optimize import brentq
 
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
-from replicate.loops.loop_transfer import LoopTransfer, roots_of
+from replicate.loops.loop_transfer import LoopTransfer
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -33,6 +35,8 @@ LARGEST_TURN = 0.8  # rad between neighbouring points; anything below pi/2 ident
 ON_AXIS = 1e-14  # relative distance from the axis at which a root is on it to rounding
 DEEPEST = 60  # bisections of one interval before a zero is taken to lie on the axis
 TOUCHING = 1e-13  # |1 + L| at a gain crossover at which a pole is on the axis to rounding
+CLOSED_FORM = 3  # coefficients of D up to which the crossovers are roots of a quadratic in w^2
+APART = 1e-3  # relative distance of crossovers that are no double root
 PER_DECADE = 30  # of the grid on which gain crossovers are checked
 ARC_POINTS = 33
 
@@ -79,35 +83,39 @@ def is_stable(transfer: LoopTransfer) -> bool:
 
 def _from_crossovers(transfer: LoopTransfer) -> int:
     """Return the number of unstable poles of a rational loop with dead time."""
-    poles, zeros = roots_of(transfer.den), roots_of(transfer.num)
     if transfer.num.size == 0:
+        poles = transfer.open_loop_poles
         return int(np.sum(poles.real >= -ON_AXIS * np.abs(poles)))
     if transfer.den[-1] + transfer.num[-1] == 0.0:
         return 1
-    crossovers = _all_crossovers(transfer)
-    if crossovers.size and np.min(np.abs(1.0 + transfer(1j * crossovers))) < TOUCHING:
+    poles, zeros = transfer.open_loop_poles.tolist(), transfer.zeros.tolist()
+    sign = math.pi if transfer.num[0] < 0.0 else 0.0
+    crossovers = _all_crossovers(transfer).tolist()
+    edges: list[tuple[float, complex]] = [(0.0, _at_rest(transfer))]
+    edges += [(w, complex(transfer(complex(0.0, w)))) for w in crossovers]
+    if any(abs(1.0 + value) < TOUCHING for _, value in edges[1:]):
         return 1
-    sign = np.pi if transfer.num[0] < 0.0 else 0.0
 
-    def argument(w: float, small: bool) -> float:
+    def argument(w: float, value: complex, small: bool) -> float:
         if small:
-            return _argument(poles, w) + _principal(1.0 + transfer(1j * w)) if w < np.inf else 0.5 * np.pi * poles.size
-        inverse = 1.0 / complex(transfer(1j * w)) if w else _inverse_at_rest(transfer)
-        return sign + _argument(zeros, w) - w * transfer.dead_time + _principal(1.0 + inverse)
+            return _argument(poles, w) + cmath.phase(1.0 + value)
+        return sign + _argument(zeros, w) - w * transfer.dead_time + cmath.phase(1.0 + 1.0 / value)
 
-    edges = [0.0, *crossovers.tolist(), np.inf]
     change = 0.0
-    for low, high in pairwise(edges):
-        middle = (low * high) ** 0.5 if low and high < np.inf else 0.5 * high if high < np.inf else 2.0 * low or 1.0
-        small = abs(complex(transfer(1j * middle))) < 1.0
-        change += argument(high, small) - argument(low, small)
-    return max(0, round(0.5 * poles.size - change / np.pi))
+    for (low, at_low), (high, at_high) in pairwise(edges):
+        small = abs(complex(transfer(complex(0.0, math.sqrt(low * high) or 0.5 * high)))) < 1.0
+        change += argument(high, at_high, small) - argument(low, at_low, small)
+    # beyond the last crossover |L| stays below one
+    change += 0.5 * math.pi * len(poles) - argument(*edges[-1], small=True)
+    return max(0, round(0.5 * len(poles) - change / math.pi))
 
 
 def _all_crossovers(transfer: LoopTransfer) -> Array:
     """Return all gain crossovers; those that the roots of an ill-conditioned polynomial miss are found on a grid."""
     roots = transfer.gain_crossovers
     roots = roots[np.isfinite(roots) & (roots > 0.0)]
+    if transfer.den.size <= CLOSED_FORM and np.all(np.diff(roots) > APART * roots[1:]):
+        return roots
     corners = np.concatenate([np.abs(transfer.corner_frequencies), roots])
     if corners.size == 0:
         return roots
@@ -130,20 +138,16 @@ def _all_crossovers(transfer: LoopTransfer) -> Array:
     return np.unique(found)
 
 
-def _argument(roots: ComplexArray, w: float) -> float:
+def _argument(roots: Sequence[complex], w: float) -> float:
     """Return the argument of the product of i w - root, continuous in w >= 0."""
-    right = roots.real > 0.0
-    left_sum = np.sum(np.angle(1j * w - np.where(right, -1.0, roots)), where=~right)
-    right_sum = np.sum(np.pi + np.angle(np.where(right, roots, 1.0) - 1j * w), where=right)
-    return float(left_sum + right_sum)
+    at = complex(0.0, w)
+    turns = [cmath.phase(at - root) if root.real <= 0.0 else math.pi + cmath.phase(root - at) for root in roots]
+    return math.fsum(turns)
 
 
-def _principal(value: object) -> float:
-    return float(np.angle(complex(value)))  # type: ignore[call-overload]
-
-
-def _inverse_at_rest(transfer: LoopTransfer) -> complex:
-    return complex(transfer.den[-1] / transfer.num[-1])
+def _at_rest(transfer: LoopTransfer) -> complex:
+    """Return L(0), or a number too large for its inverse to count."""
+    return complex(transfer.num[-1] / transfer.den[-1]) if transfer.den[-1] else complex(np.inf)
 
 
 def argument_change(f: Callable[[ComplexArray], ComplexArray], path: ComplexArray) -> float | None:

@@ -6,6 +6,7 @@ years, in volts or in microvolts. Both units are powers of two: the change of un
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -30,7 +31,7 @@ class Units:
             frequency = _mean(_controller_corners(controller)) or _mean(_crossover(plant, controller))
         time = 1.0 if frequency is None else _power_of_two(1.0 / frequency)
         with np.errstate(all="ignore"):
-            gain = float(np.abs(plant.delay_free(np.array([1j / time]))[0]))
+            gain = float(np.abs(plant.delay_free(np.array([1j / time])))[0])
         if not (np.isfinite(gain) and gain > 0.0):
             gain = 1.0 / abs(controller.k) if controller is not None and controller.k else 1.0
         return cls(time, _power_of_two(gain))
@@ -73,10 +74,12 @@ def _corners(plant: Plant) -> list[float]:
     found = []
     for part in plant.parts:
         for polynomial in (part.num, part.den):
-            trimmed = np.trim_zeros(polynomial, "b")
-            degree = trimmed.size - 1
+            coefficients = polynomial.tolist()
+            while not coefficients[-1]:
+                coefficients.pop()
+            degree = len(coefficients) - 1
             if degree:  # the product of the roots needs no roots
-                size = np.log2(np.abs(trimmed[-1])) - np.log2(np.abs(trimmed[0]))
+                size = math.log2(abs(coefficients[-1])) - math.log2(abs(coefficients[0]))
                 found += [float(np.exp2(size / degree))] * degree
         if part.dead_time:
             found.append(1.0 / part.dead_time)
@@ -105,9 +108,9 @@ def _crossover(plant: Plant, controller: PID) -> list[float]:
 
 
 def _mean(frequencies: Iterable[float]) -> float | None:
-    logs = [np.log2(f) for f in frequencies if np.isfinite(f) and f > 0.0]
-    return float(np.exp2(np.mean(logs))) if logs else None
+    logs = [math.log2(f) for f in frequencies if 0.0 < f < math.inf]
+    return float(np.exp2(math.fsum(logs) / len(logs))) if logs else None
 
 
 def _power_of_two(value: float) -> float:
-    return float(np.exp2(np.round(np.log2(value))))
+    return float(np.exp2(round(math.log2(value))))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops import chebyshev
-from replicate.loops.sweep.batch_roots import DEGREE
+from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 
 Array = NDArray[np.float64]

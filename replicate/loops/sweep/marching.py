@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from replicate.loops import chebyshev
 from replicate.loops.chain import Chain, build_chain
 from replicate.loops.method_of_steps import piece_map
-from replicate.loops.sweep.batch_roots import DEGREE
+from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.last_mode import LastModes, last_modes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 

@@ -9,8 +9,9 @@ from typing import Any
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
-from replicate.loops.loop import Loop, Response
+from replicate.loops.loop import Loop
 from replicate.loops.plant import Plant
+from replicate.loops.signal import Response
 from replicate.loops.sweep.metric_names import LOAD, MARGINS, OF_A_RESPONSE, OF_THE_LOOP, POLE, STABLE
 
 UNSTABLE = "the loop is unstable"

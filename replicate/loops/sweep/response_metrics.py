@@ -11,10 +11,10 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
+from replicate.loops import chebyshev, series_roots
 from replicate.loops.signal import APPROACH, ARRIVAL, ROUNDING
-from replicate.loops.sweep import batch_roots
-from replicate.loops.sweep.batch_roots import DEGREE
+from replicate.loops.sweep import block_series
+from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.marching import Responses
 
 Array = NDArray[np.float64]
@@ -95,9 +95,9 @@ class ResponseMetrics:
         values = self._gathered(piece, column)
         top = np.argmax(values, axis=0)
         nodes = chebyshev.nodes(DEGREE)
-        series = batch_roots.series(values)
-        x = batch_roots.maxima(series, nodes[np.maximum(top - 1, 0)], nodes[np.minimum(top + 1, DEGREE)])
-        reached, at_node = batch_roots.evaluate(series, x), values[top, np.arange(top.size)]
+        series = block_series.series(values)
+        x = series_roots.maxima(series, nodes[np.maximum(top - 1, 0)], nodes[np.minimum(top + 1, DEGREE)])
+        reached, at_node = series_roots.evaluate(series, x), values[top, np.arange(top.size)]
         # at rounding level the polynomial and its node differ by nothing
         inner = reached > at_node
         reached, x = np.where(inner, reached, at_node), np.where(inner, x, nodes[top])
@@ -148,10 +148,10 @@ class ResponseMetrics:
         while column.size:
             piece = last - np.argmax(outside[::-1, column], axis=0)
             dense = self._gathered(piece, column)
-            series, nodes = batch_roots.series(dense), np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], dense.shape)
+            series, nodes = block_series.series(dense), np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], dense.shape)
             size, sign = np.abs(dense), np.sign(dense)
             touching = _summits(size, np.abs(size - width[column]) < MARGIN * np.ptp(dense, axis=0))
-            nodes, dense = batch_roots.sharpened(series, nodes, dense, touching, sign)
+            nodes, dense = block_series.sharpened(series, nodes, dense, touching, sign)
             beyond = np.abs(dense) > width[column]
             some = beyond.any(axis=0)
             at = DEGREE - np.argmax(beyond[::-1], axis=0)
@@ -164,7 +164,7 @@ class ResponseMetrics:
                 before, sides = at[inside], sign[at[inside], inside]
                 part = series[:, inside] * sides
                 part[0] -= width[column[inside]]
-                x = batch_roots.roots(
+                x = series_roots.roots(
                     part, nodes[before, inside], nodes[before + 1, inside],
                     sides * dense[before, inside] - width[column[inside]],
                     sides * dense[before + 1, inside] - width[column[inside]],
@@ -188,10 +188,10 @@ class ResponseMetrics:
         column = np.nonzero(reaching.any(axis=0))[0]
         while column.size:
             piece = np.argmax(reaching[:, column], axis=0)
-            series = batch_roots.series(self._gathered(piece, column))
-            dense = batch_roots.samples(series)
+            series = block_series.series(self._gathered(piece, column))
+            dense = block_series.samples(series)
             touching = _summits(dense, np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0))
-            nodes, dense = batch_roots.sharpened(series, _dense(column.size), dense, touching, np.ones(dense.shape))
+            nodes, dense = block_series.sharpened(series, _dense(column.size), dense, touching, np.ones(dense.shape))
             beyond = dense >= level[column]
             some, at = beyond.any(axis=0), np.argmax(beyond, axis=0)
             at_start = some & (at == 0)
@@ -201,7 +201,7 @@ class ResponseMetrics:
                 chosen, before = column[inside], at[inside] - 1
                 part = series[:, inside].copy()
                 part[0] -= level[chosen]
-                x = batch_roots.roots(
+                x = series_roots.roots(
                     part, nodes[before, inside], nodes[before + 1, inside],
                     dense[before, inside] - level[chosen], dense[before + 1, inside] - level[chosen],
                 )  # fmt: skip
@@ -261,19 +261,19 @@ class ResponseMetrics:
         turned = sign[1:] != sign[:-1]
         touching[1:] &= ~turned
         touching[:-1] &= ~turned
-        series = batch_roots.series(values)
+        series = block_series.series(values)
         nodes = np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], values.shape)
         if touching.any():
             summits = _summits(-np.abs(values), touching)
-            nodes, values = batch_roots.sharpened(series, nodes, values, summits, -sign)
+            nodes, values = block_series.sharpened(series, nodes, values, summits, -sign)
         negative = values < 0.0
         before, place = np.nonzero(negative[1:] != negative[:-1])
         running = _antiderivative() @ series  # zero at -1
-        x = batch_roots.roots(
+        x = series_roots.roots(
             series[:, place], nodes[before, place], nodes[before + 1, place],
             values[before, place], values[before + 1, place],
         )  # fmt: skip
-        at_root = batch_roots.evaluate(running[:, place], x)
+        at_root = series_roots.evaluate(running[:, place], x)
         sides = np.where(negative[before, place], -2.0, 2.0)
         total = np.where(negative[-1], -1.0, 1.0) * running.sum(axis=0)
         return np.asarray(total + np.bincount(place, weights=sides * at_root, minlength=total.size))
@@ -281,7 +281,7 @@ class ResponseMetrics:
 
 def _dense(count: int) -> Array:
     """Return the dense nodes as columns."""
-    return np.broadcast_to(batch_roots.dense_nodes()[:, None], (batch_roots.DENSE, count))
+    return np.broadcast_to(block_series.dense_nodes()[:, None], (block_series.DENSE, count))
 
 
 def _summits(values: Array, candidates: Flags) -> Flags:
