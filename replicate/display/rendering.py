@@ -26,8 +26,14 @@ from replicate.resources import templates_dir
 
 def html_environment() -> jinja2.Environment:
     """Return the environment of all templates that make HTML: escaped, and with nothing silently empty."""
-    return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(templates_dir()),
+    return _environment(templates_dir())
+
+
+@cache
+def _environment(folder: Path) -> jinja2.Environment:
+    """Return an environment that compiles each template of a folder once; `_BATCH` is that of the page at hand."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(folder),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -35,6 +41,13 @@ def html_environment() -> jinja2.Environment:
         keep_trailing_newline=True,
         finalize=_written,
     )
+    environment.filters |= {
+        "md": _registering(MarkdownBatch.block),
+        "inline": _registering(MarkdownBatch.inline),
+        "plain": _registering(MarkdownBatch.plain),
+        "key": _registering(_key),
+    }
+    return environment
 
 
 def _written(value: Any) -> Any:
@@ -61,7 +74,7 @@ def render(template: str, name: str, **context: Any) -> str:
     """
     batch = MarkdownBatch(name)
     _BATCH.set(batch)
-    page = _page_environment(templates_dir()).get_template(template)
+    page = html_environment().get_template(template)
     text = page.render(
         context,
         words=words,
@@ -77,19 +90,6 @@ def render(template: str, name: str, **context: Any) -> str:
         policy=Markup(_POLICY),  # noqa: S704
     )
     return visible(with_policy(batch.substitute(text).replace(_STYLE, style_sheet(context.get("theme") or {}))))
-
-
-@cache
-def _page_environment(folder: Path) -> jinja2.Environment:  # noqa: ARG001  -- other templates, another environment
-    """Return the environment of all pages, whose templates are compiled once; `_BATCH` is that of the page at hand."""
-    environment = html_environment()
-    environment.filters |= {
-        "md": _registering(MarkdownBatch.block),
-        "inline": _registering(MarkdownBatch.inline),
-        "plain": _registering(MarkdownBatch.plain),
-        "key": _registering(_key),
-    }
-    return environment
 
 
 _BATCH: ContextVar[MarkdownBatch] = ContextVar("batch")

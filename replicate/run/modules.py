@@ -38,7 +38,7 @@ def _is_inner(name: str) -> bool:
     file = getattr(sys.modules.get(name), "__file__", None)
     if file is None or "." in name:
         return False
-    path = os.path.realpath(file)
+    path = _real(file)
     site = next((site for site in _sites() if path.startswith(site + os.sep)), None)
     inside = Path(path).relative_to(site).parts if site is not None else ()
     return len(inside) > 1 and inside[0] != name
@@ -126,6 +126,12 @@ def installed() -> Mapping[str, list[str]]:
 
 
 @cache
+def _real(path: str) -> str:
+    """Return where a path leads; asked for every module with every folder of modules."""
+    return os.path.realpath(path)
+
+
+@cache
 def _sites() -> tuple[str, ...]:
     paths = {sysconfig.get_path("purelib"), sysconfig.get_path("platlib")}
     return tuple(sorted({os.path.realpath(path) for path in paths if path}))
@@ -139,10 +145,10 @@ def distributions_of(name: str) -> tuple[str, ...]:
     """
     file = getattr(sys.modules.get(name), "__file__", None)
     if file is not None:
-        path = os.path.realpath(file)
+        path = _real(file)
         if not path.startswith(_sites()) and "site-packages" not in path and "dist-packages" not in path:
             return ()
-        around = (os.path.realpath(entry) for entry in sys.path if entry)
+        around = (_real(entry) for entry in sys.path if entry)
         beside = max((entry for entry in around if path.startswith(entry + os.sep)), key=len, default="")
         if beside and beside not in _sites():
             return _owners(name.partition(".")[0], beside)
