@@ -71,6 +71,18 @@ class Computing:
                 executor=self.executor,
             )
 
+    def tell_kept(self, papers: Sequence[Paper]) -> None:
+        """Say on standard error that every result was kept, as `recompute` does."""
+        from replicate.run.parallel import Progress
+        from replicate.run.units import units_of
+        from replicate.terminal.console import console
+        from replicate.terminal.progress import progress_on
+
+        units = [unit for paper in papers for one in paper.exhibits.values() for unit in units_of(paper, one)]
+        with progress_on(console(stderr=True), verbose=self.verbose) as progress:
+            for done, unit in enumerate(units, start=1):
+                progress(Progress(done, len(units), unit, from_cache=True))
+
     def kept_texts(self, rooms: Sequence[str], distributions: Sequence[str]) -> KeptTexts:
         """Return what keeps texts that rooms of the framework compute, beside the results of the papers."""
         from replicate.run.kept_texts import KeptTexts

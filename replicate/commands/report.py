@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from replicate.commands.computing import Computing, computing
 from replicate.commands.options import BROKEN, DIFFERS, Accepted, Papers, SingleFile, accepted_folder, exit_with
 from replicate.errors import TemplateError
 from replicate.terminal.streams import echo
+
+if TYPE_CHECKING:
+    from replicate.exhibits import Paper
 
 
 @computing
@@ -24,10 +28,11 @@ def report(
     from replicate.report.pages import build_report, single_page
     from replicate.report.scope import Scope, owner_of
     from replicate.report.site import site_of
+    from replicate.report.standing import keep, texts_of
     from replicate.report.texts import unreadable
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
-    from replicate.terminal.summary import print_summary
+    from replicate.terminal.summary import counts_of, print_summary
     from replicate.whatif import DISTRIBUTIONS, ROOMS, write_whatif
 
     chosen = run.within.papers(papers or ())
@@ -37,6 +42,10 @@ def report(
     in_order = [one.name for one in run.within.known if one.name in {*named, *others}]
     everyone = run.within.papers(in_order) if others else chosen
     about = site_of(run.within.project, bundled=all(run.within.is_bundled(paper.id) for paper in everyone))
+    # What is read below must not be newer than what is said to have been read.
+    texts = "" if papers or single_file or run.no_cache or run.within.broken else texts_of(chosen, about)
+    if texts and _stands(run, chosen, texts):
+        return
     scope = Scope(named, others)
     with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
@@ -56,12 +65,36 @@ def report(
         for path in [path for path in fresh.rglob("*") if path.is_file()]:
             if not scope.renews(path.relative_to(fresh).as_posix()):
                 path.unlink()
+        written = [path.relative_to(fresh) for path in fresh.rglob("*") if path.is_file()]
     outcome = outcome.of(named)
-    print_summary(outcome, console())
+    counts = counts_of(outcome)
+    print_summary(counts, console())
+    if texts and not outcome.broken and not outcome.failures and not outcome.judgement.unreadable:
+        keep(run.folder, chosen, texts, [run.folder / path for path in written], counts, outcome.judgement.unused)
     echo(f"\nreport: {index}")
     for paper in mailed:
         echo(f"in one file: {run.folder / paper.id}.html")
     exit_with(run.within, outcome)
+
+
+def _stands(run: Computing, papers: list[Paper], texts: str) -> bool:
+    """Say what the report says, if there is nothing to write anew; return whether that is so."""
+    from replicate.report.pages import INDEX
+    from replicate.report.standing import standing
+    from replicate.staging import finish_interrupted
+    from replicate.terminal.console import console
+    from replicate.terminal.summary import print_summary
+
+    finish_interrupted(run.folder)
+    found = standing(run.folder, papers, texts)
+    if found is None:
+        return False
+    run.tell_kept(papers)
+    print_summary(found.counts, console())
+    echo(f"\nreport: {run.folder / 'report' / INDEX}")
+    for line in found.unused:
+        echo(f"unused: {line}", err=True)
+    return True
 
 
 @computing
