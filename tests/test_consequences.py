@@ -139,6 +139,12 @@ def test_a_worse_consequence_that_is_declared_stays() -> None:
     assert ranked("1.0", entry, computed=3.3).consequence == "formula"
 
 
+def test_a_number_by_another_definition_upsets_nothing() -> None:
+    entry = LedgerEntry("table-1", ("A",), ("x",), "definition", "Why.")
+    found = ranked("1.0", entry, computed=3.3)  # as a misprint it would upset the ranking
+    assert (found.verdict, found.consequence) == ("discrepant", "none")
+
+
 def test_a_comparison_of_what_is_not_there_is_refused() -> None:
     table = synthetic.paper().exhibits["table-1"]
     assert isinstance(table, Table)

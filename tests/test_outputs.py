@@ -11,7 +11,7 @@ import pandas as pd
 import synthetic
 
 from replicate.display.csv_text import table_text
-from replicate.report.data import EXHIBIT_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, write_outputs
+from replicate.report.data import EXHIBIT_COLUMNS, RANGE_COLUMNS, RESULT_COLUMNS, VERDICT_COLUMNS, write_outputs
 from replicate.staging import staged
 from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
@@ -44,6 +44,8 @@ def test_the_three_lists(tmp_path: Path) -> None:
     assert tuple(results[0]) == RESULT_COLUMNS
     assert tuple(verdicts[0]) == (*VERDICT_COLUMNS, "address")
     assert tuple(exhibits[0]) == EXHIBIT_COLUMNS
+    # the toy paper computes nothing from printed inputs
+    assert (out / "ranges.csv").read_text(encoding="utf-8") == ",".join(RANGE_COLUMNS) + "\n"
     assert results[0] == {
         "paper": "toy",
         "exhibit": "table-1",
@@ -105,7 +107,7 @@ def test_same_results_same_bytes(tmp_path: Path) -> None:
     one, other = written(tmp_path / "1"), written(tmp_path / "2")
     files = {path.relative_to(one): path.read_bytes() for path in one.rglob("*") if path.is_file()}
     assert files == {path.relative_to(other): path.read_bytes() for path in other.rglob("*") if path.is_file()}
-    assert len(files) == 22  # with the manifest; ten of them twice, once inside the report
+    assert len(files) == 24  # with the manifest; eleven of them twice, once inside the report
     assert not any(str(tmp_path).encode() in content for content in files.values())
 
 

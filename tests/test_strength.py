@@ -16,7 +16,7 @@ from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.matches import reading_matches
-from replicate.verdicts.strength import LEVEL, Strength, at_least, strengths
+from replicate.verdicts.strength import LEVEL, Strength, at_least, choices_of, strengths
 from replicate.verdicts.tables import TableJudge
 
 ROWS, COLUMNS = tuple("ABCDEFGH"), ("x", "y", "z")
@@ -88,6 +88,16 @@ def test_alternatives_that_were_tried_weaken_a_match() -> None:
     assert once.chance < often.chance
     assert often.choices == 1000
     assert often.chance == pytest.approx(1.0 - (1.0 - once.chance) ** 1000, rel=1e-9)
+
+
+def test_what_the_text_leaves_open_counts_for_the_first_reading_too() -> None:
+    rng = np.random.default_rng(5)
+    truth = random_table(rng)
+    table = Table("table-1", "table", "T", rows=ROWS, columns=COLUMNS)
+    table.reading(AS_WRITTEN, "R", tried={"definition": 5, "band": 6})(lambda: None)
+    table.reading("other", "R", tried={"definition": 5})(lambda: None)
+    assert [choices_of(table, id) for id in table.readings] == [30, 5]
+    assert judged(truth, [truth])[AS_WRITTEN].choices == 1
 
 
 def test_a_quantity_whose_neighbours_fail_is_not_explained() -> None:

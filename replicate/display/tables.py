@@ -9,11 +9,13 @@ from replicate.display import numbers
 from replicate.display.addresses import trial_address
 from replicate.display.distance import off
 from replicate.display.spanners import Span, spans
+from replicate.display.words import CERTAINTIES
 from replicate.exhibits import Reading, Table
 from replicate.exhibits.conventions import tallies
 from replicate.exhibits.frames import FrameCells
 from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.readings import input_name
 from replicate.exhibits.results import Ranges, TableResult
 from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
@@ -36,6 +38,8 @@ class Value:
         Its range over the printed inputs of the reading, as text; empty if there is none.
     point
         The inputs at which most of the case's cells hold together, as text; empty if there is no range.
+    certainty
+        Why no inputs that round to the print give the print, in words; empty where some do, or there is no range.
     off
         How far the print is off, seen from this value; empty if it is equal or nothing is printed.
     """
@@ -46,6 +50,7 @@ class Value:
     match: Match
     range: str = ""
     point: str = ""
+    certainty: str = ""
     off: str = ""
 
     @property
@@ -246,7 +251,10 @@ def _cell(
         number = cells.numbers.get(key)
         texts = _range(table, result.ranges.get(id), key, printed)
         apart = off(printed, number) if found.kind in {"near", "differs"} else ""
-        values.append(Value(reading, numbers.shown(number, printed), numbers.full(number), found, *texts, apart))
+        certainty = CERTAINTIES.get(judged[id].certainty, "") if id in judged else ""
+        values.append(
+            Value(reading, numbers.shown(number, printed), numbers.full(number), found, *texts, certainty, apart)
+        )
     return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
 
 
@@ -256,7 +264,7 @@ def _range(table: Table, ranges: Ranges | None, key: Key, printed: PrintedValue 
         return "", ""
     low, high = (numbers.shown(end, printed) for end in (ranges.lower[key], ranges.upper[key]))
     point = ranges.points[table.case(*key)]
-    inputs = ", ".join(f"{name} = {numbers.shown(number, None)}" for name, number in point.items())
+    inputs = ", ".join(f"{input_name(name)} = {numbers.shown(number, None)}" for name, number in point.items())
     return (f"{low} to {high}" if low and high else ""), inputs
 
 

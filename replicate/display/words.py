@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from replicate.verdicts.rows import Certainty
+
 
 @dataclass(frozen=True)
 class Word:
@@ -69,6 +71,13 @@ MATCHES = {
     "none": ("", "nothing to compare"),
 }
 """By kind of match: the sign in the table and its name."""
+
+CERTAINTIES: dict[Certainty, str] = {
+    "proof": "none of which gives the print, by proof",
+    "joint-proof": "none of which gives the print and the rest of its case, by proof",
+    "search": "none of which gives the print and the rest of its case, by search",
+}
+"""By what is known of printed inputs that give the print, where none do: what is said of it."""
 
 CAUSES = {
     "misprint": "misprint",

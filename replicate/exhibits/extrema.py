@@ -37,12 +37,12 @@ def largest(f: Callable[[float], float], grid: Array, values: Array | None = Non
     return (float(found.x), -float(found.fun)) if -found.fun > value else (at, value)
 
 
-def smallest(f: Callable[[float], float], grid: Array) -> tuple[float, float]:
+def smallest(f: Callable[[float], float], grid: Array, values: Array | None = None) -> tuple[float, float]:
     """Return where a function is smallest between the ends of a grid, and how small.
 
     Parameters
     ----------
-    f, grid
+    f, grid, values
         As for `largest`; no two minima between neighbouring points.
 
     Examples
@@ -51,5 +51,5 @@ def smallest(f: Callable[[float], float], grid: Array) -> tuple[float, float]:
     >>> round(at, 6), round(value, 6)
     (0.3, 0.0)
     """
-    at, value = largest(lambda x: -f(x), grid)
+    at, value = largest(lambda x: -f(x), grid, None if values is None else -values)
     return at, -value

@@ -33,7 +33,7 @@ def joint_point(search: Search, lower: np.ndarray, upper: np.ndarray, needed: np
         Shape (d,): where first the most needed quantities hold, then the most others, then all of them most clearly.
         The centre wins a tie.
     """
-    target = _Target((lower + upper) / 2, (upper - lower) / 2, needed)
+    target = Target((lower + upper) / 2, (upper - lower) / 2, needed)
     candidates = [search.centre]
     for part, scaled in search.searched():
         where = scaled
@@ -48,7 +48,7 @@ def joint_point(search: Search, lower: np.ndarray, upper: np.ndarray, needed: np
     return candidates[max(range(len(candidates)), key=lambda i: ranks[i])]
 
 
-class _Target:
+class Target:
     """What the quantities should be."""
 
     def __init__(self, middle: np.ndarray, half: np.ndarray, needed: np.ndarray) -> None:
@@ -74,10 +74,10 @@ class _Target:
         return (float(np.floor(self.ranks(values[None])[0])),)
 
 
-def _best(target: _Target, part: Part, scaled: np.ndarray) -> int:
+def _best(target: Target, part: Part, scaled: np.ndarray) -> int:
     return int(np.argmax(target.ranks(part(scaled))))
 
 
-def _best_known(target: _Target, search: Search) -> list[int]:
+def _best_known(target: Target, search: Search) -> list[int]:
     ranks = target.ranks(np.array(search.values))
     return [int(i) for i in np.argsort(-ranks, kind="stable")[:_TRIED]]

@@ -138,6 +138,12 @@ class PrintedValue:
         return min(values) - self.unit / 2, max(values) + self.unit / 2
 
     @property
+    def ends(self) -> tuple[float, float]:
+        """The interval in floating point."""
+        low, high = self.interval
+        return float(low), float(high)
+
+    @property
     def repeating(self) -> bool:
         """Whether it ends with repeating decimals."""
         return "[" in self.statement.text

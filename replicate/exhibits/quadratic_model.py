@@ -28,7 +28,7 @@ _MOST_PARTS = 8
 _CHECKED_AT = 0.5  # of the way to the corners
 _FINENESS = {1: 401, 2: 61, 3: 21, 4: 11}  # points a side on which a model is searched
 _COARSE = 7
-_MOST_INPUTS = 6
+MOST_INPUTS = 6  # whose corners are all evaluated
 
 
 @dataclass(frozen=True)
@@ -108,8 +108,8 @@ class Search:
         ValueError
             If there are more inputs than can be searched.
         """
-        if len(self.centre) > _MOST_INPUTS:
-            msg = f"{len(self.centre)} printed inputs, allowed: at most {_MOST_INPUTS}"
+        if len(self.centre) > MOST_INPUTS:
+            msg = f"{len(self.centre)} printed inputs, allowed: at most {MOST_INPUTS}"
             raise ValueError(msg)
         waiting = [self._part(self.centre, self.half)]
         while waiting:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 from replicate.exhibits.definitions import check_function, check_id, check_texts
+from replicate.exhibits.exclusion import Rule
 from replicate.exhibits.order import module_being_imported
 
 AS_WRITTEN = "as-written"
@@ -30,11 +31,15 @@ class Reading:
     note
         What is assumed and why, in Markdown; may be empty.
     inputs
-        The quantities that the reading takes from the print. Each stands for all numbers that round to it.
+        The places of the numbers that the reading takes from the print (`replicate.exhibits.rounded_inputs`). Each
+        stands for all numbers that round to it.
     inputs_of
-        Those of the cases that take others.
+        Those of the cases that take others. A case without inputs is left out.
     tried
         How many alternatives were tried for each free choice of the reading, by what was chosen.
+    rules_out
+        For a reading with printed inputs, by quantity: says where it certainly is not while the inputs run through a
+        box (`replicate.exhibits.exclusion`).
     module
         The module in which it is defined; set by itself.
     """
@@ -46,7 +51,13 @@ class Reading:
     inputs: tuple[str, ...] = ()
     inputs_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tried: Mapping[str, int] = field(default_factory=dict)
+    rules_out: Mapping[str, Rule] = field(default_factory=dict)
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
+
+    @property
+    def takes_inputs(self) -> bool:
+        """Whether it takes numbers from the print, and gives a range."""
+        return bool(self.inputs or self.inputs_of)
 
     def __post_init__(self) -> None:
         """Check the types that Python does not."""
@@ -54,3 +65,41 @@ class Reading:
         check_id("reading", self.id)
         check_texts(what, title=self.title, note=self.note)
         check_function(what, "what computes it", self.compute)
+
+
+def is_elsewhere(place: str) -> bool:
+    """Say whether an input is printed in another table, or in the text.
+
+    Examples
+    --------
+    >>> is_elsewhere("eq-7:a:value"), is_elsewhere("p=1.6667"), is_elsewhere("w0@first")
+    (True, True, False)
+    """
+    return ":" in place or "=" in place
+
+
+def other_cell(place: str) -> tuple[str, str, str]:
+    """Return exhibit, row and column of an input that is printed in another table.
+
+    Examples
+    --------
+    >>> other_cell("eq-7:case a:value")
+    ('eq-7', 'case a', 'value')
+    """
+    exhibit, _, cell = place.partition(":")
+    row, _, column = cell.rpartition(":")
+    return exhibit, row, column
+
+
+def input_name(place: str) -> str:
+    """Return an input's name where one knows which table is meant.
+
+    Examples
+    --------
+    >>> input_name("k"), input_name("p=1.6667"), input_name("eq-7:a:value"), input_name("fits:rise A:x0")
+    ('k', 'p', 'a', 'rise A x0')
+    """
+    if ":" not in place:
+        return place.partition("=")[0]
+    _, row, column = other_cell(place)
+    return row if column == "value" else f"{row} {column}"

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from replicate.exhibits.claims import Finding
 from replicate.exhibits.frames import FrameCells, read_frame
@@ -16,6 +16,9 @@ from replicate.exhibits.printed import Key
 
 if TYPE_CHECKING:
     import pandas as pd
+
+
+Proof = Literal["alone", "jointly"]
 
 
 @dataclass(frozen=True)
@@ -30,12 +33,17 @@ class Ranges:
         Its value at the point of the case, by (row, column).
     points
         By case: the inputs at which most of its printed quantities hold together, by quantity.
+    proofs
+        By (row, column), of the values that do not hold at that point: what proves that there is none at which they do,
+        neither by themselves nor, ``jointly``, with those of the case that hold. Missing where that is only the outcome
+        of a search.
     """
 
     lower: dict[Key, float] = field(default_factory=dict)
     upper: dict[Key, float] = field(default_factory=dict)
     joint: dict[Key, float] = field(default_factory=dict)
     points: dict[str, dict[str, float]] = field(default_factory=dict)
+    proofs: dict[Key, Proof] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,11 @@
 Where a table prints gains with two digits and, beside them, what follows from the gains, the author computed with more
 digits than he printed. A quantity then has a range, not a value, and the quantities of one case share one point of the
 box of inputs. Both are computed here: the range (`replicate.exhibits.quadratic_model`) and the point at which most of
-the printed quantities of the case hold together (`replicate.exhibits.joint_point`).
+the printed quantities of the case hold together (`replicate.exhibits.joint_point`); for more inputs than a grid can
+cover, both by `replicate.exhibits.many_inputs`.
+
+An input is named by the place of its print: ``k``, the quantity ``k`` of the same case; ``k@first``, that of the case
+``first``; ``eq-7:a:value``, the cell of another table with printed numbers; ``p=1.6667``, a number of the text.
 """
 
 from __future__ import annotations
@@ -11,16 +15,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from replicate.exhibits.conventions import settle
+from replicate.exhibits.exclusion import Rule, excluded
 from replicate.exhibits.joint_point import joint_point
+from replicate.exhibits.many_inputs import ManyInputs
 from replicate.exhibits.matching import match
 from replicate.exhibits.printed import Key, PrintedValue
-from replicate.exhibits.quadratic_model import Search
-from replicate.exhibits.readings import Reading
+from replicate.exhibits.quadratic_model import MOST_INPUTS, Search
+from replicate.exhibits.readings import Reading, is_elsewhere
 from replicate.exhibits.results import Ranges
 from replicate.exhibits.vocabulary import Table
 
@@ -43,7 +50,12 @@ class _Case:
     found: dict[str, float]
 
 
-def compute_reading(table: Table, reading: Reading, printed: Mapping[Key, PrintedValue]) -> tuple[pd.DataFrame, Ranges]:
+def compute_reading(
+    table: Table,
+    reading: Reading,
+    printed: Mapping[Key, PrintedValue],
+    elsewhere: Mapping[str, PrintedValue] = MappingProxyType({}),
+) -> tuple[pd.DataFrame, Ranges]:
     """Compute a reading with printed inputs.
 
     Parameters
@@ -52,6 +64,8 @@ def compute_reading(table: Table, reading: Reading, printed: Mapping[Key, Printe
         The exhibit and a reading of it that has `inputs`.
     printed
         The exhibit's printed values by (row, column).
+    elsewhere
+        Inputs that are printed in other tables or in the text, by place.
 
     Returns
     -------
@@ -69,9 +83,10 @@ def compute_reading(table: Table, reading: Reading, printed: Mapping[Key, Printe
     """
     import pandas as pd
 
-    cases = [found for name in _cases(table) if (found := _case(table, reading, printed, name)) is not None]
+    cases = [found for name in _cases(table) if (found := _case(table, reading, printed, elsewhere, name)) is not None]
     if not cases:
-        msg = f"reading '{reading.id}': no case has all of the inputs {', '.join(reading.inputs)} in print"
+        places = dict.fromkeys([*reading.inputs, *(place for own in reading.inputs_of.values() for place in own)])
+        msg = f"reading '{reading.id}': no case has all of the inputs {', '.join(places)} in print"
         raise ValueError(msg)
     numbers = {table.key(case.name, quantity): number for case in cases for quantity, number in case.found.items()}
     frame = pd.DataFrame(math.nan, index=list(table.rows), columns=list(table.columns))
@@ -89,15 +104,29 @@ def _cases(table: Table) -> tuple[str, ...]:
     return table.columns if table.cases_are_columns else table.rows
 
 
-def _case(table: Table, reading: Reading, printed: Mapping[Key, PrintedValue], name: str) -> _Case | None:
-    """Return a case with what its printed inputs give; ``None`` if one of them is blank."""
-    keys = {}
+def places_elsewhere(reading: Reading) -> list[str]:
+    """Return the places of the inputs of a reading that are not printed in its own table."""
+    places = dict.fromkeys([*reading.inputs, *(place for own in reading.inputs_of.values() for place in own)])
+    return [place for place in places if is_elsewhere(place)]
+
+
+def _case(
+    table: Table,
+    reading: Reading,
+    printed: Mapping[Key, PrintedValue],
+    elsewhere: Mapping[str, PrintedValue],
+    name: str,
+) -> _Case | None:
+    """Return a case with what its printed inputs give; ``None`` if one of them is blank, or it has none."""
+    inputs: dict[str, PrintedValue] = {}
     for place in reading.inputs_of.get(name, reading.inputs):
         quantity, _, other = place.partition("@")
-        keys[place] = table.key(other or name, quantity)
-    if any(key not in printed for key in keys.values()):
+        value = elsewhere[place] if is_elsewhere(place) else printed.get(table.key(other or name, quantity))
+        if value is None:
+            return None
+        inputs[place] = value
+    if not inputs:
         return None
-    inputs = {quantity: printed[key] for quantity, key in keys.items()}
     found = dict(reading.compute(name, {quantity: float(value.value) for quantity, value in inputs.items()}))
     known = table.rows if table.cases_are_columns else table.columns
     unknown = [quantity for quantity in found if quantity not in known]
@@ -129,16 +158,41 @@ def _search(
             return np.full(len(quantities), math.nan)
         return np.array([float(found.get(quantity, math.nan)) for quantity in quantities])
 
-    intervals = np.array([[float(end) for end in value.interval] for value in case.inputs.values()])
+    intervals = np.array([value.ends for value in case.inputs.values()])
     tolerance = [
         _TOLERANCE * float(value.unit) if value else _NO_UNIT * abs(case.found[quantity])
         for value, quantity in zip(prints, quantities, strict=True)
     ]
-    search = Search(function, intervals.mean(axis=1), np.diff(intervals)[:, 0] / 2, np.array(tolerance) + 1e-300)
-    targets = np.array([[float(end) for end in value.interval] if value else [math.nan] * 2 for value in prints])
-    needed = np.array([equal.get(key, False) for key in keys])
-    point = joint_point(search, targets[:, 0], targets[:, 1], needed)
+    centre, half = intervals.mean(axis=1), np.diff(intervals)[:, 0] / 2
+    targets = np.array([value.ends if value else (math.nan, math.nan) for value in prints])
+    wanted = targets[:, 0], targets[:, 1], np.array([equal.get(key, False) for key in keys])
+    search: Search | ManyInputs
+    if len(half) > MOST_INPUTS:
+        search = ManyInputs(function, centre, half)
+        point = search.joint_point(*wanted)
+    else:
+        search = Search(function, centre, half, np.array(tolerance) + 1e-300)
+        point = joint_point(search, *wanted)
     joint = search.at(point)
     for key, low, high, value in zip(keys, *search.range(), joint, strict=True):
         ranges.lower[key], ranges.upper[key], ranges.joint[key] = float(low), float(high), float(value)
     ranges.points[case.name] = dict(zip(case.inputs, map(float, point), strict=True))
+    if reading.rules_out:
+        wanted_ends = {q: value.ends for q, value in zip(quantities, prints, strict=True) if value}
+        _prove(table, reading.rules_out, case, wanted_ends, ranges)
+
+
+def _prove(
+    table: Table, rules: Mapping[str, Rule], case: _Case, targets: Mapping[str, tuple[float, float]], ranges: Ranges
+) -> None:
+    """Add what proves of the values of a case that no inputs give them, where there is such a proof."""
+    box = {name: value.ends for name, value in case.inputs.items()}
+    known = {quantity: targets[quantity] for quantity in rules if quantity in targets}
+    joint = {quantity: ranges.joint[table.key(case.name, quantity)] for quantity in known}
+    held = {quantity: ends for quantity, ends in known.items() if ends[0] <= joint[quantity] <= ends[1]}
+    for quantity in [quantity for quantity in known if quantity not in held]:
+        key, alone = table.key(case.name, quantity), {quantity: known[quantity]}
+        if excluded(rules, case.name, box, alone):
+            ranges.proofs[key] = "alone"
+        elif held and excluded(rules, case.name, box, held | alone):
+            ranges.proofs[key] = "jointly"

@@ -20,6 +20,7 @@ from replicate.exhibits.claims import Claims
 from replicate.exhibits.comparisons import Comparison
 from replicate.exhibits.definitions import check_id, check_lists, check_mappings, check_one_of, check_texts
 from replicate.exhibits.drawn import Figure, FigureKind
+from replicate.exhibits.exclusion import Rule
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
 from replicate.exhibits.printed import USUAL, Key, Near
@@ -205,6 +206,7 @@ class Table:
         inputs: Sequence[str] = (),
         inputs_of: Mapping[str, Sequence[str]] | None = None,
         tried: Mapping[str, int] | None = None,
+        rules_out: Mapping[str, Rule] | None = None,
     ) -> Callable[[Compute], Compute]:
         """Register the decorated function as a reading; the first must be ``as-written``.
 
@@ -216,12 +218,17 @@ class Table:
             Quantities of this table that the reading takes from the print. The function is then called as
             ``compute(case, given)``, with the numbers by quantity in `given`, and returns numbers by quantity. It is
             called for the printed numbers and for others that round to them, and returns nothing for a quantity
-            that it does not compute. ``"w0@first"`` is the quantity ``w0`` of the case ``first``. A case that prints
-            not all of the inputs is left out.
+            that it does not compute. ``"w0@first"`` is the quantity ``w0`` of the case ``first``,
+            ``"eq-7:a:value"`` the cell of another table, ``"p=1.6667"`` a number of the text. A case that prints not
+            all of the inputs is left out.
         inputs_of
             The inputs of single cases where they are others.
         tried
             How many alternatives were tried for each free choice, as ``{"order of the Padé model": 4}``.
+        rules_out
+            For a reading with printed inputs, by quantity: called as ``rule(case, box, ends)`` with an interval for
+            each input, it returns whether the quantity certainly takes no value between the ends anywhere in the box.
+            With it, that a value does not hold for any inputs that round to the print is proven, not only searched.
 
         Raises
         ------
@@ -242,6 +249,7 @@ class Table:
                 tuple(inputs),
                 {case: tuple(others) for case, others in (inputs_of or {}).items()},
                 dict(tried or {}),
+                dict(rules_out or {}),
             )
             return compute
 

@@ -17,7 +17,7 @@ from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.report.columns import COLUMN_COLUMNS, column_rows
 from replicate.report.pages import DATA
-from replicate.verdicts.rows import ExhibitRow, Judgement, ResultRow, VerdictRow
+from replicate.verdicts.rows import ExhibitRow, Judgement, RangeRow, ResultRow, VerdictRow
 
 RESULT_COLUMNS = ("paper", "exhibit", "row", "column", "printed", "reading", "computed", "match")
 VERDICT_COLUMNS = (
@@ -52,6 +52,9 @@ ERRATA_COLUMNS = (
     "informed",
     "answer",
 )
+RANGE_COLUMNS = (
+    "paper", "exhibit", "row", "column", "printed", "reading", "match", "lower", "upper", "certainty",
+)  # fmt: skip
 EXHIBIT_COLUMNS = ("paper", "exhibit", "kind", "title", "status", "reason")
 
 
@@ -107,6 +110,7 @@ def data_files(papers: Sequence[Paper], results: Results, judgement: Judgement) 
         "verdicts.csv": _addressed(judgement.verdicts, VERDICT_COLUMNS, pages),
         "errata.csv": _addressed(errors(judgement.verdicts), ERRATA_COLUMNS, pages),
         "exhibits.csv": _records(judgement.exhibits, EXHIBIT_COLUMNS),
+        "ranges.csv": _records(judgement.ranges, RANGE_COLUMNS),
         "columns.csv": csv_text(COLUMN_COLUMNS, (one for paper in papers for one in column_rows(paper, results))),
     }
     for (paper, exhibit), result in results.items():
@@ -123,7 +127,7 @@ def data_files(papers: Sequence[Paper], results: Results, judgement: Judgement) 
     return {name: text.encode() if isinstance(text, str) else text for name, text in found.items()}
 
 
-def _records(records: Iterable[ResultRow | VerdictRow | ExhibitRow], columns: Sequence[str]) -> str:
+def _records(records: Iterable[ResultRow | VerdictRow | ExhibitRow | RangeRow], columns: Sequence[str]) -> str:
     return csv_text(columns, ([_one_line(getattr(record, name)) for name in columns] for record in records))
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 #: Changes with the form of what is written here.
-SCHEMA = 3
+SCHEMA = 4
 
 _POINT = ("panel", "curve", "x", "y")
 _MOST_SHOWN = 60

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, get_args
 
-from replicate.exhibits.results import Ranges
+from replicate.exhibits.printed import Key
+from replicate.exhibits.results import Proof, Ranges
 
 _NUMBERS = 3  # of a cell: lower, upper, joint
+_PROOFS = get_args(Proof)
 
 
 def ranges_to_data(ranges: Ranges) -> dict[str, Any]:
     """Return ranges as lists and dictionaries."""
     cells = [[*key, ranges.lower[key], ranges.upper[key], ranges.joint[key]] for key in ranges.lower]
-    return {"cells": cells, "points": ranges.points}
+    return {"cells": cells, "points": ranges.points, "proofs": [[*key, proof] for key, proof in ranges.proofs.items()]}
 
 
 def ranges_from_data(data: object) -> Ranges:
@@ -25,14 +27,15 @@ def ranges_from_data(data: object) -> Ranges:
 
     Examples
     --------
-    >>> given = Ranges({("A", "x"): 1.0}, {("A", "x"): 2.0}, {("A", "x"): 1.5}, {"A": {"k": 0.5}})
+    >>> x = ("A", "x")
+    >>> given = Ranges({x: 1.0}, {x: 2.0}, {x: 1.5}, {"A": {"k": 0.5}}, {x: "alone"})
     >>> ranges_from_data(ranges_to_data(given)) == given
     True
     """
-    if not isinstance(data, dict) or set(data) != {"cells", "points"} or not isinstance(data["cells"], list):
-        msg = "ranges have the fields cells and points"
+    if not isinstance(data, dict) or set(data) != {"cells", "points", "proofs"} or not isinstance(data["cells"], list):
+        msg = "ranges have the fields cells, points and proofs"
         raise ValueError(msg)
-    ranges = Ranges(points=_points(data["points"]))
+    ranges = Ranges(points=_points(data["points"]), proofs=_proofs(data["proofs"]))
     for cell in data["cells"]:
         if (
             not isinstance(cell, list)
@@ -54,3 +57,13 @@ def _points(data: object) -> dict[str, dict[str, float]]:
         msg = "the points of ranges are not numbers by case and input"
         raise ValueError(msg)
     return data
+
+
+def _proofs(data: object) -> dict[Key, Proof]:
+    if not isinstance(data, list) or not all(
+        isinstance(one, list) and len(one) == 3 and all(isinstance(text, str) for text in one) and one[2] in _PROOFS
+        for one in data
+    ):
+        msg = f"the proofs of ranges are not row, column and one of {', '.join(_PROOFS)}"
+        raise ValueError(msg)
+    return {(row, column): proof for row, column, proof in data}

@@ -19,9 +19,10 @@ from replicate.errors import PaperDefinitionError, ReplicateError
 from replicate.exhibits import Claim, Claims, ClaimVerdict, Exhibit, Figure, Finding, Paper, Reading, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.frame_check import checked_frame
-from replicate.exhibits.printed import Key, read_printed
+from replicate.exhibits.printed import Key, PrintedValue, read_printed
+from replicate.exhibits.readings import other_cell
 from replicate.exhibits.results import ClaimsResult, FigureResult, Ranges, Result, TableResult
-from replicate.exhibits.rounded_inputs import compute_reading
+from replicate.exhibits.rounded_inputs import compute_reading, places_elsewhere
 from replicate.run.modules import is_standard
 
 if TYPE_CHECKING:
@@ -141,14 +142,35 @@ def _compute_reading(unit: Unit, paper: Paper, table: Table) -> TableResult:
         file = paper.folder() / "printed" / f"{table.id}.csv"
         printed = read_printed(file, table) if table.printed and not table.points else {}
         made: object
-        if reading.inputs:
-            made, ranges[reading.id] = compute_reading(table, reading, printed)
+        if reading.takes_inputs:
+            made, ranges[reading.id] = compute_reading(table, reading, printed, _elsewhere(paper, reading))
         else:
             made = reading.compute()
         frame = _checked(table, reading, made, printed)
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error)})
     return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame}, ranges=ranges)
+
+
+def _elsewhere(paper: Paper, reading: Reading) -> dict[str, PrintedValue]:
+    """Return the inputs of a reading that are printed in other tables or in the text, by place."""
+    found = {}
+    for place in places_elsewhere(reading):
+        if ":" not in place:
+            name, _, text = place.partition("=")
+            found[place] = PrintedValue(text, name)
+            continue
+        id, *key = other_cell(place)
+        exhibit = paper.exhibits.get(id)
+        if not isinstance(exhibit, Table) or not exhibit.printed or exhibit.points:
+            msg = f"reading '{reading.id}': input '{place}': there is no table '{id}' with printed numbers"
+            raise PaperDefinitionError(msg)
+        cells = read_printed(paper.folder() / "printed" / f"{id}.csv", exhibit)
+        if (key[0], key[1]) not in cells:
+            msg = f"reading '{reading.id}': input '{place}': row '{key[0]}', column '{key[1]}' of {id} is not printed"
+            raise PaperDefinitionError(msg)
+        found[place] = cells[key[0], key[1]]
+    return found
 
 
 def _checked(table: Table, reading: Reading, made: object, printed: Collection[Key]) -> pd.DataFrame:

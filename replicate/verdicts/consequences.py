@@ -41,7 +41,12 @@ def with_consequences(table: Table, verdicts: list[VerdictRow]) -> list[VerdictR
 
 
 def _right(row: VerdictRow) -> float | None:
-    """Return the right number of a cell: the corrected one, or what the deciding reading gives."""
+    """Return the right number of a cell: the corrected one, or what the deciding reading gives.
+
+    A number by another definition is not the right one: what it would upset says nothing of the print.
+    """
+    if row.cause == "definition":
+        return None
     if row.corrected and row.value:
         return float(PrintedValue(row.corrected, notation=row.value.notation).value)
     return next((one.number for one in row.values if one.reading == row.reading), None)

@@ -54,6 +54,8 @@ def reading_matches(
                 computed = replace(computed, lower=low, upper=high)
             if one.kind != "equal" and _holds(match(printed[key], ranges.joint[key]), convention):
                 computed = replace(computed, match=replace(one, kind="consistent"))
+            if computed.match.kind in {"near", "differs"}:
+                computed = replace(computed, proof=ranges.proofs.get(key, ""))
         found[key] = computed
     return found
 

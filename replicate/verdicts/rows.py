@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 from replicate.exhibits import ClaimVerdict, Consequence
 from replicate.exhibits.matching import Match, MatchHow, MatchKind, computed_text
 from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.results import Proof
 
 if TYPE_CHECKING:
     from replicate.verdicts.strength import Strength
@@ -23,6 +24,7 @@ ValueVerdict = Literal[
     "unexplained",
     "not-computable",
 ]
+Certainty = Literal["", "witness", "proof", "joint-proof", "search"]
 Verdict = ValueVerdict | ClaimVerdict
 Status = Literal["done", "partly", "not-computable"]
 
@@ -51,6 +53,22 @@ class ResultRow:
 
 
 @dataclass(frozen=True)
+class RangeRow:
+    """The range of one computed value over the printed inputs of a reading, and how certain its verdict is."""
+
+    paper: str
+    exhibit: str
+    row: str
+    column: str
+    printed: str
+    reading: str
+    match: MatchKind
+    lower: str
+    upper: str
+    certainty: Certainty
+
+
+@dataclass(frozen=True)
 class Computed:
     """What one reading gives for a printed value.
 
@@ -64,6 +82,9 @@ class Computed:
         Its range over the printed inputs of the reading; ``None`` if it takes none from the print.
     convention
         How the column's cells were shortened, judged by this reading.
+    proof
+        Of a number with a range that does not hold: what proves that no printed inputs give the print
+        (`replicate.exhibits.results.Ranges`); empty where that is only the outcome of a search.
     printed
         The print that it is compared with.
     """
@@ -75,12 +96,22 @@ class Computed:
     lower: float | None = None
     upper: float | None = None
     convention: str = ""
+    proof: Proof | Literal[""] = ""
     printed: PrintedValue | None = None
 
     @property
     def text(self) -> str:
         """The number with 12 significant digits, or the word."""
         return self.word or computed_text(self.number)
+
+    @property
+    def certainty(self) -> Certainty:
+        """How certain it is whether printed inputs give the print: some do, or a proof or a search says none do."""
+        if self.lower is None:
+            return ""
+        if self.match.kind in {"equal", "consistent"}:
+            return "witness"
+        return {"": "search", "alone": "proof", "jointly": "joint-proof"}[self.proof]  # type: ignore[return-value]
 
 
 @dataclass(frozen=True)
@@ -149,6 +180,26 @@ class VerdictRow:
             for one in self.values
         ]
 
+    @property
+    def ranges(self) -> list[RangeRow]:
+        """One row of ``ranges.csv`` for each reading that takes inputs from the print."""
+        return [
+            RangeRow(
+                self.paper,
+                self.exhibit,
+                self.row,
+                self.column,
+                self.printed,
+                one.reading,
+                one.match.kind,
+                computed_text(one.lower),
+                computed_text(one.upper),
+                one.certainty,
+            )
+            for one in self.values
+            if one.lower is not None
+        ]
+
 
 @dataclass(frozen=True)
 class ExhibitRow:
@@ -190,6 +241,11 @@ class Judgement:
     def results(self) -> list[ResultRow]:
         """Every printed value under every reading."""
         return [result for verdict in self.verdicts for result in verdict.results]
+
+    @property
+    def ranges(self) -> list[RangeRow]:
+        """The range of every value over printed inputs."""
+        return [found for verdict in self.verdicts for found in verdict.ranges]
 
     @property
     def compared(self) -> int:

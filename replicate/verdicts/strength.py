@@ -125,10 +125,12 @@ def _strength(table: Table, reading: str, computed: Mapping[str, Mapping[Key, Co
 
 
 def choices_of(table: Table, reading: str) -> int:
-    """Return how many alternatives were tried to find a reading: those it declares, and at least the other readings."""
-    if reading == AS_WRITTEN:
-        return 1
-    return max(math.prod(table.readings[reading].tried.values()), len(table.readings) - 1)
+    """Return how many alternatives were tried to find a reading: those it declares, and at least the other readings.
+
+    What is done as the text says has alternatives only where it leaves something open.
+    """
+    declared = math.prod(table.readings[reading].tried.values())
+    return declared if reading == AS_WRITTEN else max(declared, len(table.readings) - 1)
 
 
 def _judged(one: Computed, as_written: Computed | None) -> bool:

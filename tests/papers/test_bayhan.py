@@ -320,12 +320,27 @@ def test_stability_claim_of_example_42(claims: dict[str, Claim]) -> None:
 
 
 def test_limit_of_condition_27_for_the_pt326_set(claims: dict[str, Claim]) -> None:
-    margin: sp.Expr = pole_assignment.dominance(sp.Rational(7, 8), sp.Rational(43, 100), sp.Rational(62, 100), A)[1]
-    roots = [float(r) for r in sp.Poly(sp.numer(sp.together(margin)), A).nroots() if r.is_real and r > 0]
+    def margin(dead_time: str, time_constant: str) -> sp.Expr:
+        found = pole_assignment.dominance(sp.Rational(7, 8), sp.Rational(dead_time), sp.Rational(time_constant), A)[1]
+        return sp.sympify(found)
+
+    def limit(dead_time: str, time_constant: str) -> float:
+        numerator = sp.Poly(sp.numer(sp.together(margin(dead_time, time_constant))), A)
+        return min(float(r) for r in numerator.nroots() if r.is_real and r > 0)
+
     finding = claims["dominance-pt326"].check()
-    assert finding.verdict == "fails"
-    assert f"{min(roots):.4g}" in finding.evidence
-    assert finding.value == pytest.approx(float(margin.subs(A, sp.Rational(13, 10))))
+    assert finding.value == pytest.approx(float(margin("0.43", "0.62").subs(A, sp.Rational(13, 10))))
+    # 1.3 is beyond the limit, but not for all numbers that round to the printed 0.43 and 0.62
+    lowest, printed, highest = limit("0.435", "0.615"), limit("0.43", "0.62"), limit("0.425", "0.625")
+    assert lowest < printed < 1.3 < highest
+    assert all(f"{number:.4g}" in finding.evidence for number in (lowest, printed, highest))
+    assert finding.verdict == "undecided"
+
+
+def test_printed_inputs_are_those_that_are_computed_with() -> None:
+    for exhibit, process in (("example-4-1", EXAMPLE_41), ("example-4-2", EXAMPLE_42), ("pt326", PT326)):
+        for (name, _), number in paper.printed_numbers(exhibit).items():
+            assert getattr(process, name) == number
 
 
 def test_every_numbered_exhibit_is_there() -> None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import math
 import tomllib
 from pathlib import Path
 
 import pytest
 
+from replicate.exhibits import AS_WRITTEN, Table
 from replicate.run.library import Library
 
 ROOT = Path(__file__).parent.parent.parent
@@ -81,3 +83,37 @@ def test_rounding_is_argued_in_words_only_where_no_interval_decides() -> None:
         ("krajewski", "fig-11-values", "a", "b"),
         ("krajewski", "fig-12-values", "a", "b"),
     }
+
+
+def test_tables_that_are_reconstructed_say_how_many_alternatives_were_tried() -> None:
+    silent = []
+    for paper in PAPERS.values():
+        for table in paper.load().exhibits.values():
+            if not isinstance(table, Table) or not table.printed or table.points:
+                continue
+            others = [reading for reading in table.readings.values() if reading.id != AS_WRITTEN]
+            if "reconstructed" in accepted(paper.id, table.id).values() and not any(
+                reading.tried or reading.takes_inputs for reading in others
+            ):
+                silent.append((paper.id, table.id))
+    assert not silent
+
+
+def test_what_was_tried_is_what_the_tables_of_alternatives_list() -> None:
+    from replicate.papers.khan import definitions
+    from replicate.papers.khan.tables import table_2
+    from replicate.papers.panagopoulos.part_1 import grids_tried
+    from replicate.papers.panagopoulos.part_1.table_1 import table_1
+    from replicate.papers.panagopoulos.part_2 import filter_grids, settling
+    from replicate.papers.panagopoulos.part_2.tables import table_1 as superseded
+    from replicate.papers.panagopoulos.parts_3_to_6 import v_drying
+
+    tried = table_2.readings[AS_WRITTEN].tried
+    assert tried["definition of $t_s$"] == len(definitions.SETTLING)
+    assert tried["definition of $t_d$"] == len(definitions.LOAD)
+    grid = superseded.readings["filter-coarse-grid"].tried
+    assert math.prod(grid.values()) == 2 * len(filter_grids.GRIDS)
+    assert math.prod(superseded.readings["paper-1-settling"].tried.values()) == len(list(settling.definitions()))
+    authors = table_1.readings["authors"].tried
+    assert authors["points of the grid"] * authors["its decades"] == len(grids_tried.GRIDS)
+    assert v_drying.drying.readings["filter-coarse-grid"].tried["formula of the filter"] == len(v_drying.filters.rows)

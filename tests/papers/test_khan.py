@@ -331,6 +331,19 @@ def test_a_hundredth_of_the_band_moves_the_slow_settling_times_by_more_than_they
         assert 0.01 / rate > abs(signal.settling_time(0.02) - printed["ZN", column])
 
 
+def test_a_gain_that_rounds_to_bryants_gives_the_printed_settling_times() -> None:
+    # in closed form: the gains for which the response of the cancelled loop reaches 0.98 at a given time
+    def gain(time: float) -> float:
+        return float(brentq(lambda kh: exact_p_control(0.0, kh, time) - 0.98, 0.36, 0.38))
+
+    # 65.2 at h = 10, 6.525 at h = 1 and 0.652 at h = 0.1 have gains in common, and these round to 0.368
+    low, high = gain(6.525), gain(6.5245)
+    assert 0.3675 < low < high < 0.3685
+    # 0.368 itself is not among them, and the gain that gives 11.84 at h = 1.82 does not round to L_PB = 0.1213
+    assert not low <= 0.368 <= high
+    assert gain(11.845 / 1.82) * 0.6 / 1.82 > 0.12135
+
+
 @pytest.mark.parametrize(("table", "rows", "columns"), [("table-1", 5, 4), ("table-2", 7, 8)])
 def test_printed_tables_are_complete(table: str, rows: int, columns: int) -> None:
     with (FOLDER / "printed" / f"{table}.csv").open() as stream:

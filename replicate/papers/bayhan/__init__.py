@@ -16,6 +16,7 @@ paper = Paper(
         "fig_1",
         "equations",
         "table_1",
+        "inputs",
         "table_2",
         "fig_2",
         "table_3",
@@ -30,7 +31,18 @@ paper = Paper(
         "claims_table_1",
         "claims_pt326",
     ),
-    numbered=("fig-1", "table-1", "table-2", "fig-2", "table-3", "fig-3", "fig-4", "fig-5"),
+    numbered=(
+        "fig-1",
+        "table-1",
+        "example-4-1",
+        "table-2",
+        "fig-2",
+        "example-4-2",
+        "table-3",
+        "fig-3",
+        "fig-4",
+        "fig-5",
+    ),
     summary="A tuning rule that gives the loop a double pole, compared with ten classical rules. The rule "
     "holds. The comparison does not: the classical rules were run with the integral gain 1/Ti where the "
     "paper's equation (3) says Kp/Ti. With 1/Ti, on the authors' own Padé model and sample grid, the tables "

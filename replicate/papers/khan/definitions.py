@@ -11,9 +11,9 @@ from replicate.exhibits.matching import meets
 from replicate.loops import PI, Loop, Signal
 from replicate.loops.tune import classical_rules
 from replicate.papers.khan import paper
-from replicate.papers.khan.processes import RESTORED, case_gains, gains, plant
+from replicate.papers.khan.processes import LOAD_AT, RESTORED, case_gains, gains, plant
 from replicate.papers.khan.sweep import stability_limit
-from replicate.papers.khan.tables import LOAD_AT, QUANTITIES, RULES_1, RULES_2
+from replicate.papers.khan.tables import QUANTITIES, RULES_1, RULES_2
 
 if TYPE_CHECKING:
     import pandas as pd

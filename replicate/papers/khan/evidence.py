@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from replicate.exhibits.matching import meets
 from replicate.papers.khan import paper
 from replicate.papers.khan.definitions import VERSIONS, specifications_of
-from replicate.papers.khan.processes import loop, settling_after_load
-from replicate.papers.khan.tables import LOAD_AT, QUANTITIES
+from replicate.papers.khan.processes import LOAD_AT, loop, settling_after_load
+from replicate.papers.khan.tables import QUANTITIES
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -67,11 +67,21 @@ def example_3_1_formulas() -> pd.DataFrame:
 
 @example_3_1.reading(
     "printed-gain",
-    "$L_P = K\\tau$ for the printed $K$",
-    "What $K$ rounds to 0.28 is open, and so are $L_P$ and the exact overshoot.",
-    inputs=("K",),
+    "for the printed gains",
+    "What $K$ rounds to 0.28 is open, and so are $L_P$ and the exact overshoot, and the responses for all gains that "
+    "round to the printed $L_{PB}$ and $L_{PH}$.",
+    inputs=("K", "L_PB", "L_PH"),
 )
 def from_printed_gain(_: str, given: Mapping[str, float]) -> dict[str, float]:
-    """Compute what follows from the printed K."""
+    """Compute what follows from the printed gains."""
     overshoot = float(sweep(0.0, np.array([given["K"] * H])).overshoot[0])
-    return {"L_P": given["K"] * TAU, "overshoot_K0.28": overshoot}
+    bryant, haalman = (Loop(plant(0.0, H), PI(given[name] / TAU)).step() for name in ("L_PB", "L_PH"))
+    return {
+        "Bryant_tr": bryant.rise_time(),
+        "Bryant_ts": bryant.settling_time(),
+        "Haalman_overshoot": 100.0 * haalman.overshoot(),
+        "Haalman_tr": haalman.rise_time(),
+        "Haalman_ts": haalman.settling_time(),
+        "overshoot_K0.28": overshoot,
+        "L_P": given["K"] * TAU,
+    }

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.exhibits.printed import Near
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
 from replicate.papers.khan.sweep import stability_limit, sweep
@@ -17,6 +19,15 @@ if TYPE_CHECKING:
 ROWS_21 = ("ph", "A1", "B1", "overshoot_estimate", "overshoot_actual", "overshoot_error", "A2", "B2", "C2", "D2",
            "tr_estimate", "tr_actual")  # fmt: skip
 H = 1.82  # dead time of example 2.1
+P = "p=1.6667"
+# The cells of the printed coefficients of each part of (2), case IV, and of (3).
+COEFFICIENTS = {
+    part: tuple(f"refit-coefficients:{row}:x{place}" for place in range(4))
+    for part, row in (
+        ("A1", "case-4 A"), ("B1", "case-4 B"),
+        ("A2", "rise-time A"), ("B2", "rise-time B"), ("C2", "rise-time C"), ("D2", "rise-time D"),
+    )
+}  # fmt: skip
 
 example_2_1 = paper.table(
     "example-2-1",
@@ -65,6 +76,24 @@ def example_2_1_fraction() -> pd.DataFrame:
 
 
 @example_2_1.reading(
+    "printed-coefficients",
+    "any coefficients of (2) and (3) that round to the printed ones",
+    "The authors had their fits with more digits than they print. $p$ is any number that rounds to 1.6667, such as "
+    "5/3.",
+    inputs=(P, *(place for places in COEFFICIENTS.values() for place in places)),
+)
+def example_2_1_from_coefficients(_: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Evaluate (2) and (3) with other coefficients."""
+    ph = given[P] * H
+    parts = {}
+    for name, places in COEFFICIENTS.items():
+        a, b, c, d = (given[place] for place in places)
+        # the last coefficient divides ph in (2) and multiplies it in (3)
+        parts[name] = a + b * ph + c * math.exp(ph / d if name in {"A1", "B1"} else ph * d)
+    return {"ph": ph} | parts | last_step(parts)
+
+
+@example_2_1.reading(
     "printed-parts",
     "from the example's own intermediate values",
     "$t_r$ and the overshoot from the coefficients that the example prints, to see whether its last step is right.",
@@ -72,9 +101,14 @@ def example_2_1_fraction() -> pd.DataFrame:
 )
 def example_2_1_from_print(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Take the last step of the example with its printed intermediate values."""
+    return last_step(given)
+
+
+def last_step(parts: Mapping[str, float]) -> dict[str, float]:
+    """Return the estimates from the coefficients of the example, for K = 1."""
     return {
-        "overshoot_estimate": given["A1"] + given["B1"] * H,
-        "tr_estimate": H * (given["A2"] * np.exp(-H / given["B2"]) + given["C2"] * np.exp(-H / given["D2"])),
+        "overshoot_estimate": parts["A1"] + parts["B1"] * H,
+        "tr_estimate": H * (parts["A2"] * math.exp(-H / parts["B2"]) + parts["C2"] * math.exp(-H / parts["D2"])),
     }
 
 
@@ -102,6 +136,7 @@ example_2_3 = paper.table(
     columns=("value",),
     caption="The gain for which $t_r$ is exactly one second; rise time and overshoot of the printed gain 0.375. "
     "The paper reads all three off its figures, as approximate values.",
+    near=Near(fraction=0.02),  # what can be read off a figure
     labels={"Kh": "$Kh$ for $t_r = 1$", "tr": "$t_r$ at $Kh = 0.375$", "overshoot": "overshoot at $Kh = 0.375$ (%)"},
 )
 

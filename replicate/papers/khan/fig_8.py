@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from replicate.papers.khan import paper
-from replicate.papers.khan.processes import NAMES, RESTORED, loop
+from replicate.papers.khan.processes import LOAD_AT, NAMES, RESTORED, loop
 from replicate.papers.khan.robustness import robustness
-from replicate.papers.khan.tables import LOAD_AT, RULES_1, RULES_2
+from replicate.papers.khan.tables import RULES_1, RULES_2
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,6 +8,8 @@ from importlib.resources import files
 from replicate.loops import PI, Loop, Plant
 from replicate.loops.tune import TuningRule, load_rules
 
+# When the load enters: 100 is named in the text for ph = 10; 25 and 5 are what the printed digits need.
+LOAD_AT = {10.0: 100.0, 1.0: 25.0, 0.1: 5.0}
 PRINTED, RESTORED, UNROUNDED = "printed", "restored", "unrounded"
 
 # A rule of the tables is one or two cases, each with its own range of ph.

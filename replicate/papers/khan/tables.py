@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import Table, bound, rank
-from replicate.loops import PI
+from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
-from replicate.papers.khan.processes import NAMES, RESTORED, UNROUNDED, gains, loop, plant, specifications
+from replicate.papers.khan.processes import (
+    LOAD_AT,
+    NAMES,
+    RESTORED,
+    UNROUNDED,
+    gains,
+    loop,
+    plant,
+    specifications,
+)
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,8 +26,6 @@ if TYPE_CHECKING:
 QUANTITIES = ("Mp", "ts", "td", "Ms")
 RULES_1 = ("Proposed", "Haalman", "Bryant", "ZN", "ISE")
 RULES_2 = (*RULES_1, "CC", "ITAE")
-# When the load enters: 100 is named in the text for ph = 10; 25 and 5 are what the printed digits need.
-LOAD_AT = {10.0: 100.0, 1.0: 25.0, 0.1: 5.0}
 
 Specifications = Callable[[str, float], tuple[float, float, float, float]]
 
@@ -117,13 +124,61 @@ def _table_2(compute: Specifications) -> pd.DataFrame:
     return table_2.frame({rule: (*compute(rule, 1.0), *compute(rule, 0.1)) for rule in RULES_2})
 
 
+# What was tried: the definitions of the first reading, which the others share, are listed in a table of their own. (The
+# zeros of (7a) were found from (7b), not from these tables.)
+_CHOICES = {"zeros of (7a)": 2, "when the load enters": 2}
+TRIED = {
+    "as-written": {"definition of $t_s$": 5, "definition of $t_d$": 6},
+    "restored": _CHOICES,
+    "unrounded": _CHOICES | {"digits of (7b)": 2},
+}
+
+
 def _register(table: Table, build: Callable[[Specifications], pd.DataFrame]) -> None:
     for id, (title, note, compute) in READINGS.items():
-        table.reading(id, title, note)(partial(build, compute))
+        table.reading(id, title, note, tried=TRIED.get(id))(partial(build, compute))
 
 
 _register(table_1, _table_1)
 _register(table_2, _table_2)
+
+# The rules whose coefficients the paper prints, by the cells that hold those for ph >= 0.2. (Those of (7a) are damaged,
+# and the Haalman rule has a fraction.)
+COEFFICIENTS: dict[str, tuple[str, ...]] = {
+    "Proposed": tuple(f"rule-coefficients:7b_{gain}_{letter}:value" for gain in ("KP", "KI") for letter in "abc"),
+    "ISE": tuple(f"appendix-coefficients:{gain}_II_{letter}:value" for gain in ("KP", "KI") for letter in "abc"),
+    "Bryant": ("bryant:zeta1.0:Kh",),
+}
+
+
+def _gains(rule: str, h: float, given: Mapping[str, float]) -> tuple[float, float]:
+    """Return (K_P, K_I) of a rule with other coefficients, for p = 1."""
+    numbers = [given[place] for place in COEFFICIENTS[rule]]
+    if rule == "Bryant":
+        return numbers[0] / h, numbers[0] / h
+    kp, ki = (a / h + b + c / h**0.5 for a, b, c in (numbers[:3], numbers[3:]))
+    return kp, ki / h
+
+
+def _of_coefficients(dead_times: Mapping[str, float], rule: str, given: Mapping[str, float]) -> dict[str, float]:
+    """Return the row of a rule with other coefficients, where these apply."""
+    found: dict[str, float] = {}
+    for prefix, h in dead_times.items():
+        if h < 0.2 and rule != "Bryant":
+            continue
+        numbers = specifications(Loop(plant(1.0, h), PI(*_gains(rule, h, given))), LOAD_AT[h])
+        found |= {prefix + quantity: number for quantity, number in zip(QUANTITIES, numbers, strict=True)}
+    return found
+
+
+for _table, _dead_times in ((table_1, {"": 10.0}), (table_2, {"ph1_": 1.0, "ph0.1_": 0.1})):
+    _table.reading(
+        "printed-coefficients",
+        "any coefficients that round to the printed ones",
+        "The tables may have been made with more digits of the fits (7b) and of the Appendix than the paper prints, "
+        "and with $1/e$ or any other number that rounds to Bryant's 0.368. The load enters as in the reading before.",
+        inputs_of=COEFFICIENTS,
+    )(partial(_of_coefficients, _dead_times))
 
 
 def _trials(rules: tuple[str, ...], h: float) -> dict[str, tuple[str, str]]:

@@ -13,6 +13,7 @@ MODULES: tuple[str, ...] = (
     "table_3",
     "table_4",
     "table_5",
+    "grids_tried",
     "settling_evidence",
     "iae_evidence",
     "example_1",

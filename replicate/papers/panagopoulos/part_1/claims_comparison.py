@@ -119,7 +119,7 @@ def k_zero_zn() -> Finding:
     gain, period = ultimate_point("G7")
     pi = ziegler_nichols("G7")
     return Finding(
-        "holds" if pi.k == 0.0 else "holds-partly",
+        "holds" if pi.k == 0.0 else "undecided",
         pi.k,
         "The sentence does not say which of the two methods it means. By the step-response method $k$ is 0.9 over dead "
         "time times steepest slope, which goes to zero as the step response becomes steeper. By the "

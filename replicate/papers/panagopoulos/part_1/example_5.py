@@ -99,6 +99,7 @@ def as_written() -> pd.DataFrame:
     "The slope limit of (20), and $M_s = \\sqrt{2}$",
     note="The printed $a$ is the limit of condition (20), not of the corner; the printed gains for $a = 0$ "
     "are the optimum for $M_s = \\sqrt{2}$, which the text rounds to 1.4.",
+    tried={"limit of $a$": 2, "$M_s$ for $a = 0$": 2},
 )
 def authors() -> pd.DataFrame:
     """Compute what the printed numbers are."""

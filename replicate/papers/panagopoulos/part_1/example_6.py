@@ -86,6 +86,7 @@ def as_written() -> pd.DataFrame:
     "authors",
     "$b$ at $\\omega_0$; a crossing from the rounded limit",
     note="Equation (25) at $\\omega_0$; the farther crossing as the inverse of the limit as it is printed.",
+    tried={"frequency for $b$": 2, "the farther crossing": 2},
 )
 def authors() -> pd.DataFrame:
     """Compute the example as the numbers were made."""

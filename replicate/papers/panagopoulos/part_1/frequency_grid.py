@@ -14,6 +14,7 @@ from replicate.papers.panagopoulos.part_1.designs import complementary_peak, des
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
 POINTS = 200
+POINTS_TRIED, DECADES_TRIED, FIRST_TRIED = (50, 100, 200, 500, 1000), (2, 3, 4), (-4, -3, -2, -1, 0)
 FIRST_DECADE = {"G1": -2, "G2": -1, "G4": -3, "G5": -2, "G6": -1}  # none fits G3, which has dead time
 
 

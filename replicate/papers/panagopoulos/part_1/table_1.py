@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import bound, rank
-from replicate.loops import PI, Loop
-from replicate.papers.panagopoulos import paper
+from replicate.exhibits.exclusion import Box
+from replicate.loops import PI, Loop, Plant
+from replicate.loops.gain_boxes import GainBox
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import (
     BOUNDS,
     SIX,
@@ -16,7 +18,13 @@ from replicate.papers.panagopoulos.part_1.designs import (
     load_response,
     weight,
 )
-from replicate.papers.panagopoulos.part_1.frequency_grid import peak_on_grid, weight_on_grid
+from replicate.papers.panagopoulos.part_1.frequency_grid import (
+    DECADES_TRIED,
+    FIRST_TRIED,
+    POINTS_TRIED,
+    peak_on_grid,
+    weight_on_grid,
+)
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
@@ -98,6 +106,14 @@ def as_written() -> pd.DataFrame:
     "(for $G_3$ no such grid was found, and the exact $\\omega_0$ fits). Equation (25) is evaluated there, "
     "not at $\\omega_{mp}$. $t_s$ is the last time at which the response is above $+5$ %, whatever it does "
     "below zero, and for $G_3$ counts from the end of the dead time.",
+    tried={
+        "points of the grid": len(POINTS_TRIED),
+        "its decades": len(DECADES_TRIED),
+        "the first of them, by plant": len(FIRST_TRIED) ** len(SIX),
+        "frequency for $b$": 2,
+        "level of $t_s$": 3,
+        "sides of $t_s$": 2,
+    },
 )
 def authors() -> pd.DataFrame:
     """Compute the table by the rules that its numbers follow."""
@@ -108,11 +124,16 @@ def authors() -> pd.DataFrame:
     )
 
 
+def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
+    return PLANTS[ROWS[row][0]], GainBox.of_times(certain.side(box, "k"), certain.side(box, "Ti"))
+
+
 @table_1.reading(
     "printed-gains",
     "With the printed gain and integral time",
     note="What follows from the printed $k$ and $T_i$, by the rules of the reading before.",
     inputs=("k", "Ti"),
+    rules_out=certain.rules(_loops, "IE", "IE/IAE"),
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what a printed controller does."""

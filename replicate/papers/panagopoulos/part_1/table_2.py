@@ -51,6 +51,7 @@ def as_written() -> pd.DataFrame:
     "authors",
     "$b$ at $\\omega_0$",
     note="As written, but with (25) evaluated at $\\omega_0$, the peak of the sensitivity.",
+    tried={"frequency for $b$": 2},
 )
 def authors() -> pd.DataFrame:
     """Compute the table with the set-point weight's other frequency."""

@@ -9,8 +9,10 @@ from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 from replicate.exhibits import rank
+from replicate.exhibits.exclusion import Box
 from replicate.loops import PI, PIDesign, Plant, design_pi
-from replicate.papers.panagopoulos import paper
+from replicate.loops.gain_boxes import GainBox
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import design
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, filtered_dead_time
@@ -122,10 +124,15 @@ def as_written() -> pd.DataFrame:
     "$T_i/T_f$ with $T_f$ from the new $\\omega_0$",
     note="The last column divides by $1/(m\\omega_0)$ with the $\\omega_0$ of its own row; design and "
     "$\\sigma$ use the first filter.",
+    tried={"$\\omega_0$ of $T_f$": 2},
 )
 def authors() -> pd.DataFrame:
     """Compute the table with the last column's other filter."""
     return _table("new")
+
+
+def _loops(_: str, box: Box) -> tuple[Plant, GainBox]:
+    return PLANTS["G7"], GainBox(certain.side(box, "k"), certain.side(box, "ki"))
 
 
 @table_4.reading(
@@ -133,6 +140,7 @@ def authors() -> pd.DataFrame:
     "With the printed gains",
     note="IE is $1/k_i$ of the printed $k_i$, and $\\sigma$ follows from the printed gains and the exact filter.",
     inputs=("k", "ki"),
+    rules_out=certain.rules(_loops, "IE"),
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what follows from the printed gains of a row."""

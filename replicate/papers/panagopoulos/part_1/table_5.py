@@ -8,8 +8,10 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import rank
-from replicate.loops import PI, Loop, Signal
-from replicate.papers.panagopoulos import paper
+from replicate.exhibits.exclusion import Box
+from replicate.loops import PI, Loop, Plant, Signal
+from replicate.loops.gain_boxes import GainBox
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import design, weight
 from replicate.papers.panagopoulos.part_1.frequency_grid import weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
@@ -131,6 +133,7 @@ def overshoot_of_peak(step: Signal) -> float:
     note="The overshoot is divided by the peak instead of the final value; $b$ of the new design is that of "
     "Table 1; $t_s$ is the last time above $+5$ %, from the end of the dead time. Lambda tuning is run with "
     "the printed $k$ and $k_i$, which are inputs here and so are not compared.",
+    tried={"what the overshoot is relative to": 2, "frequency for $b$": 2, "level of $t_s$": 3, "sides of $t_s$": 2},
 )
 def authors() -> pd.DataFrame:
     """Compute the table by the rules that its numbers follow."""
@@ -141,12 +144,17 @@ def authors() -> pd.DataFrame:
     return table
 
 
+def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
+    return PLANTS[ROWS[row][0]], GainBox(certain.side(box, "k"), certain.side(box, "ki"))
+
+
 @table_5.reading(
     "printed-gains",
     "With the printed gains",
     note="What follows from the printed $k$ and $k_i$, by the rules of the reading before; the new design has the "
     "set-point weight of that reading, the others have $b = 1$.",
     inputs=("k", "ki"),
+    rules_out=certain.rules(_loops, "IAE"),
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what a printed controller does."""

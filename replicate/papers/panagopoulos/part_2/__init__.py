@@ -3,6 +3,7 @@
 MODULES: tuple[str, ...] = (
     "fig_1",
     "tables",
+    "filter_grids",
     "fig_2_3",
     "recommended",
     "surface_figures",

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from replicate.loops import PID, Loop
-from replicate.papers.panagopoulos import paper
+from replicate.exhibits.exclusion import Box
+from replicate.loops import PID, Loop, Plant
+from replicate.loops.gain_boxes import GainBox
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import feasible
 from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS, pole_numbers
 from replicate.papers.panagopoulos.part_2.processes import G4
@@ -43,11 +45,16 @@ example = paper.table(
 example.trials = lambda: {row: (G4.notation(), controller.notation()) for row, controller in CONTROLLERS.items()}
 
 
+def _loops(_: str, box: Box) -> tuple[Plant, GainBox]:
+    return G4, GainBox(certain.side(box, "k"), certain.side(box, "ki"), certain.side(box, "kd"))
+
+
 @example.reading(
     "as-written",
     "Exact, with the printed gains",
     "The error over the whole response, the poles as roots. The gains are read off Figure 3.",
     inputs=("k", "ki", "kd"),
+    rules_out=certain.rules(_loops, "IAE"),
 )
 def numbers(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Return error and poles for printed gains."""

@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from replicate.loops import PID
-from replicate.papers.panagopoulos import paper
+from replicate.exhibits.exclusion import Box
+from replicate.loops import PID, Plant
+from replicate.loops.gain_boxes import GainBox
+from replicate.loops.intervals import exactly
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import filters
 from replicate.papers.panagopoulos.part_2.filters import CUT, HEADED
+from replicate.papers.panagopoulos.part_2.processes import G4
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -65,10 +69,28 @@ def as_written() -> pd.DataFrame:
     "as printed, instead of the one without filter; with a filter, curvature below minus the mean distance that "
     "the printed "
     rf"designs keep from zero, instead of zero; $M_n$ only up to {CUT:g} rad/s.",
+    tried={
+        "unit of the angle": 2,
+        "$N$ in the columns headed 2": 2,
+        "$\\omega_0$ of the filter": 3,
+        "distance from zero curvature": 2,
+        "range of $M_n$": 2,
+    },
 )
 def conventions() -> pd.DataFrame:
     """Return the table under the conventions that its numbers show."""
     return _frame({c: filters.numbers(*filters.reconstructed(c), gon=True, cut=CUT) for c in filters.COLUMNS})
+
+
+def _loops(column: str, box: Box) -> tuple[Plant, GainBox]:
+    k, ti, td = (certain.side(box, name) for name in GAINS)
+    if column == filters.UNFILTERED:
+        return G4, GainBox.of_times(k, ti, td)
+    used = filters.as_used(column)
+    assert used  # noqa: S101  -- every headed column has one
+    w0 = certain.side(box, f"w0@{filters.source_of_w0(column)}")
+    lag = exactly(1.0) / (exactly(float(used.order * used.N)) * w0)
+    return G4, GainBox.of_times(k, ti, td, lag, used.order)
 
 
 @table.reading(
@@ -78,6 +100,7 @@ def conventions() -> pd.DataFrame:
     r"$\omega_0$ is printed as well.",
     inputs=GAINS,
     inputs_of={c: (*GAINS, f"w0@{filters.source_of_w0(c)}") for c in filters.HEADED},
+    rules_out=certain.rules(_loops, "w0", "IAE"),
 )
 def printed_gains(column: str, given: Mapping[str, float]) -> dict[str, float]:
     """Return what follows from the printed gains."""

@@ -20,6 +20,11 @@ from replicate.papers.panagopoulos.part_2.load_experiment import loop_of
 from replicate.papers.panagopoulos.part_2.processes import split
 
 COARSE_GRID = np.logspace(-2.0, 2.0, 50)  # rad/s; 50 points is what Matlab's logspace(-2, 2) makes
+GRIDS_TRIED = {
+    "points of the grid": (50, 100, 200, 500),
+    "its first decade": (-3, -2, -1),
+    "its last decade": (1, 2, 3),
+}
 
 
 @dataclass(frozen=True)
@@ -38,10 +43,15 @@ class Resonance:
     @classmethod
     def on_coarse_grid(cls, loop: Loop) -> Resonance:
         """Return the largest |T| on `COARSE_GRID`."""
-        value = loop(1j * COARSE_GRID)
+        return cls.on_grid(loop, COARSE_GRID)
+
+    @classmethod
+    def on_grid(cls, loop: Loop, frequencies: np.ndarray) -> Resonance:
+        """Return the largest |T| on a grid."""
+        value = loop(1j * frequencies)
         size = np.abs(value / (1.0 + value))
         i = int(np.argmax(size))
-        return cls(float(COARSE_GRID[i]), float(size[i]))
+        return cls(float(frequencies[i]), float(size[i]))
 
     @property
     def at_rest(self) -> bool:

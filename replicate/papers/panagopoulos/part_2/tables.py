@@ -9,14 +9,16 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import rank
-from replicate.loops import PID, Loop
-from replicate.papers.panagopoulos import paper
+from replicate.exhibits.exclusion import Box
+from replicate.loops import PID, Loop, Plant
+from replicate.loops.gain_boxes import GainBox
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment, loop_of
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
 from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
-from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_corrected, weight
+from replicate.papers.panagopoulos.part_2.setpoint import GRIDS_TRIED, Resonance, filter_corrected, weight
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -68,6 +70,12 @@ def _from_gains(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Return what follows from printed gains."""
     found = Properties.of(split(row)[0], _controller(given)).row()
     return {column: number for column, number in found.items() if column not in {*GAINS, *given}}
+
+
+def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
+    k, ti = certain.side(box, "k"), certain.side(box, "Ti")
+    b = certain.side(box, "b") if "Td" not in box else None
+    return PLANTS[split(row)[0]], GainBox.of_times(k, ti, b * b * ti if b else certain.side(box, "Td"))
 
 
 def _with_filter(peak_of: Callable[[Loop], Resonance], *, complete: bool) -> RowFunction:
@@ -127,6 +135,7 @@ def _add_readings(table: Table) -> None:
         ),
         inputs=GAINS,
         inputs_of=lost,
+        rules_out=certain.rules(_loops, "IE", "w0", "IE/IAE"),
     )(_from_gains)
     table.reading(
         "filter-corrected",
@@ -143,12 +152,15 @@ def _add_readings(table: Table) -> None:
         "takes by itself; the two decades on either side of one are our choice, and the paper says nothing of a grid.",
         inputs=GAINS,
         inputs_of=lost,
+        tried={name: len(values) for name, values in GRIDS_TRIED.items()} | {"power of $\\omega_{mp}$ in (16)": 2},
     )(_with_filter(Resonance.on_coarse_grid, complete=table.id == SUPERSEDED))
     table.reading(
         "paper-1-settling",
         "The settling time of paper I",
         "$t_s$ as the numbers of paper I show it: the last time at which the load response is above $+0.05$, "
         "undershoot ignored, counted from the end of the dead time; for the printed gains.",
+        # signals, scales, sides and bands, as the table of definitions lists them
+        tried={"signal": 3, "scale of the band": 2, "sides of the band": 2, "band": 5},
     )(lambda: table.frame({row: {"ts": one_sided_settling(table.id, row)} for row in ROWS}))
     table.reading(
         "ms-only",

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from replicate.exhibits import Finding
 from replicate.exhibits.evidence import number
+from replicate.exhibits.extrema import largest, smallest
 from replicate.loops import PI, Circle, Loop, design_pi, gamma_norm
 from replicate.papers.panagopoulos.parts_3_to_6.iii_claims import ROUNDING, claims
 from replicate.papers.panagopoulos.parts_3_to_6.iii_table_1 import printed_pairs
@@ -19,6 +19,8 @@ from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import (
     contour,
     contour_points,
     design,
+    distances,
+    enclosed_area,
     favourable_weight,
     gamma_at,
     gamma_of_m,
@@ -36,15 +38,18 @@ LEVELS = (1.1, 1.4, 2.0, 3.0)  # of M, where a statement is checked for several
 def contour_formula() -> Finding:
     off = max(float(np.max(np.abs(gamma_at(contour(gamma)) / gamma - 1.0))) for gamma in CONTOURS)
     gamma = CONTOURS[0]
-    phase = np.linspace(0.7 * np.pi, np.pi, 50)
-    c = (gamma**2 * np.cos(phase) - 1.0) / (gamma**2 - 1.0)
-    wrong = gamma_at((-c + np.sqrt(c**2) - 1.0) * np.exp(1j * phase))
+    phases = np.linspace(0.7 * np.pi, np.pi, 51)
+
+    def wrong(phase: float) -> float:
+        c = (gamma**2 * np.cos(phase) - 1.0) / (gamma**2 - 1.0)
+        return float(gamma_at((-c + np.sqrt(c**2) - 1.0) * np.exp(1j * phase)))
+
     return Finding(
         "holds" if off < ROUNDING else "fails",
         round(off, 12),
         f"For the eight contours of Figure 5 all points satisfy it to {ROUNDING:g}, if the last “$-1$” stands "
-        f"under the root. Taken as printed, outside, $(1+|L|)/|1+L|$ varies from {number(float(wrong.min()), 3)} to "
-        f"{number(float(wrong.max()), 3)} for $\\gamma = 2$.",
+        f"under the root. Taken as printed, outside, $(1+|L|)/|1+L|$ varies from "
+        f"{number(smallest(wrong, phases)[1], 3)} to {number(largest(wrong, phases)[1], 3)} for $\\gamma = 2$.",
     )
 
 
@@ -141,10 +146,8 @@ def eq_13_14() -> Finding:
     out, slack = -np.inf, np.inf
     for gamma in CONTOURS:
         m = float(m_of_gamma(gamma))
-        curve = contour(gamma)
-        circle, smaller = combined_circle(m), combined_circle(m * 1.001)
-        out = max(out, float(np.max(np.abs(curve + circle.center))) / circle.radius - 1.0)
-        slack = min(slack, float(np.max(np.abs(curve + smaller.center))) / smaller.radius - 1.0)
+        out = max(out, distances(gamma, combined_circle(m))[1] - 1.0)
+        slack = min(slack, distances(gamma, combined_circle(m * 1.001))[1] - 1.0)
     return Finding(
         "holds" if out < ROUNDING and back < ROUNDING and slack > 0.0 else "fails",
         round(out, 12) + 0.0,
@@ -185,7 +188,7 @@ def guarantee_circle() -> Finding:
     found = design()
     controller = PI(found.k, found.ki)
     gamma = gamma_norm(PROCESS, controller, favourable_weight(controller)).value
-    ratios = [float(np.max(gamma_at(_circle_points(m)))) / float(gamma_of_m(m)) for m in LEVELS]
+    ratios = [_largest_on_circle(m) / float(gamma_of_m(m)) for m in LEVELS]
     return Finding(
         "holds" if max(ratios) <= 1.0 + ROUNDING and gamma <= float(gamma_of_m(M)) else "fails",
         gamma,
@@ -195,13 +198,14 @@ def guarantee_circle() -> Finding:
     )
 
 
-def _circle_points(m: float) -> NDArray[np.complex128]:
-    """Return points of the combined circle, those on the unit circle among them."""
+def _largest_on_circle(m: float) -> float:
+    """Return the largest gamma on the combined circle, whose lower half mirrors the upper one."""
     circle = combined_circle(m)
-    # |L| = 1 and |L + C| = R: cos(phi) = (R^2 - C^2 - 1)/(2 C)
-    special = np.arccos((circle.radius**2 - circle.center**2 - 1.0) / (2.0 * circle.center))
-    angles = np.linspace(0.0, 2.0 * np.pi, 20_001)
-    return np.concatenate([-circle.center + circle.radius * np.exp(1j * angles), [np.exp(1j * special)]])
+
+    def gamma(angle: float) -> float:
+        return float(gamma_at(-circle.center + circle.radius * np.exp(1j * angle)))
+
+    return largest(gamma, np.linspace(0.0, np.pi, 201))[1]
 
 
 @claims.claim("sqrt-10", "$M = 2$ guarantees $\\gamma < \\sqrt{10}$.", where="section 4, below Table 1", printed="3.16")
@@ -243,9 +247,7 @@ def not_conservative() -> Finding:
     gaps = {}
     for m in (1.4, 2.0):
         gamma, circle = float(gamma_of_m(m)), combined_circle(m)
-        curve = contour(gamma)
-        inside = 0.5 * abs(float(np.sum((curve[:-1].conj() * curve[1:]).imag)))
-        gaps[f"$M = {m:g}$"] = 1.0 - inside / (np.pi * circle.radius**2)
+        gaps[f"$M = {m:g}$"] = 1.0 - enclosed_area(gamma) / (np.pi * circle.radius**2)
     values = list(gaps.values())
     return Finding(
         "holds" if values[1] < values[0] and values[1] < 0.1 else "holds-partly",
@@ -264,8 +266,7 @@ def figure_6() -> Finding:
     pairs = printed_pairs()
 
     def outside(m: float, gamma: float) -> float:
-        circle = combined_circle(m)
-        return float(np.max(np.abs(contour(gamma) + circle.center))) / circle.radius - 1.0
+        return distances(gamma, combined_circle(m))[1] - 1.0
 
     values = [outside(*pairs[column]) for column in ("1.40", "2.00")]
     # a larger gamma has the smaller curve: is one that rounds to the print enclosed?
@@ -287,10 +288,9 @@ def figure_6() -> Finding:
 def inside_and_outside() -> Finding:
     deepest, farthest = -np.inf, -np.inf
     for gamma in CONTOURS:
-        curve = contour(gamma)
         inner, outer = combined_circle(0.5 * (gamma + 1.0)), combined_circle(float(m_of_gamma(gamma)))
-        deepest = max(deepest, 1.0 - float(np.min(np.abs(curve + inner.center))) / inner.radius)
-        farthest = max(farthest, float(np.max(np.abs(curve + outer.center))) / outer.radius - 1.0)
+        deepest = max(deepest, 1.0 - distances(gamma, inner)[0])
+        farthest = max(farthest, distances(gamma, outer)[1] - 1.0)
     return Finding(
         "holds" if max(deepest, farthest) < ROUNDING else "fails",
         round(max(deepest, farthest), 12) + 0.0,

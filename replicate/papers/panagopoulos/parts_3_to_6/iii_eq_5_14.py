@@ -12,6 +12,7 @@ from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import (
     combined_circle,
     contour,
     contour_points,
+    distances,
     gamma_at,
     gamma_of_m,
     m_of_gamma,
@@ -76,9 +77,9 @@ def as_written() -> pd.DataFrame:
             points.ob, points.oc, points.od, points.ac, points.ob * points.od,
             float(np.degrees(points.phase_of_a)),
             m, float(gamma_of_m(m)),
-            round(float(np.max(distance)) - 1.0, DECIMALS) + 0.0,
+            round(distances(gamma, circle)[1] - 1.0, DECIMALS) + 0.0,
             float(touch.real), float(abs(touch.imag)),
             inner_m,
-            round(1.0 - float(np.min(np.abs(curve + inner.center))) / inner.radius, DECIMALS) + 0.0,
+            round(1.0 - distances(gamma, inner)[0], DECIMALS) + 0.0,
         ]  # fmt: skip
     return formulas.frame(rows)

@@ -112,7 +112,7 @@ class SetpointFilter(NamedTuple):
 
 def coarse_grid_peak(gains: tuple[float, float, float] | None = None) -> setpoint.Resonance:
     """Return the peak of |T| as paper II's tables found it: the largest of the 50 values on ``logspace(-2, 2)``."""
-    return setpoint.Resonance.on_coarse_grid(DRYING, _controller(gains))
+    return setpoint.Resonance.on_coarse_grid(Loop(DRYING, _controller(gains)))
 
 
 def _controller(gains: tuple[float, float, float] | None) -> PID:
@@ -122,7 +122,7 @@ def _controller(gains: tuple[float, float, float] | None) -> PID:
 def setpoint_filters(gains: tuple[float, float, float] | None = None) -> SetpointFilter:
     """Evaluate the filter formulas of the supplement to paper II; ``gains`` (k, ki, kd) default to the printed ones."""
     controller = _controller(gains)
-    peak = setpoint.Resonance.of(DRYING, controller)
+    peak = setpoint.Resonance.of(Loop(DRYING, controller))
     return SetpointFilter(
         printed_formula=setpoint.full_weight_filter_as_printed(controller, peak),
         corrected=setpoint.full_weight_filter_corrected(controller, peak),

@@ -6,12 +6,14 @@ The gamma contour is the set of points L with (1 + \|L\|)/\|1 + L\| = gamma; a N
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.exhibits.extrema import largest, smallest
 from replicate.loops import PI, Circle, PIDesign, Plant, Weight, design_pi
 
 Array = NDArray[np.float64]
@@ -83,6 +85,48 @@ def contour_points(gamma: float) -> Contour:
         oc=square / (2.0 - square),
         ac=2.0 * float(np.sqrt((square - 1.0) / (square - 2.0) ** 2)),
     )
+
+
+def _branches(gamma: float) -> list[Callable[[float], complex]]:
+    """Return the upper half of the contour as two functions of a parameter from 0, at A, to 1, at D and at B."""
+    start = contour_points(gamma).phase_of_a
+
+    def point(u: float, sign: float) -> complex:
+        phase = start + (np.pi - start) * u**2
+        c = (gamma**2 * np.cos(phase) - 1.0) / (gamma**2 - 1.0)
+        outer = -c + np.sqrt(max(c**2 - 1.0, 0.0)) if u > 0.0 else 1.0
+        return complex(outer**sign * np.exp(1j * phase))
+
+    return [lambda u: point(u, -1.0), lambda u: point(u, 1.0)]
+
+
+def distances(gamma: float, circle: Circle) -> tuple[float, float]:
+    """Return how near to the centre of a circle the contour comes, and how far from it, as parts of its radius."""
+    grid = np.linspace(0.0, 1.0, 101)
+    near, far = [], []
+    for branch in _branches(gamma):
+
+        def distance(u: float, branch: Callable[[float], complex] = branch) -> float:
+            return abs(branch(u) + circle.center) / circle.radius
+
+        near.append(smallest(distance, grid)[1])
+        far.append(largest(distance, grid)[1])
+    return min(near), max(far)
+
+
+def enclosed_area(gamma: float) -> float:
+    """Return the area inside the contour."""
+    from scipy.integrate import quad
+
+    start = contour_points(gamma).phase_of_a
+
+    def slice_(phase: float) -> float:
+        # r^2 of the outer branch less that of the inner one, whose product is one: r + 1/r = -2c
+        c = (gamma**2 * np.cos(phase) - 1.0) / (gamma**2 - 1.0)
+        return float(-4.0 * c * np.sqrt(max(c**2 - 1.0, 0.0)))
+
+    # both halves, each half of the integral of r^2; the root vanishes at A
+    return float(quad(lambda u: 2.0 * u * (np.pi - start) * slice_(start + (np.pi - start) * u**2), 0.0, 1.0)[0])
 
 
 def contour(gamma: float, points: int = 721) -> ComplexArray:

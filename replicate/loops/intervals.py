@@ -1,0 +1,132 @@
+"""Interval arithmetic: numbers known to lie between two ends, and what follows from them with certainty.
+
+Every operation returns an interval that holds all results for numbers of its operands; the ends are moved outward by
+one unit in the last place, which is more than floating point loses in an addition, a product or a quotient.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import inf, nextafter
+
+
+@dataclass(frozen=True)
+class Interval:
+    """All numbers from `low` to `high`.
+
+    Examples
+    --------
+    >>> product = Interval(1.0, 2.0) * Interval(-3.0, 0.5)
+    >>> product.low <= -6.0, product.high >= 1.0, product.holds(0.3), product.holds(1.1)
+    (True, True, True, False)
+    """
+
+    low: float
+    high: float
+
+    @property
+    def middle(self) -> float:
+        """The number in the middle."""
+        return (self.low + self.high) / 2.0
+
+    @property
+    def reach(self) -> float:
+        """How far its numbers are from the middle at most."""
+        return nextafter(max(self.high - self.middle, self.middle - self.low), inf)
+
+    def holds(self, number: float) -> bool:
+        """Say whether a number lies in it."""
+        return self.low <= number <= self.high
+
+    def meets(self, low: float, high: float) -> bool:
+        """Say whether it has a number in common with the numbers from `low` to `high`."""
+        return self.low <= high and low <= self.high
+
+    def __add__(self, other: Interval) -> Interval:
+        """Return the sum."""
+        return _outward(self.low + other.low, self.high + other.high)
+
+    def __sub__(self, other: Interval) -> Interval:
+        """Return the difference."""
+        return _outward(self.low - other.high, self.high - other.low)
+
+    def __mul__(self, other: Interval) -> Interval:
+        """Return the product."""
+        ends = [a * b for a in (self.low, self.high) for b in (other.low, other.high)]
+        return _outward(min(ends), max(ends))
+
+    def __truediv__(self, other: Interval) -> Interval:
+        """Return the quotient; without limits where the divisor may be zero."""
+        if other.holds(0.0):
+            return Interval(-inf, inf)
+        ends = [a / b for a in (self.low, self.high) for b in (other.low, other.high)]
+        return _outward(min(ends), max(ends))
+
+    def __neg__(self) -> Interval:
+        """Return the negative."""
+        return Interval(-self.high, -self.low)
+
+
+@dataclass(frozen=True)
+class ComplexInterval:
+    """All complex numbers with real and imaginary part in two intervals."""
+
+    real: Interval
+    imag: Interval
+
+    def __add__(self, other: ComplexInterval) -> ComplexInterval:
+        """Return the sum."""
+        return ComplexInterval(self.real + other.real, self.imag + other.imag)
+
+    def __sub__(self, other: ComplexInterval) -> ComplexInterval:
+        """Return the difference."""
+        return ComplexInterval(self.real - other.real, self.imag - other.imag)
+
+    def __mul__(self, other: ComplexInterval) -> ComplexInterval:
+        """Return the product."""
+        return ComplexInterval(
+            self.real * other.real - self.imag * other.imag, self.real * other.imag + self.imag * other.real
+        )
+
+    def conjugate(self) -> ComplexInterval:
+        """Return the conjugate."""
+        return ComplexInterval(self.real, -self.imag)
+
+
+def exactly(number: float) -> Interval:
+    """Return the interval of one number."""
+    return Interval(number, number)
+
+
+def on_the_axis(w: Interval) -> ComplexInterval:
+    """Return i w."""
+    return ComplexInterval(exactly(0.0), w)
+
+
+def polynomial(coefficients: Sequence[Interval], s: ComplexInterval) -> ComplexInterval:
+    """Return a polynomial, descending powers, at points of an interval."""
+    zero = exactly(0.0)
+    value = ComplexInterval(zero, zero)
+    for coefficient in coefficients:
+        value = value * s + ComplexInterval(coefficient, zero)
+    return value
+
+
+def derivative(coefficients: Sequence[Interval]) -> list[Interval]:
+    """Return the coefficients of a polynomial's derivative."""
+    degree = len(coefficients) - 1
+    return [exactly(float(degree - place)) * c for place, c in enumerate(coefficients[:-1])]
+
+
+def product(first: Sequence[Interval], second: Sequence[Interval]) -> list[Interval]:
+    """Return the coefficients of the product of two polynomials."""
+    found = [exactly(0.0)] * (len(first) + len(second) - 1)
+    for i, a in enumerate(first):
+        for j, b in enumerate(second):
+            found[i + j] = found[i + j] + a * b
+    return found
+
+
+def _outward(low: float, high: float) -> Interval:
+    return Interval(nextafter(low, -inf), nextafter(high, inf))
