@@ -351,7 +351,8 @@ def test_what_the_copy_at_hand_lost_is_not_held_against_the_paper(claims: dict[s
     for id in ("eq-20", "eq-24"):
         assert claims[id].check().verdict == "undecided"
     ledger = tomllib.loads((paper.folder() / "ledger.toml").read_text(encoding="utf-8"))
-    assert {entry["cause"] for entry in ledger["entry"]} == {"print-or-copy"}
+    wrong = {entry["cause"] for entry in ledger["entry"]} - {"measured", "unavailable"}  # of inputs
+    assert wrong == {"print-or-copy"}
 
 
 @pytest.mark.parametrize("id", ["others-overshoot", "settles-third", "near-optimal-tau-cl"])
