@@ -84,6 +84,30 @@ def test_the_control_effort_by_small_steps_of_time(paper: str) -> None:
         assert found["largest step"].value == pytest.approx(U / max(signals), rel=2e-3)
 
 
+@pytest.mark.parametrize("paper", ["krajewski", "panagopoulos"])
+def test_windup_by_small_steps_of_time(paper: str) -> None:
+    for inputs in drawn(paper, "windup"):
+        K, T, L, k, ki, U = (float(inputs[key]) for key in ("K", "T", "L", "k", "ki", "U"))
+        found = variation(paper, "windup").answers(inputs)
+        step, lag = 5e-4, round(L / 5e-4)
+        for held in (False, True):
+            y, total, time, signals = 0.0, 0.0, 0.0, [0.0] * lag
+            while y < 1.0:  # Euler's method
+                command = k * (1 - y) + total
+                if held and command < U:
+                    break
+                assert command > U  # at its limit until then
+                signals.append(U)
+                total += 0.0 if held else ki * (1 - y) * step
+                y += step * (K * signals[-1 - lag] - y) / T
+                time += step
+            if held:
+                assert time == pytest.approx(found["left"].value, rel=2e-3)
+            else:
+                assert time == pytest.approx(found["reached"].value, rel=3e-3)
+                assert total == pytest.approx(found["integral"].value, rel=3e-3)
+
+
 LOOPS = {
     "krajewski": lambda s, x: (x["b"] + x["a"] / s) * np.exp(-x["tau"] * s) / (1 + s),
     "panagopoulos": lambda s, x: (x["k"] + x["ki"] / s) / ((x["T"] * s + 1) * (s + 1) ** 2),

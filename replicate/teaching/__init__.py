@@ -7,5 +7,6 @@ from replicate.teaching.control_effort import control_effort
 from replicate.teaching.nyquist_reading import nyquist_reading
 from replicate.teaching.sketch import sketch
 from replicate.teaching.step_test import step_test
+from replicate.teaching.windup import windup
 
-__all__ = ["control_effort", "nyquist_reading", "sketch", "step_test"]
+__all__ = ["control_effort", "nyquist_reading", "sketch", "step_test", "windup"]

@@ -19,7 +19,7 @@ from replicate.papers.krajewski.loci import upper_end
 from replicate.papers.krajewski.normalised_loop import lag, loop, point
 from replicate.papers.krajewski.table_1 import MARGINS, hyperbola, hyperbola_fit, printed_coefficients, upper_ends
 from replicate.papers.krajewski.table_1_errors import residuals, single_digit_slips
-from replicate.teaching import control_effort, nyquist_reading
+from replicate.teaching import control_effort, nyquist_reading, windup
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -199,3 +199,4 @@ nyquist_reading(
     },
 )
 control_effort(exercises, "effort", {"K": 0.8, "T": 3.0, "L": 1.0, "k": 1.9, "ki": 0.5, "U": 5.0})
+windup(exercises, "windup", {"K": 0.8, "T": 3.0, "L": 0.7, "k": 4.0, "ki": 1.5, "U": 2.0})

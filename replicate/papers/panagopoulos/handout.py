@@ -18,7 +18,7 @@ from replicate.papers.panagopoulos.part_1.designs import design, load_response
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
 from replicate.papers.panagopoulos.part_1.settling_evidence import levels
-from replicate.teaching import nyquist_reading, step_test
+from replicate.teaching import nyquist_reading, step_test, windup
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -171,3 +171,4 @@ nyquist_reading(
     },
 )
 step_test(exercises, "step-test", {"K": 1.7, "T": 6.0, "L": 2.5, "u": 1.4, "seed": 1998.0})
+windup(exercises, "windup", {"K": 1.6, "T": 4.0, "L": 0.9, "k": 2.4, "ki": 0.7, "U": 1.2})
