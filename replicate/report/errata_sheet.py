@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from replicate.display import numbers
@@ -81,10 +81,11 @@ class Erratum:
 
 @dataclass(frozen=True)
 class Sheet:
-    """The errata of one paper, worst first."""
+    """The errata of one paper, worst first, and what differs without an explanation."""
 
     paper: Paper
     errata: list[Erratum]
+    unexplained: list[Erratum]
 
     @property
     def told(self) -> list[Erratum]:
@@ -102,13 +103,19 @@ def sheets(papers: Sequence[Paper], judgement: Judgement) -> list[Sheet]:
     judgement
         Of all of them together.
     """
-    return [Sheet(paper, _errata(paper, judgement)) for paper in papers]
+    found = []
+    for paper in papers:
+        own = [verdict for verdict in judgement.verdicts if verdict.paper == paper.id]
+        unexplained = [verdict for verdict in own if verdict.verdict == "unexplained"]
+        found.append(Sheet(paper, _grouped(paper, errors(own)), _grouped(paper, unexplained)))
+    return found
 
 
-def _errata(paper: Paper, judgement: Judgement) -> list[Erratum]:
+def _grouped(paper: Paper, verdicts: Iterable[VerdictRow]) -> list[Erratum]:
+    """Return verdicts in groups that share an exhibit and an explanation."""
     pages = pages_of(paper)
     groups: dict[tuple[str, ...], list[VerdictRow]] = {}
-    for row in errors(verdict for verdict in judgement.verdicts if verdict.paper == paper.id):
+    for row in verdicts:
         own = row.row if row.column == CLAIM_COLUMN else ""
         groups.setdefault((row.exhibit, own, row.consequence, row.verdict, row.cause, row.explanation), []).append(row)
     found = []

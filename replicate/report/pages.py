@@ -133,6 +133,7 @@ def build_report(
     verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")
     texts[name] = render("methods.html", name, verdicts=verdicts, **shared)
     mistakes = [erratum for sheet in found for erratum in sheet.errata]
+    unexplained = [erratum for sheet in found for erratum in sheet.unexplained]
     texts[ERRATA] = render("errata.html", ERRATA, sheets=found, **shared)
     listed = hits(
         papers,
@@ -149,6 +150,7 @@ def build_report(
                 page=page,
                 pages=pages,
                 mistakes=[erratum for erratum in mistakes if erratum.page == page.file],
+                unexplained=[erratum for erratum in unexplained if erratum.page == page.file],
                 **shared,
             )
     out_dir.mkdir(parents=True, exist_ok=True)
@@ -188,9 +190,16 @@ def single_page(
     views = exhibit_views(paper, results, judgement, pages_of(paper))
     texts = [text for _, text in _texts(paper, results, judgement, views)]
     page = Page(paper, "", paper.title, pieces("\n\n".join(texts)), views)
-    mistakes = [erratum for sheet in sheets([paper], judgement) for erratum in sheet.errata]
+    (sheet,) = sheets([paper], judgement)
     text = render(
-        "paper.html", page.file, page=page, pages=[page], mistakes=mistakes, language=about.language, theme=about.theme
+        "paper.html",
+        page.file,
+        page=page,
+        pages=[page],
+        mistakes=sheet.errata,
+        unexplained=sheet.unexplained,
+        language=about.language,
+        theme=about.theme,
     )
     own = {page.file, *(page_name(paper.id, part) for part in parts(paper))}
     return self_contained(text, own, {f"{DATA}/{name}": content for name, content in data.items()})

@@ -123,7 +123,7 @@ def _view(exhibit: Exhibit, result: Result | None, common: dict[str, Any]) -> Ex
                 table=table_view(exhibit, result, common["verdicts"]),
                 caption=exhibit.caption,
                 sources=sources([reading.compute for reading in exhibit.readings.values()]),
-                files=[(f"CSV, {id}", f"{base}.{id}.csv") for id in result.frames],
+                files=[(f"CSV, {id}" if len(result.frames) > 1 else "CSV", f"{base}.{id}.csv") for id in result.frames],
             )
         case Figure(), FigureResult():
             return ExhibitView(

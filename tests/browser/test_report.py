@@ -140,7 +140,7 @@ def test_two_clicks_lead_a_newcomer_to_what_is_wrong_in_a_table(report: Path, br
             assert re.search(r"[\d.]+ ?%|digits?|units?", said), said  # how far off
             if row["corrected"]:
                 assert row["corrected"] in said.replace("\u0305", "")
-        one = wrong[0]
+        one = next(row for row in wrong if row["corrected"])
         click(page.locator(f".wrong a[href='#{one['address'].partition('#')[2]}']"))
         card = page.locator("td:target > .card")
         assert card.is_visible()
@@ -232,6 +232,24 @@ def test_curves_are_read_and_switched(report: Path, browser: Any) -> None:
         page.keyboard.press("Escape")
         assert page.locator("dialog").count() == 0
         assert page.locator("#fig-4 .drawing svg").count() == 1
+
+
+def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: Path, browser: Any) -> None:
+    with Sight(browser, report / "khan.html") as page:
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        heads = page.locator("#table-2 thead th.over")
+        assert [head.get_attribute("colspan") for head in heads.all()] == ["4", "4"]
+        assert page.locator("#table-2 h3 .label").text_content() == "Table II"  # as the paper numbers it
+        page.locator("#table-2 .files").get_by_role("button", name="copy as CSV").click()
+        names, *rows = csv.reader(io.StringIO(page.evaluate("navigator.clipboard.readText()")))
+        assert len(set(names)) == len(names) == 9
+        assert [name.endswith("ph=1") for name in names[1:]] == [True] * 4 + [False] * 4
+        assert {len(row) for row in rows} == {9}
+        # what the line above says already is written only once, but copied, and shown where that line is not
+        again = page.locator("#table-2 td.again").first
+        assert again.evaluate("(cell) => getComputedStyle(cell).visibility") == "hidden"
+        page.locator("#table-2 .pick select").select_option(index=2)
+        assert again.evaluate("(cell) => getComputedStyle(cell).visibility") == "visible"
 
 
 def test_tables_sort_and_copy(report: Path, browser: Any) -> None:

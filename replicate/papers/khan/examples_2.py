@@ -118,6 +118,7 @@ example_2_2 = paper.table(
     kind="example",
     rows=("K_max",),
     columns=("value",),
+    caption="The gain at which the closed loop of $e^{-hs}/(s+p)$ begins to oscillate without end.",
     labels={"K_max": "$K_{max}$"},
 )
 

@@ -1,0 +1,54 @@
+"""A table as the report shows it: heads over groups of columns, values shown once, every cell of a note named."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+
+from replicate.display.spanners import spans
+from replicate.display.tables import TableView, table_view
+from replicate.exhibits import Table
+from replicate.exhibits.results import TableResult
+
+COLUMNS = ("k_1", "Ti_1", "k_2", "Ti_2")
+LABELS = {"k_1": "$k$, first loop", "Ti_1": "$T_i$, first loop", "k_2": "$k$, $f(1, 2)$", "Ti_2": "$T_i$, $f(1, 2)$"}
+
+
+def view(*values: list[list[float]]) -> TableView:
+    table = Table("table-1", "table", "Gains", rows=("A", "B"), columns=COLUMNS, labels=LABELS, printed=False)
+    frames = {
+        id: pd.DataFrame(rows, index=["A", "B"], columns=list(COLUMNS))
+        for id, rows in zip(("as-written", "other"), values, strict=False)
+    }
+    for id, frame in frames.items():
+        table.reading(id, id)(frame.copy)
+    return table_view(table, TableResult("p", "table-1", frames), [])
+
+
+def test_columns_with_a_common_end_stand_under_one_head() -> None:
+    found = view([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]).spans
+    assert [span.label for span in found] == ["first loop", "$f(1, 2)$"]
+    assert [[label for _, label in span.columns] for span in found] == [["$k$", "$T_i$"]] * 2
+
+
+@pytest.mark.parametrize(
+    ("labels", "heads"),
+    [
+        (["a", "b", "c"], ["", "", ""]),
+        (["a, 1", "b, 2"], ["", ""]),  # one column is no group
+        (["a, 1", "b, 1", "c, 2", "d, 1"], ["1", "", ""]),  # only neighbours are
+        (["n, 1", "n, 2", "n, 3", "none"], ["n", ""]),
+        ([], []),
+    ],
+)
+def test_groups_are_of_neighbours(labels: list[str], heads: list[str]) -> None:
+    found = spans(labels)
+    assert [span.label for span in found] == heads
+    assert [place for span in found for place, _ in span.columns] == list(range(len(labels)))
+
+
+def test_what_the_line_above_says_is_marked() -> None:
+    shown = view([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]], [[1.0, 2.5, 3.0, 4.5], [5.0, 6.0, 7.0, 8.0]])
+    (_, first), (_, second) = shown.rows
+    assert [line.repeats for line in shown.lines(first)] == [[False] * 4, [True, False, True, False]]
+    assert [line.readings for line in shown.lines(second)] == [["as-written", "other"]]
