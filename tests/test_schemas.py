@@ -9,6 +9,7 @@ from pathlib import Path
 import jsonschema
 import pytest
 
+from replicate.loops.sweep.axes import CONTROLLER_COLUMNS
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
 from replicate.resources import schemas
@@ -86,7 +87,10 @@ def test_a_schema_knows_the_fields_that_are_read() -> None:
     assert tuple(entry["required"]) == ledgers._REQUIRED
     assert tuple(entry["properties"]["cause"]["enum"]) == ledgers.CAUSES
     assert tuple(json.loads(schemas()["project"])["properties"]) == projects._KEYS
-    assert tuple(json.loads(schemas()["sweep"])["properties"]) == sweep_file._KEYS
+    sweep = json.loads(schemas()["sweep"])["properties"]
+    assert tuple(sweep) == sweep_file._KEYS
+    (controllers,) = (kind["properties"] for kind in sweep["controllers"]["oneOf"] if "properties" in kind)
+    assert tuple(controllers) == CONTROLLER_COLUMNS
 
 
 def test_new_files_name_their_schema_and_fit(tmp_path: Path) -> None:

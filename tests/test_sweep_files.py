@@ -18,7 +18,7 @@ import pandas as pd
 import pytest
 
 from replicate.errors import OutputError
-from replicate.loops import PI, Loop, Plant
+from replicate.loops import PI, PID, Loop, Plant
 from replicate.run.backends import LocalProcesses
 from replicate.sweeps import read_sweep_file, run_sweep
 from replicate.sweeps.sweep_file import SweepFile
@@ -163,6 +163,13 @@ def test_a_full_disk_is_one_line(tmp_path: Path) -> None:
         ("ki = [0.2, 5.0]", "ki = []", "s.toml:8: ki must be a number, a list of numbers, or a range"),
         ("ki = [0.2, 5.0]", "ki = [nan]", "s.toml:8: ki must be a number, a list of numbers, or a range"),
         ("ki = [0.2, 5.0]", "Ki = [0.2]", "s.toml:8: controllers: 'Ki' is unknown; allowed: k, ki"),
+        ("ki = [0.2, 5.0]", "measurement_filter_order = [1, 1.5, 2]", "s.toml:6: controllers[1]: the order of the "),
+        ("ki = [0.2, 5.0]", "ki = [inf]", "s.toml:8: ki must be a number, a list of numbers, or a range"),
+        (
+            "ki = [0.2, 5.0]",
+            "derivative_filter = [-0.1]",
+            "s.toml:6: controllers[0]: the controller's derivative_filter",
+        ),
         ("points = 3", "points = 0", "s.toml:7: k is no range: expected"),
         ("(s+1)^3", "(s+1^3", "s.toml:2: plants[1]: "),
         ('plants = ["e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3"]', "plants = []", "s.toml:2: plants must be a text"),
@@ -181,6 +188,27 @@ def test_what_is_wrong_in_the_file_is_one_line(replicate: Run, old: str, new: st
     assert err.startswith(f"replicate: {message}")
     assert err.count("\n") == 1
     assert not Path("build").exists()
+
+
+@pytest.mark.parametrize("dead_time", ["-1.0", "[0.5, -0.5, 1.0]"])
+def test_a_negative_dead_time_is_one_line(replicate: Run, dead_time: str) -> None:
+    text = f"[plants]\ngain = 1\ntime_constant = 1\ndead_time = {dead_time}\n[controllers]\nk = 1\n"
+    Path("s.toml").write_text(text, encoding="utf-8")
+    status, out, err = replicate("sweep", "s.toml")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "dead time" in err or "dead_time" in err
+
+
+def test_an_order_of_the_filter_may_vary(tmp_path: Path) -> None:
+    controllers = "[controllers]\nk = 0.5\nki = 0.2\nkd = 0.1\nmeasurement_filter = 0.05\n"
+    text = f'plants = "e^{{-s}}/(s+1)"\nmetrics = "ms"\n{controllers}measurement_filter_order = [1, 2]\n'
+    run_sweep(written(tmp_path / "s.toml", text), tmp_path / "out", "csv", LocalProcesses(1))
+    frame = pd.read_csv(tmp_path / "out" / "block-000000.csv")
+    plant = Plant([1.0], [1.0, 1.0], dead_time=1.0)
+    assert list(frame["measurement_filter_order"]) == [1, 2]
+    for order, ms in zip((1, 2), frame["ms"], strict=True):
+        loop = Loop(plant, PID(0.5, 0.2, 0.1, measurement_filter=0.05, measurement_filter_order=order))
+        assert ms == pytest.approx(float(loop.sensitivity_peak()), rel=1e-9)
 
 
 def test_the_files_of_the_documentation_are_read(tmp_path: Path) -> None:

@@ -118,14 +118,14 @@ def _options(
 
 
 def _executor(backend: str, scheduler: str | None, unit_timeout: float) -> Executor | None:
-    from replicate.run.backends import LOCAL, backend_of
+    from replicate.run.backends import cluster_of
 
-    chosen = backend_of(backend, scheduler, None)
-    if backend == LOCAL:
+    cluster = cluster_of(backend, scheduler)
+    if cluster is None:
         return None
     from replicate.run.cluster import ClusterPool
 
-    return ClusterPool(chosen, unit_timeout)
+    return ClusterPool(cluster, unit_timeout)
 
 
 def computing(command: Callable[..., Returned]) -> Callable[..., Returned]:

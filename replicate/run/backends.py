@@ -126,7 +126,18 @@ def backend_of(name: str, scheduler: str | None, jobs: int | None) -> Backend:
     Raises
     ------
     ReplicateError
-        If there is none of this name, or it lacks a scheduler or a package.
+        As `cluster_of`.
+    """
+    return cluster_of(name, scheduler) or LocalProcesses(jobs or os.cpu_count() or 1)
+
+
+def cluster_of(name: str, scheduler: str | None) -> DaskCluster | None:
+    """Return the cluster that options name; ``None`` if they mean this machine.
+
+    Raises
+    ------
+    ReplicateError
+        If there is no backend of this name, or it lacks a scheduler or a package.
     """
     if name not in NAMES:
         msg = f"--backend must be {' or '.join(NAMES)}, not {name!r}"
@@ -135,7 +146,7 @@ def backend_of(name: str, scheduler: str | None, jobs: int | None) -> Backend:
         if scheduler is not None:
             msg = "--scheduler belongs to --backend dask"
             raise ReplicateError(msg)
-        return LocalProcesses(jobs or os.cpu_count() or 1)
+        return None
     if find_spec("distributed") is None:
         msg = "--backend dask needs Dask, which is not installed: pip install 'paper-replicate[cluster]'"
         raise ReplicateError(msg)

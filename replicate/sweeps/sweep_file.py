@@ -22,16 +22,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
+import numpy as np
+
 from replicate.errors import SweepFileError
 from replicate.exhibits.plain_text import parse_toml, read_text
 from replicate.loops.errors import LoopError
-from replicate.loops.sweep.axes import PLANT_COLUMNS, controller_axis, plant_axis
+from replicate.loops.sweep.axes import CONTROLLER_COLUMNS, PLANT_COLUMNS, controller_axis, plant_axis
 from replicate.loops.sweep.metric_names import checked_metrics
 from replicate.loops.sweep.sweep_result import GRID, PAIRWISE
 from replicate.sweeps.sides import Refuse, Side, side_of
 
 PLANT = PLANT_COLUMNS[0]
-CONTROLLER = ("k", "ki", "kd", "b", "c", "derivative_filter", "setpoint_filter", "measurement_filter")
+ORDER = "measurement_filter_order"
 METRICS = ("overshoot", "settling_time", "iae", "ms")
 PAIRINGS = (GRID, PAIRWISE)
 BLOCK = 10_000
@@ -141,7 +143,7 @@ def read_sweep_file(path: Path) -> SweepFile:
     made = SweepFile(
         path.stem,
         side_of("plant", data["plants"], PLANT, refuse),
-        side_of("controller", data["controllers"], CONTROLLER, refuse),
+        side_of("controller", data["controllers"], CONTROLLER_COLUMNS, refuse),
         checked,
         data.get("pairing", GRID),
         data.get("until"),
@@ -181,7 +183,11 @@ def _check_sides(sweep: SweepFile, refuse: Refuse) -> None:
 def _corners(side: Side) -> dict[str, list[Any]]:
     if side.columns is None:
         return side.members(0, len(side))
-    ends = {name: values[[values.argmin(), values.argmax()]] for name, values in side.columns.items()}
+    # What is allowed of a number is an interval, so that its ends tell; an order is one of two, and each is looked at.
+    ends = {
+        name: np.unique(values) if name == ORDER else values[[values.argmin(), values.argmax()]]
+        for name, values in side.columns.items()
+    }
     corners = Side(side.name, columns=ends)
     return corners.members(0, len(corners))
 
