@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 from replicate import resources
@@ -43,5 +44,10 @@ def new_project(folder: Path, title: str = "") -> None:
             raise OutputError(msg)
     words = folder.resolve().name.replace("-", " ").replace("_", " ")
     schemas = {f"{SCHEMAS}/{name}.schema.json": text for name, text in resources.schemas().items() if name in _WRITTEN}
-    variables = {"title": title or words[:1].upper() + words[1:], "schema": f"{SCHEMAS}/project.schema.json"}
+    name = title or words[:1].upper() + words[1:]
+    variables = {
+        "title": name,
+        "quoted": json.dumps(name, ensure_ascii=False),
+        "schema": f"{SCHEMAS}/project.schema.json",
+    }
     write_templates("new_project", _PLACES, folder, schemas, **variables)

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gallery import GALLERY, NOISE, T, Z
+from gallery import GALLERY, NOISE, T, X, Y, Z
+from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -362,8 +363,8 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("panels", "label", lambda figure: figure.supxlabel("hours"), "hours"),
     ("panels", "space", lambda figure: figure.subplots_adjust(hspace=0.8), "the panel is now at"),
     ("constrained", "ratio", lambda figure: figure.axes[0].get_subplotspec().get_gridspec().set_width_ratios([1, 2]), "the panel"),
-    ("sub_figures", "title", lambda figure: figure.subfigs[0].suptitle("links"), "links"),
-    ("sub_figures", "face", lambda figure: figure.subfigs[1].set_facecolor("yellow"), "from light grey to yellow|changed from"),
+    ("sub_figures", "title", lambda figure: figure.subfigs[0].suptitle("links"), "title of sub-figure 1 now reads 'links'"),
+    ("sub_figures", "face", lambda figure: figure.subfigs[1].set_facecolor("yellow"), "background of sub-figure 2 changed from light grey to yellow"),
     ("figure_artists", "note moved", lambda figure: figure.texts[0].set_position((0.2, 0.9)), "text 'note' moved"),
     ("figure_artists", "note", lambda figure: figure.texts[0].set_text("other note"), "text 'note' renamed 'other note'"),
     ("figure_artists", "line", lambda figure: figure.artists[0].set_ydata([0.08, 0.08]), "line 1 moved"),
@@ -375,6 +376,104 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("connected", "end", lambda figure: setattr(figure.artists[0], "xy2", (0.9, 0.9)), "shape 1 moved"),
     ("no_axes", "words", lambda figure: figure.texts[0].set_text("something"), "something"),
 ]  # fmt: skip
+
+
+def coloured(over: str) -> Any:
+    return colormaps["viridis"].with_extremes(over=over)
+
+
+#: Two figures that differ in one property, and what is said of it.
+PAIRS: list[tuple[str, Callable[[Any, Any], object], tuple[Any, Any], str]] = [
+    ("edges of a table", lambda ax, v: ax.table([["1"]], edges=v), ("closed", "horizontal"), "lines of table 1, cell 0, 0"),
+    ("head of an arrow", lambda ax, v: ax.annotate("a", (0.2, 0.2), (0.6, 0.6), arrowprops={"arrowstyle": f"->,head_width={v}"}), (0.2, 0.8), "shape of arrow of text 'a' is now head_width=0.8"),
+    ("width of an arrow", lambda ax, v: ax.annotate("a", (0.2, 0.2), (0.6, 0.6), arrowprops={"width": v}), (3, 6), "shape of arrow of text 'a' is now .*tail_width=0.6"),
+    ("length of handles", lambda ax, v: ax.legend(ax.plot([0, 1]), ["a"], handlelength=v), (2, 4), "length of the handles of legend is now 4"),
+    ("side of handles", lambda ax, v: ax.legend(ax.plot([0, 1]), ["a"], markerfirst=v), (True, False), "place of the handles of legend is now behind"),
+    ("place of a label", lambda ax, v: (ax.set_xlabel("t"), ax.xaxis.set_label_coords(0.5, v)), (-0.1, -0.2), "place of label of the x axis is now .0.5, -0.2."),
+    ("side of the title", lambda ax, v: ax.set_title("t", loc=v), ("center", "left"), "title is now at the left .was in the centre"),
+    ("turned about", lambda ax, v: ax.text(0.5, 0.5, "words", rotation=45, rotation_mode=v), ("default", "anchor"), "turning of text 'words'"),
+    ("clip of a text", lambda ax, v: ax.text(0.9, 0.5, "many words", clip_on=v), (False, True), "clipping of text 'many words'"),
+    ("clip of a note", lambda ax, v: ax.annotate("a", (1.2, 0.2), annotation_clip=v), (False, True), "text 'a' is no longer drawn"),
+    ("colour above", lambda ax, v: ax.imshow(Z, cmap=coloured(v), vmax=0.5), ("k", "r"), "colour of values above the range of image 1 changed from black to red"),
+    ("missing value", lambda ax, v: ax.imshow([[1.0, 2.0], [3.0, v]], vmin=0, vmax=4), (4.0, np.nan), "image 1 now leaves out 1 value "),
+    ("shape of a clip", lambda ax, v: ax.plot([0, 1])[0].set_clip_path(Circle((0, 0), v, transform=ax.transData)), (0.5, 0.6), "the shape to which curve 'line 1' is clipped changed"),
+    ("dashes below zero", lambda ax, v: ax.contour(X, Y, Z - 0.2, [-0.1, 0.1], colors="k", negative_linestyles=v), ("dashed", "dotted"), "dashes of contours changed"),
+    ("coordinates of a text", lambda ax, v: (ax.set_xlim(0, 2), ax.text(0.5, 0.5, "w", transform=getattr(ax, v))), ("transData", "transAxes"), "text 'w' moved from .0.5, 0.5. to .0.5, 0.5. of the axes"),
+    ("twin on top", lambda ax, v: (ax.twinx().plot([1, 0]), ax.plot([0, 1]), ax.set_zorder(v)), (0, 1), "panel 'panel 1' is drawn over panel 'panel 2' now"),
+    ("inset below", lambda ax, v: (ax.plot([0, 1], label="a"), ax.inset_axes((0.3, 0.3, 0.4, 0.4), zorder=v)), (5, 1), "curve 'a' is drawn over panel 'panel 2' now"),
+    ("shape on top", lambda ax, v: ax.figure.add_artist(Circle((0.5, 0.5), 0.2, zorder=v)), (-1, 9), "shape 1 is drawn over panel 'panel 1' now"),
+    ("words in space", lambda ax, v: ax.figure.add_subplot(projection="3d").text(0.5, 0.5, v, "w"), (0.5, 0.6), "text 'w' moved by up to"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("draw", "values", "said"), [pair[1:] for pair in PAIRS], ids=[pair[0] for pair in PAIRS])
+def test_one_property_of_two_figures_is_named(
+    draw: Callable[[Any, Any], object], values: tuple[Any, Any], said: str
+) -> None:
+    def shown(value: Any) -> Record:
+        figure = Figure()
+        draw(figure.subplots(), value)
+        return Record.from_json(capture(figure).to_json())
+
+    assert compare(shown(values[0]), shown(values[0])).changes == []
+    changes = compare(shown(values[0]), shown(values[1])).changes
+    assert any(re.search(said, text) for text in changes), changes
+
+
+def two(axes: Any, kind: str, *, turned: bool) -> None:
+    """Draw two things that do not overlap, in one order or in the other."""
+    axes.set(xlim=(0, 4), ylim=(0, 4))
+    first, second = ([0, 1], "C0"), ([2, 3], "C1")
+    for x, colour in (second, first) if turned else (first, second):
+        if kind == "lines":
+            axes.plot(x, x, color=colour)
+        elif kind == "labelled":
+            axes.plot(x, x, color=colour, label=colour)
+        elif kind == "shapes":
+            axes.add_patch(Circle((x[0] + 0.5, x[0] + 0.5), 0.4, color=colour))
+        else:
+            axes.text(x[0], x[0], colour)
+
+
+@pytest.mark.parametrize("kind", ["lines", "labelled", "shapes", "texts"])
+def test_the_order_of_what_does_not_overlap_is_not_seen(kind: str) -> None:
+    figures = Figure(), Figure()
+    for figure, other_order in zip(figures, (False, True), strict=True):
+        two(figure.subplots(), kind, turned=other_order)
+    assert compare(*map(capture, figures)).changes == []
+
+
+def test_the_order_of_what_overlaps_is() -> None:
+    figures = Figure(), Figure()
+    for figure, order in zip(figures, (("C0", "C1"), ("C1", "C0")), strict=True):
+        axes = figure.subplots()
+        for colour in order:
+            axes.add_patch(Circle((0.5 + 0.1 * int(colour[1]), 0.5), 0.3, color=colour, label=colour))
+    assert compare(*map(capture, figures)).changes == ["curve 'C1' is drawn below curve 'C0' now"]
+
+
+def test_a_curve_less_is_said_of_that_curve_though_the_others_are_numbered_anew() -> None:
+    figures = Figure(), Figure()
+    for figure, slopes in zip(figures, ((1, 2, 3), (2, 3)), strict=True):
+        axes = figure.subplots()
+        axes.set_ylim(0, 3)
+        for slope in slopes:
+            axes.plot([0, 1], [0, slope], color="k")
+    assert compare(*map(capture, figures)).changes == ["curve 'line 1' is missing"]
+
+
+def test_an_area_that_ends_at_the_axes_may_round_to_either_side() -> None:
+    x, y = np.meshgrid(*2 * [np.linspace(0.0, 10.0, 50)])
+    figures = Figure(), Figure()
+    for figure, factor in zip(figures, (1.0, 1.0 + 1e-10), strict=True):
+        figure.subplots().contourf(x, y, np.sin(x) * np.cos(y) * factor)
+    assert compare(*map(capture, figures)).changes == []
+
+
+def test_records_that_number_the_parts_of_sub_figures_are_read() -> None:
+    record = re.sub(r"background of sub-figure (\d)", r"shape \1", accepted("sub_figures").to_json())
+    older = Record.from_json(record.replace("title of sub-figure 1", "text 'left part'"))
+    assert compare(older, capture(drawn("sub_figures"))).changes == []
 
 
 def set_indicator(figure: Figure, **properties: Any) -> None:

@@ -109,6 +109,7 @@ def check(
     """
     from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
+    from replicate.handout.legibility import unreadable_handouts
     from replicate.report.texts import unreadable
 
     chosen = run.within.papers(papers or ())
@@ -120,6 +121,9 @@ def check(
         echo(problem)
     comparisons = outcome.judgement.compared
     echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
-    outcome = replace(outcome, broken=outcome.broken | unreadable(outcome))
+    handouts = {}
+    if outcome.complete and not outcome.failures:  # a text may ask for a result that failed or was not computed
+        handouts = unreadable_handouts(outcome.papers, outcome.results, outcome.judgement.verdicts)
+    outcome = replace(outcome, broken=outcome.broken | handouts | unreadable(outcome))
     status = BROKEN if comparison.broken else DIFFERS if problems else 0
     exit_with(run.within, outcome, status, problems_shown=True)

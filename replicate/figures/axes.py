@@ -15,7 +15,7 @@ Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
 
 #: Said elsewhere, by what is compared curve by curve or part by part, or by the tick labels.
-_SILENT = {"panel", "parts", "dense", "clouds", "loose", "thinned", "units", "curves", "fitted"}
+_SILENT = {"panel", "parts", "dense", "clouds", "loose", "thinned", "units", "curves", "fitted", "over"}
 _FIRST = {
     *("title", "xlabel", "ylabel", "xscale", "yscale", "xlim", "ylim", "legend", "texts", "aspect", "hidden"),
     *("points", "areas", "figure_title", "figure_texts", "figure_legend"),
@@ -147,6 +147,8 @@ def _words(name: str, before: Axes, after: Axes) -> Iterator[str]:
         yield f"the {name[0]} axis is scaled differently now"
     elif name == "polar":
         yield from _polar(one or {}, other or {})
+    elif name == "aspect":
+        yield f"aspect is now {_shown(other or 'auto')} (was {_shown(one or 'auto')})"
     elif name == "hidden":
         yield f"axes are now {'hidden' if other else 'visible'}"
     else:
@@ -245,7 +247,7 @@ def _near(one: Text, other: Text, axes: Axes) -> bool:
 
 
 def _place(text: Text) -> str:
-    return f"({_shown(text.get('x'))}, {_shown(text.get('y'))})"
+    return f"({_shown(text.get('x'))}, {_shown(text.get('y'))})" + (" of the axes" if text.get("in") else "")
 
 
 def _same(one: Any, other: Any) -> bool:

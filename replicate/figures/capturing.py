@@ -17,6 +17,8 @@ from replicate.figures.parts import Namer, Part
 from replicate.figures.readback import read_panel
 from replicate.figures.record import Record
 from replicate.figures.recorder import Drawn
+from replicate.figures.stacking import Stack, box_around, extent
+from replicate.figures.sub_figures import in_order_of_place, names_of_sub_figures
 from replicate.figures.uncommon import uncommon
 
 if TYPE_CHECKING:
@@ -49,9 +51,12 @@ def record_of(figure: Figure) -> Record:
         title = getattr(figure, "_suptitle", None)
         if title is not None and panels:
             texts[id(title)] = "figure title"
-        whole = Namer(figure, {}, texts, placed=True)
-        for call in drawn:
-            _owner(call, namers, whole)
+        whole = Namer(figure, {}, texts, names_of_sub_figures(figure), placed=True)
+        stacks = {id(owner): Stack() for owner in (figure, *(axes for _, axes in panels if axes.child_axes))}
+        called = {id(axes): f"panel '{name}'" for name, axes in panels}
+        for call in in_order_of_place(figure, drawn):
+            name = _owner(call, namers, whole)
+            _pile(call, name, called, stacks, id(figure))
         described = []
         curves: dict[tuple[str, str], Points] = {}
         for _, axes in panels:
@@ -62,12 +67,15 @@ def record_of(figure: Figure) -> Record:
             curves |= {key: np.array(value) for key, value in places.items()}
             box = Box.of(axes.bbox.extents)
             parts = [_entry(part, box) for part in namers[id(axes)].parts.values()]
-            described.append(panel.description | {"position": _position(axes, figure)} | fitted | {"parts": parts})
+            over = stacks[id(axes)].over() if id(axes) in stacks else {}
+            placed = {"position": _position(axes, figure)} | fitted | over
+            described.append(panel.description | placed | {"parts": parts})
         if described:
             described[0] |= outside
         frame = Box.of(figure.bbox.extents)
         parts = [_entry(part, frame) for part in whole.parts.values()]
     about: dict[str, Any] = {"size": [round(float(side), 3) for side in figure.get_size_inches()]} | fitted
+    about |= stacks[id(figure)].over()
     return Record(about | {"parts": parts}, described, curves)
 
 
@@ -94,17 +102,29 @@ def _all_axes(figure: Figure) -> list[Axes]:
     return found
 
 
-def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer) -> None:
-    """Hand a mark to the panel it was drawn in, or to the figure."""
+def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer) -> str:
+    """Hand a mark to the panel it was drawn in, or to the figure; return the name of its part."""
     chain: tuple[Artist, ...] = call.artists
     inner = max((i for i, artist in enumerate(chain) if id(artist) in namers), default=None)
     if inner is not None:
         axes = chain[inner]
-        namers[id(axes)].add(call, chain[inner + 1 :])
-    else:
-        # Sub-figures are no parts themselves.
-        below = [artist for artist in chain[1:] if not hasattr(artist, "subplots")]
-        whole.add(call, tuple(below))
+        return namers[id(axes)].add(call, chain[inner + 1 :])
+    # Sub-figures are no parts themselves.
+    below = [artist for artist in chain[1:] if not hasattr(artist, "subplots")]
+    return whole.add(call, tuple(below))
+
+
+def _pile(call: Drawn, name: str, called: dict[int, str], stacks: dict[int, Stack], figure: int) -> None:
+    """Note where a mark lies among what the figure, and each panel with insets, consists of."""
+    owners: list[Any] = [artist for artist in call.artists if id(artist) in called]
+    for owner, inner in zip([figure, *map(id, owners)], [*owners, None], strict=True):
+        if owner not in stacks:
+            continue
+        if inner is None:
+            stacks[owner].add(name, extent(call))
+        else:
+            left, bottom, right, top = inner.bbox.extents
+            stacks[owner].add(called[id(inner)], (left, bottom, right, top))
 
 
 def _described_texts(axes: Axes) -> dict[int, str]:
@@ -135,6 +155,9 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
     )
     if field:
         entry["field"] = field
+    around = box_around(part.drawn)
+    if around is not None:
+        entry["box"] = [round(float(end), 3) for end in box.units(np.reshape(around, (2, 2))).ravel()]
     entry["marks"] = marks = marks_of(part.drawn, box, where=part.placed or part.told)
     if field:
         _leave_colours_to(field, marks)

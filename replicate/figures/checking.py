@@ -65,6 +65,10 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str)
 
 
+def _are_pairs(value: object) -> bool:
+    return isinstance(value, list) and all(_are_texts(pair) and len(pair) == 2 for pair in value)
+
+
 def _is_flag(value: object) -> bool:
     return isinstance(value, bool)
 
@@ -155,6 +159,7 @@ _FIELDS: dict[str, _Field] = {
     "texts": (_are_placed, "a list of objects, each with text, x and y"),
     "thinned": (_are_numbers_by_name, "numbers by name"),
     "aspect": (_is_aspect, "a number or a text"),
+    "over": (_are_pairs, "a list of pairs of names"),
     "parts": (_are_parts, "a list of objects, each with name and marks"),
     "position": (_is_place, "four numbers"),
     "polar": (_is_polar, "an object with offset, direction, rlim and matrix"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -14,9 +14,10 @@ from replicate.figures.curves import CurveComparison, compare_curves
 from replicate.figures.differences import Difference, same_number
 from replicate.figures.looks import Frame
 from replicate.figures.pair import Pair
-from replicate.figures.partwise import compare_parts
+from replicate.figures.partwise import come_and_gone_by_name, compare_parts
 from replicate.figures.record import Record
 from replicate.figures.scaling import in_units
+from replicate.figures.stacking import stacking_changes
 
 # Where the layout follows the size of texts, places on the axes move with it.
 _FITTED = 20.0
@@ -63,7 +64,9 @@ def _compare(accepted: Record, new: Record) -> Comparison:
     found = [*compare_axes(accepted.panels, new.panels), *curves.changes]
     if accepted.version > 1 and new.version > 1:  # the first version knew no parts
         found += _figure(accepted.figure, new.figure)
+        found += stacking_changes(accepted.figure, new.figure, "figure")
         found += _parts(accepted, new, curves)
+        found += _untold(accepted, new, curves, found)
     return Comparison(_once(found), curves.pairs)
 
 
@@ -104,7 +107,23 @@ def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Diffe
             other_ticks=ticks,
             moved=frozenset(name for owner, name in moved if owner == panel),
         )
+        found += stacking_changes(old, fresh, panel, own)
     return found
+
+
+def _untold(
+    accepted: Record, new: Record, curves: CurveComparison, found: Sequence[Difference]
+) -> Iterator[Difference]:
+    """Yield what is drawn no more, or only now, where what is said by name did not change and so said nothing."""
+    said = "\n".join(" ".join(difference.text.split()) for difference in found)
+    several = len(accepted.panels) > 1 or len(new.panels) > 1
+    for old, fresh in matched_panels(accepted.panels, new.panels):
+        if old is None or fresh is None:
+            continue
+        panel = str(old["panel"])
+        names = {name: was for (owner, name), was in curves.renamed.items() if owner == panel}
+        for name, words in come_and_gone_by_name(old["parts"], fresh["parts"], names, said):
+            yield Difference("look", f"'{panel}': {words}" if several else words, f"{panel} / {name}")
 
 
 def _frame(old: Axes, new: Axes, slack: float) -> Frame:

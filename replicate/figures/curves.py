@@ -6,7 +6,8 @@ others by distance (`replicate.figures.distance`).
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -26,6 +27,8 @@ from replicate.figures.wording import moved_words
 _LITTLE = 10.0 * TOLERANCE
 # The error of thinning follows the last digits of a curve, but not by more than this factor.
 _SLACK = 2.0
+# What a curve without a label is called: nobody sees it, and one more curve shifts it.
+_NUMBER = re.compile(r"(line|lines|shape|area|points|contours) \d+")
 # Labels interrupt a contour by their width, which the font decides.
 _LOOSE = 0.02
 
@@ -87,7 +90,7 @@ class _Panel:
         was = self.same_elsewhere(
             {name: one[name] for name in (*differ, *gone)}, {name: other[name] for name in (*differ, *fresh)}
         )  # new name -> the accepted name of the same curve
-        done: set[str] = set()
+        done = self.numbered_anew(was, gone, one.keys(), found)
         for name in (*differ, *fresh):
             origin = was.get(name)
             if origin is None or name in done:
@@ -114,6 +117,22 @@ class _Panel:
             if name not in done:
                 words, size = moved_words(pairs[name], self.view)
                 self.say(found, "curve", f"curve '{name}'{self.suffix} {words}", name, size=size, suffix="")
+
+    def numbered_anew(
+        self, was: Mapping[str, str], gone: Sequence[str], old: Collection[str], found: CurveComparison
+    ) -> set[str]:
+        """Rename curves that have numbers for names, and return the names that are settled: nobody sees a number."""
+        numbers = {
+            name: origin for name, origin in was.items() if _NUMBER.fullmatch(name) and _NUMBER.fullmatch(origin)
+        }
+        while numbers and not all(origin in numbers or origin in gone for origin in numbers.values()):
+            numbers = {name: origin for name, origin in numbers.items() if origin in numbers or origin in gone}
+        for name, origin in numbers.items():
+            self.rename(found, name, origin)
+        origins = set(numbers.values())
+        for name in numbers.keys() & set(old) - origins:
+            self.say(found, "removed", f"curve '{name}' is missing", name)
+        return numbers.keys() | origins
 
     def rename(self, found: CurveComparison, name: str, origin: str) -> None:
         found.renamed[str(self.old["panel"]), name] = origin

@@ -25,6 +25,7 @@ TOLERANCE = 1e-3
 _TRAVEL = 0.02
 _TOTAL = 5e-3
 
+_EDGE = 1e-6
 _UNIT = 1e-5
 _NOTHING = -(10**9)
 _MARGIN = 0.5
@@ -56,7 +57,8 @@ def envelope(points: Points, *, function: bool) -> dict[str, Any]:
 def _columns(starts: Points, ends: Points) -> dict[str, list[int]]:
     """Return the four numbers of every column, as whole multiples of 1e-5 of the axes."""
     starts, ends = _cut(starts, ends)
-    column = np.floor((starts[:, 0] + ends[:, 0]) / 2.0 * COLUMNS).astype(int)
+    # What runs along the edge of a column, as an area's border along the axes does, always counts to the next one.
+    column = np.floor((starts[:, 0] + ends[:, 0]) / 2.0 * COLUMNS + _EDGE).astype(int)
     seen = (column >= 0) & (column < COLUMNS)
     column, starts, ends = column[seen], starts[seen], ends[seen]
     one, other = (np.clip(part[:, 1], -_MARGIN, 1.0 + _MARGIN) for part in (starts, ends))

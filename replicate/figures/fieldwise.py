@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
+from replicate.figures.colours import colour_words
 from replicate.figures.digests import Array
 
 #: Values and means of blocks are the same up to this fraction of the range of the colours ...
@@ -15,6 +16,8 @@ TOLERANCE = 5e-4
 _SIGNS = 2e-5
 
 _LIMITS = 1e-6
+_ENDS = ("values below the range", "values above the range", "missing values")
+_MISSING = -9.0  # stands for a value that is not shown
 _STEP = 2e-3  # of the range of the colours
 Field = Mapping[str, Any]
 
@@ -39,13 +42,18 @@ def field_words(one: Field, other: Field) -> Iterator[str]:
         low, span = spans[0], spans[1] - spans[0]
         ends = _limits(other) or spans
         second = np.where(second <= -9.0, second, (second * (ends[1] - ends[0]) + ends[0] - low) / (span or 1.0))
-    apart = np.abs(second - first)
+    hidden = (first <= _MISSING) != (second <= _MISSING)
+    apart = np.where(hidden, 0.0, np.abs(second - first))
+    if hidden.any():
+        yield _left_out(one, other)
     if apart.max(initial=0.0) > TOLERANCE:
         yield _at_most(one, apart)
+    elif hidden.any():
+        return
     elif not moved and np.abs(np.asarray(other["signs"]) - np.asarray(one["signs"])).max() > _SIGNS:
         yield "single values of {} changed"
     elif one.get("masked", 0) != other.get("masked", 0):
-        yield f"{{}} now leaves out {other.get('masked', 0)} values (left out {one.get('masked', 0)})"
+        yield _left_out(one, other)
 
 
 def _simple(one: Field, other: Field) -> Iterator[str]:
@@ -61,9 +69,7 @@ def _simple(one: Field, other: Field) -> Iterator[str]:
     opacities = np.asarray(one.get("opacities", [])), np.asarray(other.get("opacities", []))
     if opacities[0].shape != opacities[1].shape or np.abs(opacities[1] - opacities[0]).max(initial=0.0) > 2e-3:
         yield "opacities of {} changed"
-    if one.get("map", [])[1:] != other.get("map", [])[1:]:
-        names = [side.get("map", ["nothing"])[0] for side in (other, one)]
-        yield f"colour map of {{}} is now {names[0]} (was {names[1]})"
+    yield from _maps(one.get("map", []), other.get("map", []))
     before, after = _limits(one), _limits(other)
     if before is not None and after is not None and _moved(before, after):
         yield "colours of {} now run from {:.6g} to {:.6g} (ran from {:.6g} to {:.6g})".format("{}", *after, *before)
@@ -73,6 +79,25 @@ def _simple(one: Field, other: Field) -> Iterator[str]:
         if np.abs(second - first).max() > 1e-6 * max(np.ptp(first), 1e-300):
             shown = [", ".join(f"{end:.6g}" for end in extent or ()) for extent in (extents[1], extents[0])]
             yield f"{{}} now covers {shown[0]} (covered {shown[1]})"
+
+
+def _left_out(one: Field, other: Field) -> str:
+    count = other.get("masked", 0)
+    return f"{{}} now leaves out {count} value{'' if count == 1 else 's'} (left out {one.get('masked', 0)})"
+
+
+def _maps(one: Sequence[str], other: Sequence[str]) -> Iterator[str]:
+    """Say how colour maps differ; their last three colours are those below, above and without a value."""
+    if one[1:] == other[1:]:
+        return
+    names = [side[0] if side else "nothing" for side in (other, one)]
+    ends = [(words, *pair) for words, *pair in zip(_ENDS, one[-3:], other[-3:], strict=False) if pair[0] != pair[1]]
+    if names[0] != names[1] or one[1:-3] != other[1:-3]:
+        same = f"colours of the colour map {names[0]} of {{}} changed"
+        yield same if names[0] == names[1] else f"colour map of {{}} is now {names[0]} (was {names[1]})"
+        return
+    for words, before, after in ends:
+        yield "colour of {} of {{}} changed from {} to {}".format(words, *colour_words(before, after))
 
 
 def _limits(field: Field) -> tuple[float, float] | None:

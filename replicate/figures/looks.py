@@ -127,14 +127,17 @@ def _look(one: Mark, other: Mark) -> Iterator[str]:
         yield from _numbers(name, words, one, other)
     before, after = one.get("dash", []), other.get("dash", [])
     if "edge" in one and "edge" in other and not _same_dash(before, after):
-        yield "{{}} is {} now (was {})".format(*(_dashes(mark) for mark in (other, one)))
+        dashes = [_dashes(mark) for mark in (other, one)]
+        yield "dashes of {} changed" if dashes[0] == dashes[1] else "{{}} is {} now (was {})".format(*dashes)
     for name, called in _WORDS.items():
         if name in {"cap", "join"} and not (name in one and name in other):
             continue  # thin lines do not say
         if one.get(name, "") != other.get(name, ""):
             yield f"{called} is now {other.get(name) or 'normal'} (was {one.get(name) or 'normal'})"
     if not _same_clip(one.get("clip"), other.get("clip")):
-        yield f"{{}} is clipped {_clips(other.get('clip'))} now (was {_clips(one.get('clip'))})"
+        clips = [_clips(mark.get("clip")) for mark in (other, one)]
+        different = f"{{}} is clipped {clips[0]} now (was {clips[1]})"
+        yield "the shape to which {} is clipped changed" if clips[0] == clips[1] else different
     yield from _symbols(one, other)
     yield from _texts(one, other)
     if "image" in one and "image" in other and not _same_blocks(one["image"], other["image"]):

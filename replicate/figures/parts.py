@@ -89,18 +89,27 @@ class Namer:
         The texts whose words and places are compared by name, by identity.
     placed
         Whether just their words are, and not their places.
+    names
+        What other artists are called, by identity.
     """
 
     def __init__(
-        self, owner: Any, curves: Mapping[int, str], described: Mapping[int, str], *, placed: bool = False
+        self,
+        owner: Any,
+        curves: Mapping[int, str],
+        described: Mapping[int, str],
+        names: Mapping[int, str] | None = None,
+        *,
+        placed: bool = False,
     ) -> None:
         self.owner, self.curves, self.described, self.placed = owner, curves, described, placed
+        self.names = names or {}
         self.parts: dict[str, Part] = {}
         self._numbers: dict[str, int] = {}
         self._given: dict[tuple[int, str], str] = {}
 
-    def add(self, drawn: Drawn, chain: tuple[Artist, ...]) -> None:
-        """Add a mark to the part it belongs to.
+    def add(self, drawn: Drawn, chain: tuple[Artist, ...]) -> str:
+        """Add a mark to the part it belongs to, and return that part's name.
 
         Parameters
         ----------
@@ -116,6 +125,7 @@ class Namer:
             part.name = key
             self.parts[key] = part
         self.parts[key].drawn.append(drawn)
+        return key
 
     def _part(self, chain: tuple[Artist, ...], drawn: Drawn) -> Part:
         if not chain:
@@ -142,6 +152,8 @@ class Namer:
         return part
 
     def _name(self, artist: Artist) -> str:
+        if id(artist) in self.names:
+            return self.names[id(artist)]
         label = " ".join(str(artist.get_label()).split())
         if label and not label.startswith("_"):
             return label
@@ -165,7 +177,7 @@ class Namer:
 
     def _of_text(self, text: Text, chain: tuple[Artist, ...], drawn: Drawn) -> Part:
         told = id(text) in self.described
-        name = self.described.get(id(text), f"text '{_shortened(text.get_text())}'")
+        name = self.described.get(id(text)) or self.names.get(id(text)) or f"text '{_shortened(text.get_text())}'"
         if chain[-1] is not text or drawn.kind != "text":
             box = text.get_bbox_patch()
             if box is None or chain[-1] is not box:
@@ -176,23 +188,49 @@ class Namer:
             return Part(f"box of {name}", box, loose=True, properties=style)
         if not told and text in getattr(self.owner, "texts", ()):  # of a contour: width and font decide where it is
             return Part(f"label '{_shortened(text.get_text())}'", text, placed=False, turned=False)
-        return Part(name, text, told=told, placed=not told or self.placed)
+        solid = hasattr(text, "get_position_3d")  # its data say two of three coordinates
+        clip = {"clipping": "none" if drawn.clip_box is None and drawn.clip_path is None else "to the axes"}
+        return Part(name, text, told=told, placed=not told or self.placed or solid, properties=clip)
 
 
 def _arrow_style(arrow: Any) -> dict[str, Any]:
     """Return what an arrow looks like; its head may be smaller than what its place may follow the text."""
     styles = [getattr(arrow, f"get_{name}", lambda: None)() for name in ("arrowstyle", "connectionstyle")]
-    names = [type(style).__name__ for style in styles if style is not None]
+    given = [style for style in styles if style is not None]
     size = getattr(arrow, "get_mutation_scale", lambda: 1.0)()
-    return {"style": names, "head": round(float(size), 2)} if names else {}
+    if not given:
+        return {}
+    names = [type(style).__name__ for style in given]
+    return {"style": names, "head": round(float(size), 2), "shape": _shape(arrow, given)}
+
+
+def _shape(arrow: Any, styles: Sequence[Any]) -> str:
+    """Return the numbers of an arrow's styles, and its distance from both ends, that are not matplotlib's own."""
+    found = []
+    for style in styles:
+        try:
+            usual = vars(type(style)())
+        except TypeError:  # a style of somebody else's, which needs arguments
+            usual = {}
+        found += [(name, value) for name, value in vars(style).items() if value != usual.get(name)]
+    found += [(f"shrink{end}", getattr(arrow, f"shrink{end}", None)) for end in "AB"]
+    usual = {"shrinkA": 2.0, "shrinkB": 2.0}
+    numbers = [
+        (name, value)
+        for name, value in found
+        if isinstance(value, int | float) and not name.startswith("_") and value != usual.get(name)
+    ]
+    return ", ".join(f"{name}={float(value):.3g}" for name, value in numbers) or "usual"
 
 
 def _of_axis(axis: Axis, chain: tuple[Artist, ...]) -> Part:
     which = f"of the {getattr(axis, 'axis_name', '')} axis"
     below = chain[1] if len(chain) > 1 else axis
     if below is axis.label:
-        pad = {"pad": round(float(axis.labelpad), 2)}
-        return Part(f"label {which}", below, told=True, placed=False, properties=pad)
+        place: dict[str, Any] = {"pad": round(float(axis.labelpad), 2)}
+        if not getattr(axis, "_autolabelpos", True):  # set_label_coords was called
+            place = {"place": [round(float(part), 4) for part in axis.label.get_position()]}
+        return Part(f"label {which}", below, told=True, placed=False, properties=place)
     if below is axis.offsetText:
         return Part(f"offset text {which}", below, placed=False)
     minor = "minor " if any(below is tick for tick in axis.minorTicks) else ""
@@ -207,7 +245,8 @@ def _of_table(name: str, table: Table, chain: tuple[Artist, ...]) -> Part:
     cell = next((place for place, cell in table.get_celld().items() if cell in chain), None)
     if cell is None:
         return Part(name, table, loose=True)
-    return Part(f"{name}, cell {cell[0]}, {cell[1]}", chain[-1], loose=True)
+    lines = {"lines": table[cell].visible_edges} if chain[-1] is table[cell] else {}
+    return Part(f"{name}, cell {cell[0]}, {cell[1]}", chain[-1], loose=True, properties=lines)
 
 
 def _legend_properties(legend: Legend) -> dict[str, Any]:

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from replicate.figures.differences import Difference, FigureChange, Layer
 from replicate.figures.fieldwise import field_words
 from replicate.figures.looks import Frame, Mark, mark_words
+from replicate.figures.uncommon import HANDLES, LEGEND_SIZES
 
 Part = Mapping[str, Any]
 
 _NAMED_TOGETHER = 3
 _PLACES = {"outline", "places", "at", "texts"}
 #: Properties that every part of their kind has; records of earlier releases do not have them.
-_ALWAYS = {"offset", "choice of markers"}
+_ALWAYS = {"offset", "choice of markers", "shape", "lines", "clipping", "turning", HANDLES, *LEGEND_SIZES.values()}
+_TITLES = {"title": "in the centre", "left title": "at the left", "right title": "at the right"}
+_SUB_FIGURE = " of sub-figure "
+_GAP = 5e-3  # of the axes
 _PLURALS = ("labels", "marks", "lines")
 
 
@@ -53,7 +57,8 @@ def compare_parts(
     old = {str(part["name"]): part for part in before}
     # The entries of a legend follow the names of their curves.
     entries = {f"legend entry '{name}'": f"legend entry '{was}'" for name, was in names.items()}
-    was = {**entries, **names}
+    earlier = _earlier_names(old, after)
+    was = {**entries, **names, **earlier}
     new = {was.get(str(part["name"]), str(part["name"])): part for part in after}
     found = list(_come_and_gone(old, new, where, prefix, curves, other_ticks))
     sentences: dict[tuple[str, bool], dict[str, float | None]] = {}
@@ -70,10 +75,21 @@ def compare_parts(
         layer: Layer = "net" if net else "named"
         place = f"{where} / {next(iter(parts))}"
         found.append(Difference("look", text, place, size=max(sizes, default=None), layer=layer))
-    found += [
-        Difference("look", prefix + text, f"{where} / {name}") for name, text in _order(list(old), list(new), curves)
-    ]
+    order, order_now = ([name for name in parts if name not in earlier.values()] for parts in (old, new))
+    swaps = _order(order, order_now, curves, _Apart(old, new))
+    found += [Difference("look", prefix + text, f"{where} / {name}") for name, text in swaps]
     return found
+
+
+def _earlier_names(old: Mapping[str, Part], after: Sequence[Part]) -> dict[str, str]:
+    """Return what records of earlier releases call the backgrounds and titles of sub-figures, which they numbered."""
+    if any(_SUB_FIGURE in name for name in old):
+        return {}
+    inner = [part for part in after if _SUB_FIGURE in str(part["name"])]
+    grounds = [str(part["name"]) for part in inner if "texts" not in part["marks"][0]]
+    said = {str(part["name"]): part["marks"][0]["texts"][0] for part in inner if "texts" in part["marks"][0]}
+    titles = {name: f"text '{words}'" for name, words in said.items()}
+    return titles | {name: f"shape {count}" for count, name in enumerate(grounds, start=1)}
 
 
 def _sentence(words: str, names: Sequence[str], curves: frozenset[str]) -> str:
@@ -108,6 +124,37 @@ def _come_and_gone(
                 yield Difference(kind, text, f"{where} / {name}", layer=layer)
 
 
+def come_and_gone_by_name(
+    before: Sequence[Part], after: Sequence[Part], names: Mapping[str, str], said: str
+) -> Iterator[tuple[str, str]]:
+    """Yield what is said by name, has come or gone, and is not mentioned in what was said.
+
+    So does a text that is still there but no longer drawn, and a title that stands elsewhere.
+
+    Parameters
+    ----------
+    names
+        Accepted names by new names, of the parts that have another name now.
+    said
+        The differences that were found.
+    """
+    told = [
+        [name for part in parts if part.get("told") for name in [names.get(str(part["name"]), str(part["name"]))]]
+        for parts in (before, after)
+    ]
+    gone, fresh = ([name for name in one if name not in other] for one, other in (told, told[::-1]))
+    if len(gone) == len(fresh) == 1 and {*gone, *fresh} <= _TITLES.keys():
+        yield gone[0], f"title is now {_TITLES[fresh[0]]} (was {_TITLES[gone[0]]})"
+        return
+    for parts, words in ((gone, "no longer drawn"), (fresh, "drawn now")):
+        yield from ((name, f"{name} is {words}") for name in parts if not _mentioned(name, said))
+
+
+def _mentioned(name: str, said: str) -> bool:
+    first, quote, last = name.partition("'")
+    return (quote + last if quote and first in {"text ", "legend entry "} else name) in said
+
+
 def _ticks_of(name: str, axes: Collection[str]) -> bool:
     return any(name.endswith(f"of the {axis} axis") for axis in axes) and not name.startswith("label")
 
@@ -133,7 +180,26 @@ def _anywhere(marks: Sequence[Mark]) -> list[Mark]:
     return [{name: value for name, value in mark.items() if name not in _PLACES} for mark in marks]
 
 
-def _order(before: Sequence[str], after: Sequence[str], curves: frozenset[str]) -> Iterator[tuple[str, str]]:
+class _Apart:
+    """Whether two parts overlap in neither state, so that nobody sees which is drawn first."""
+
+    def __init__(self, *states: Mapping[str, Part]) -> None:
+        self.states = states
+
+    def __call__(self, one: str, other: str) -> bool:
+        return all(_boxes_apart(state[one].get("box"), state[other].get("box")) for state in self.states)
+
+
+def _boxes_apart(one: Sequence[float] | None, other: Sequence[float] | None) -> bool:
+    """Whether boxes (left, bottom, right, top) are known and do not touch."""
+    if one is None or other is None:
+        return False
+    return any(max(one[side], other[side]) > min(one[side + 2], other[side + 2]) + _GAP for side in (0, 1))
+
+
+def _order(
+    before: Sequence[str], after: Sequence[str], curves: frozenset[str], apart: Callable[[str, str], bool]
+) -> Iterator[tuple[str, str]]:
     """Say what is drawn over what now, with as few words as the new order needs."""
     place = {name: i for i, name in enumerate(before)}
     common = [name for name in after if name in place]
@@ -141,8 +207,8 @@ def _order(before: Sequence[str], after: Sequence[str], curves: frozenset[str]) 
     for i, name in enumerate(common):
         if i in kept:
             continue
-        below = [other for other in common[:i] if place[other] > place[name]]
-        over = [other for other in common[i + 1 :] if place[other] < place[name]]
+        below = [other for other in common[:i] if place[other] > place[name] and not apart(name, other)]
+        over = [other for other in common[i + 1 :] if place[other] < place[name] and not apart(name, other)]
         verb = "are" if _plural(name) else "is"
         for others, words in ((below, "over"), (over, "below")):
             if others:

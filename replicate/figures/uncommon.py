@@ -9,12 +9,23 @@ import numpy as np
 from matplotlib.image import AxesImage
 from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
+from matplotlib.offsetbox import TextArea
 from matplotlib.text import Annotation, Text
 
 #: matplotlib's own, so that records hold only what differs from them.
 _LINE_SPACINGS = (1.2, "normal")  # until 3.10, and since
 _LABEL_SPACING = 0.5
 _FRAME = "Round"
+#: What a legend always says, since another default may be set: sizes in units of its letters.
+LEGEND_SIZES = {
+    "handlelength": "length of the handles",
+    "handleheight": "height of the handles",
+    "handletextpad": "distance between handles and words",
+    "borderpad": "distance between frame and entries",
+    "borderaxespad": "distance to the axes",
+    "columnspacing": "distance between columns",
+}
+HANDLES = "place of the handles"
 _NO_MARKERS = {"None", "none", " ", "", None}
 _LONGEST = 40
 
@@ -55,16 +66,27 @@ def _of_text(text: Text) -> dict[str, Any]:
         found["typesetting"] = "TeX"
     if isinstance(text, Annotation) and text.arrow_patch is None and str(text.anncoords).startswith("offset"):
         found["offset"] = [round(float(part), 2) for part in text.xyann]  # in points; an arrow tells it otherwise
+    if text.get_rotation() % 360.0:
+        found["turning"] = "about its anchor" if text.get_rotation_mode() == "anchor" else "about its box"
     effects = [type(effect).__name__ for effect in text.get_path_effects() or ()]
     return found | ({"effects": effects} if effects else {})
 
 
 def _of_legend(legend: Legend) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    found: dict[str, Any] = {words: round(float(getattr(legend, name)), 3) for name, words in LEGEND_SIZES.items()}
+    found[HANDLES] = _side_of_handles(legend)
     if abs(legend.labelspacing - _LABEL_SPACING) > 1e-9:
         found["spacing"] = round(float(legend.labelspacing), 3)
     frame = type(legend.get_frame().get_boxstyle()).__name__  # type: ignore[attr-defined]
     return found | ({"frame": frame} if frame != _FRAME else {})
+
+
+def _side_of_handles(legend: Legend) -> str:
+    """Return whether the handles stand before or behind their words."""
+    columns: Any = getattr(getattr(legend, "_legend_handle_box", None), "get_children", list)()
+    entries = columns[0].get_children() if columns else []
+    parts = entries[0].get_children() if entries else []
+    return "behind their words" if parts and isinstance(parts[0], TextArea) else "before their words"
 
 
 def _of_image(image: AxesImage) -> dict[str, Any]:

@@ -77,6 +77,7 @@ def edition(
     sheet: Sheet | None = None,
     shared: dict[str, Any] | None = None,
     kind: str = TEXT,
+    programs: bool = True,
 ) -> Document:
     """Make one edition of a paper's handout.
 
@@ -94,6 +95,8 @@ def edition(
         Kept from one form to the next: what does not vary.
     kind
         Which text of the paper: its handout or its slides.
+    programs
+        Whether programs in the text are run.
 
     Raises
     ------
@@ -112,6 +115,7 @@ def edition(
         sheet=sheet,
         shared={} if shared is None else shared,
         kind=kind,
+        programs=programs,
     )
     return made
 
@@ -126,6 +130,7 @@ def editions(
     sheet: Sheet | None,
     shared: dict[str, Any],
     kind: str = TEXT,
+    programs: bool = True,
 ) -> list[Document]:
     """Make one edition for each of several forms, in few calls of pandoc; `edition` says more."""
     sheet = sheet or Sheet()
@@ -147,7 +152,8 @@ def editions(
         with_heads([block for part in parts for block in part], source, placing.exercises, sheet)
         done: Blocks = []
         for part, text in zip(parts, texts, strict=True):
-            done += run_programs(_placed(part, placing), text.lines[number], text.source, shared)
+            placed = _placed(part, placing)
+            done += run_programs(placed, text.lines[number], text.source, shared) if programs else placed
         found.append((title, selected(done, sheet)))
     formulas = [formulas_in(blocks) for _, blocks in found]
     try:
