@@ -1,24 +1,33 @@
 """The JSON Schemas: what they accept is what the package reads, and what it refuses they refuse."""
 
+import csv
 import json
 import re
 import tomllib
 from collections.abc import Callable
 from pathlib import Path
+from typing import get_args
 
 import jsonschema
 import pytest
 
+from replicate.exhibits.claims import ClaimVerdict
+from replicate.exhibits.matching import MatchKind
 from replicate.loops.sweep.axes import CONTROLLER_COLUMNS
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
+from replicate.report import data
+from replicate.report.columns import COLUMN_COLUMNS
 from replicate.resources import schemas
 from replicate.run import project as projects
 from replicate.sweeps import sweep_file
 from replicate.verdicts import ledger as ledgers
+from replicate.verdicts.ledger import Cause
+from replicate.verdicts.rows import ValueVerdict
 
 ROOT = Path(__file__).parent.parent
 LEDGERS = sorted([*ROOT.glob("replicate/papers/*/ledger*.toml"), *ROOT.glob("examples/*/papers/*/ledger*.toml")])
+PRINTED = sorted([*ROOT.glob("replicate/papers/*/printed/*.csv"), *ROOT.glob("examples/*/papers/*/printed/*.csv")])
 PROJECTS = sorted(ROOT.glob("examples/*/replicate.toml"))
 ENTRY = {"exhibit": "table-1", "rows": ["A"], "columns": "*", "cause": "unknown", "explanation": "x"}
 
@@ -43,6 +52,45 @@ def test_ledgers_fit(file: Path) -> None:
 @pytest.mark.parametrize("file", PROJECTS, ids=lambda file: file.parent.name)
 def test_project_files_fit(file: Path) -> None:
     assert not refused("project", tomllib.loads(file.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("file", PRINTED, ids=lambda file: f"{file.parent.parent.name}-{file.stem}")
+def test_printed_values_fit(file: Path) -> None:
+    lines = list(csv.DictReader(file.read_text(encoding="utf-8").splitlines()))
+    assert lines
+    name = "points" if "point" in lines[0] else "printed"
+    assert not [why for line in lines if (why := refused(name, line))]
+
+
+@pytest.mark.parametrize(
+    ("name", "line"),
+    [
+        ("printed", {"mean": "3.8"}),
+        ("printed", {"row": "A"}),
+        ("printed", {"row": "", "mean": "3.8"}),
+        ("points", {"point": "p", "curve": "c", "x": "1,5", "y": "1", "x_error": "0", "y_error": "0"}),
+        ("points", {"point": "p", "curve": "c", "x": "1.5", "y": "1", "x_error": "-1", "y_error": "0"}),
+    ],
+)
+def test_wrong_lines_do_not_fit(name: str, line: dict[str, str]) -> None:
+    assert refused(name, line)
+
+
+def test_the_columns_of_what_a_run_writes_are_those_of_their_schemas() -> None:
+    written = {
+        "results": data.RESULT_COLUMNS,
+        "verdicts": (*data.VERDICT_COLUMNS, "address"),
+        "errata": (*data.ERRATA_COLUMNS, "address"),
+        "exhibits": data.EXHIBIT_COLUMNS,
+        "columns": COLUMN_COLUMNS,
+    }
+    for name, columns in written.items():
+        schema = json.loads(schemas()[name])
+        assert tuple(schema["properties"]) == columns == tuple(schema["required"])
+    verdicts = json.loads(schemas()["verdicts"])["properties"]
+    assert {*get_args(ValueVerdict), *get_args(ClaimVerdict)} == set(verdicts["verdict"]["enum"])
+    assert {"", *get_args(Cause)} == set(verdicts["cause"]["enum"])
+    assert set(get_args(MatchKind)) == set(json.loads(schemas()["results"])["properties"]["match"]["enum"])
 
 
 def test_the_project_of_the_checkout_fits() -> None:

@@ -157,8 +157,8 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
         entry["field"] = field
     around = box_around(part.drawn)
     if around is not None:
-        entry["box"] = [round(float(end), 3) for end in box.units(np.reshape(around, (2, 2))).ravel()]
-    entry["marks"] = marks = marks_of(part.drawn, box, where=part.placed or part.told)
+        entry["box"] = [round(float(end), 2) for end in box.units(np.reshape(around, (2, 2))).ravel()]
+    entry["marks"] = marks = marks_of(part.drawn, box, where=part.placed or part.told, loose=part.loose)
     if field:
         _leave_colours_to(field, marks)
     if part.told:

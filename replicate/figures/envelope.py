@@ -27,7 +27,7 @@ _TOTAL = 5e-3
 
 _EDGE = 1e-6
 _UNIT = 1e-5
-_NOTHING = -(10**9)
+_NOTHING = -(10**9)  # an empty column, in records of earlier releases
 _MARGIN = 0.5
 _FIELDS = ("low", "high", "mean", "travel")
 
@@ -54,8 +54,8 @@ def envelope(points: Points, *, function: bool) -> dict[str, Any]:
     return kept
 
 
-def _columns(starts: Points, ends: Points) -> dict[str, list[int]]:
-    """Return the four numbers of every column, as whole multiples of 1e-5 of the axes."""
+def _columns(starts: Points, ends: Points) -> dict[str, list[int | None]]:
+    """Return the four numbers of every column, as whole multiples of 1e-5 of the axes; none where nothing is."""
     starts, ends = _cut(starts, ends)
     # What runs along the edge of a column, as an area's border along the axes does, always counts to the next one.
     column = np.floor((starts[:, 0] + ends[:, 0]) / 2.0 * COLUMNS + _EDGE).astype(int)
@@ -72,9 +72,10 @@ def _columns(starts: Points, ends: Points) -> dict[str, list[int]]:
     low, high = np.where(empty, 0.0, low), np.where(empty, 0.0, high)
     mean = np.where(total > 1e-3 / COLUMNS, area / np.where(total > 0.0, total, 1.0), (low + high) / 2.0)
     travel = np.bincount(column, np.abs(other - one), COLUMNS)
+    numbers = {"low": low, "high": high, "mean": mean, "travel": travel}
     return {
-        name: np.where(empty, _NOTHING, np.round(values / _UNIT)).astype(int).tolist()
-        for name, values in zip(_FIELDS, (low, high, mean, travel), strict=True)
+        name: [None if nothing else int(value) for value, nothing in zip(np.round(values / _UNIT), empty, strict=True)]
+        for name, values in numbers.items()
     }
 
 
@@ -159,6 +160,6 @@ def _runs(flags: NDArray[np.bool_]) -> int:
     return int((edges[1::2] - edges[::2]).max(initial=0))
 
 
-def _array(values: Sequence[int]) -> Array:
+def _array(values: Sequence[int | None]) -> Array:
     numbers = np.asarray(values, dtype=float)
     return np.where(numbers == _NOTHING, np.nan, numbers * _UNIT)

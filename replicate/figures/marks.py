@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from replicate.figures.digests import MOST_VALUES, Array, rounded, values_digest
-from replicate.figures.outlines import flattened, joined, outline, scattered
+from replicate.figures.outlines import OUTLINE_TOLERANCE, flattened, joined, outline, scattered
 from replicate.figures.polylines import Points
 from replicate.figures.recorder import DPI, Drawn
 
@@ -30,6 +30,7 @@ Mark = dict[str, Any]
 
 _SAME_BOX = 1e-3
 _DECIMALS = 3
+_COARSE = 5e-3
 _BLOCKS = 8
 # The box that the outline of a marker is a fraction of, in points.
 _INCH = 72.0
@@ -60,13 +61,15 @@ class Box:
         return np.asarray((np.asarray(pixels, dtype=float) - corner) / size)
 
 
-def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True) -> list[Mark]:
+def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: bool = False) -> list[Mark]:
     """Return marks; what is drawn one after the other with the same look becomes one of them.
 
     Parameters
     ----------
     where
         Whether places matter. Those of a thing that follows a text do not.
+    loose
+        Whether they are compared with a wide tolerance only: then fewer points are kept.
     """
     marks: list[Mark] = []
     lines: list[list[Points]] = []
@@ -88,10 +91,11 @@ def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True) -> list[Ma
         lines[-1].append(box.units(points))
         if drawn.kind == "text":
             marks[-1]["texts"].append(drawn.extra["text"])
-    return [_mark(mark, points, where=where) for mark, points in zip(marks, lines, strict=True)]
+    tolerance = _COARSE if loose else OUTLINE_TOLERANCE
+    return [_mark(mark, points, tolerance, where=where) for mark, points in zip(marks, lines, strict=True)]
 
 
-def _mark(mark: Mark, points: list[Points], *, where: bool) -> Mark:
+def _mark(mark: Mark, points: list[Points], tolerance: float, *, where: bool) -> Mark:
     found: Mark = dict(mark["look"])
     if mark["texts"]:
         found["texts"] = mark["texts"]
@@ -104,7 +108,7 @@ def _mark(mark: Mark, points: list[Points], *, where: bool) -> Mark:
         if where:
             found["places"] = scattered(np.vstack(points))
     elif where:
-        found["outline"] = outline(joined(points))
+        found["outline"] = outline(joined(points), tolerance=tolerance)
     return found
 
 

@@ -16,8 +16,8 @@ from replicate.figures.scaling import finite
 #: More points than this, all of a mark together, become a digest.
 MOST_POINTS = 120
 
-# Far less than a pixel.
-_TOLERANCE = 2e-4
+#: Far less than a pixel.
+OUTLINE_TOLERANCE = 2e-4
 _DECIMALS = 5
 _CELLS = 8
 _CHORDS = 16
@@ -61,7 +61,7 @@ def joined(pieces: Sequence[Points]) -> Points:
     return np.vstack(separated[1:]) if separated else np.empty((0, 2))
 
 
-def outline(points: Points, most: int = MOST_POINTS, tolerance: float = _TOLERANCE) -> dict[str, Any]:
+def outline(points: Points, most: int = MOST_POINTS, tolerance: float = OUTLINE_TOLERANCE) -> dict[str, Any]:
     """Describe lines or the edges of areas.
 
     Parameters

@@ -19,7 +19,7 @@ _PLACES = {"outline", "places", "at", "texts"}
 _ALWAYS = {"offset", "choice of markers", "shape", "lines", "clipping", "turning", HANDLES, *LEGEND_SIZES.values()}
 _TITLES = {"title": "in the centre", "left title": "at the left", "right title": "at the right"}
 _SUB_FIGURE = " of sub-figure "
-_GAP = 5e-3  # of the axes
+_GAP = 0.01  # of the axes: boxes are rounded
 _PLURALS = ("labels", "marks", "lines")
 
 
