@@ -91,6 +91,27 @@ def replaced(file: Path, old: str, new: str) -> None:
             "claims.py", '"holds" if', '"yes" if',
             "(gauss/claims.py:13): the verdict is 'yes'; allowed: holds, fails, holds-partly, undecided",
         ),
+        ("table_1.py", "as_written()", "as_written(x)", "positional argument: 'x' (gauss/table_1.py:20)"),
+        ("table_1.py", "def as_written", "async def as_written", "the reading returns coroutine; expected: a pandas D"),
+        ("table_1.py", FRAME, "yield rows", "gauss/table_1.py:20: the reading returns generator; expected: a pandas "),
+        ("table_1.py", FRAME, f'{FRAME}["mean"]', "gauss/table_1.py:20: the reading returns Series; expected: a panda"),
+        ("table_1.py", FRAME, f"{FRAME}.T", "gauss/table_1.py:20: the reading returns the row 'mean'; allowed: 'A', '"),
+        ("table_1.py", FRAME, f"{FRAME}.reset_index(drop=True)", "the reading returns the row '0'; allowed: 'A', 'B',"),
+        (
+            "table_1.py", FRAME, f"f = {FRAME[7:]}\n    return pd.concat([f, f], axis=1)",
+            "gauss/table_1.py:20: the reading returns the column 'mean' twice",
+        ),
+        ("table_1.py", FRAME, f'return pd.concat({{"x": {FRAME[7:]}}})', "the reading returns the row '('x', 'A')'; a"),
+        ("table_1.py", FRAME, f"{FRAME} > 0", "row 'A', column 'mean' holds bool (True); expected: a number"),
+        ("fig_1.py", "fig: Figure", "", "TypeError: fig_1() takes 0 positional arguments but 1 was given (gauss/fig_1"),
+        ("fig_1.py", "def fig_1", "async def fig_1", "gauss/fig_1.py:9: the function is asynchronous, so nothing was "),
+        ("fig_1.py", SUBPLOTS, f"{SUBPLOTS}\n    yield", "gauss/fig_1.py:9: the function is a generator, so nothing "),
+        (
+            "fig_1.py", 'axes.set_xlabel("value")', 'axes.set_xlabel("value")\n    return Figure()',
+            "gauss/fig_1.py:9: the function returns a figure of its own; expected: something drawn on the figure given",
+        ),
+        ("claims.py", "def largest", "async def largest", "the check returns coroutine; expected: a Finding"),
+        ("claims.py", "verdict, means[found]", "verdict, float('nan')", "the value is nan; expected: the number that "),
         ("claims.py", "verdict, means[found]", 'verdict, "3"', "(gauss/claims.py:13): the value is text ('3'); expect"),
         (
             "notes.md", "{{ printed(", "{{ prnted(",
@@ -172,6 +193,15 @@ def test_what_says_nothing_is_named_by_every_command(
         ("printed/table-1.csv", "3.8", '"3,8"', """'3,8' is not a number; allowed: digits with an optional sign, de"""),
         ("printed/table-1.csv", "3.8", '"3,8"', """notation=Notation(decimal=",") would accept it"""),
         ("printed/table-1.csv", "1.93", "<1.93", "notation=Notation(bounds=True) would accept it"),
+        ("printed/table-1.csv", ",", "\t", "gauss/printed/table-1.csv:1: cells are separated by tabs; allowed: commas"),
+        ("printed/table-1.csv", "row,", "# by me\nrow,", "gauss/printed/table-1.csv:1: '# by me' is no row; a CSV has"),
+        ("printed/table-1.csv", "row,", "sep=,\nrow,", "gauss/printed/table-1.csv:1: 'sep=' is no row; a CSV has no c"),
+        ("printed/table-1.csv", "\n", ",\n", "gauss/printed/table-1.csv:1: column 4 has no name; remove the comma too"),
+        ("printed/table-1.csv", "1.93\n", "1.93,\n", "gauss/printed/table-1.csv:2: row 'A' has 4 cells, the header ha"),
+        ("printed/table-1.csv", "A,", "A,3.8,1.93\nA,", "gauss/printed/table-1.csv:3: row 'A' appears twice (first in"),
+        ("printed/table-1.csv", "2.5", "2.O", "gauss/printed/table-1.csv:3: column 'mean': '2.O' is not a number; all"),
+        ("printed/table-1.csv", "2.5", "nan", "gauss/printed/table-1.csv:3: column 'mean': 'nan' is not a number; all"),
+        ("printed/table-1.csv", "row,", "PK\x03\x04", "table-1.csv: is a spreadsheet or an archive; expected: text"),
     ],
 )  # fmt: skip
 def test_a_wrong_definition_has_file_and_line(
@@ -181,6 +211,75 @@ def test_a_wrong_definition_has_file_and_line(
     status, _, err = replicate("report", "-j1")
     assert status == 2
     assert message in err
+
+
+@pytest.mark.parametrize("change", ["bom", "crlf", "cr", "quoted", "spaces"])
+def test_a_csv_as_a_spreadsheet_writes_it_is_read(change: str, project: Path, replicate: Run) -> None:
+    file = project / "printed" / "table-1.csv"
+    lines = [line.split(",") for line in file.read_text(encoding="utf-8").splitlines()]
+    end = {"crlf": "\r\n", "cr": "\r"}.get(change, "\n")
+    quote, comma = ('"' if change == "quoted" else ""), (" , " if change == "spaces" else ",")
+    text = end.join(comma.join(f"{quote}{cell}{quote}" for cell in line) for line in lines) + end
+    file.write_bytes(("\ufeff" if change == "bom" else "").encode() + text.encode())
+    status, out, err = replicate("check", "-j1")
+    assert (status, "problems: 0; comparisons: 12" in out) == (0, True), err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            'out = "build"',
+            'out = "papers"',
+            "out is 'papers', inside papers/; allowed: a folder of its own",
+        ),
+        ('out = "build"', 'out = "accepted/x"', "out is 'accepted/x', inside accepted/; allowed: a folder of its own"),
+        (
+            "papers =",
+            "paper =",
+            "replicate.toml:8: 'paper' is unknown; allowed: title, intro, methods, papers, bundled",
+        ),
+    ],
+)
+def test_a_wrong_project_file_has_file_and_line(
+    old: str, new: str, message: str, project: Path, replicate: Run
+) -> None:
+    assert project.is_dir()
+    replaced(Path("replicate.toml"), old, new)
+    status, _, err = replicate("check", "-j1")
+    assert status == 2
+    assert message in err
+
+
+def test_two_project_files_in_one_folder_are_too_many(project: Path, replicate: Run) -> None:
+    assert project.is_dir()
+    Path("pyproject.toml").write_text('[tool.replicate]\ntitle = "Other"\n', encoding="utf-8")
+    status, _, err = replicate("check", "-j1")
+    assert status == 2
+    assert "pyproject.toml:1: [tool.replicate] beside replicate.toml: there are two project files; allowed: one" in err
+
+
+def test_a_project_in_a_folder_of_any_name(project: Path, replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert project.is_dir()
+    other = Path.cwd().parent / "mein Prøjekt (2)"
+    shutil.copytree(Path.cwd(), other)
+    (other.parent / "link").symlink_to(other)
+    monkeypatch.chdir(other.parent / "link")
+    assert replicate("check", "-j1")[:2] == (0, "problems: 0; comparisons: 12; exhibits: 3\n")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("'A', 'sd'", "'A', 'se'", "gauss/handout.md:15: "),
+        ("# ", "", "gauss/handout.md:1: a handout must begin with its title"),
+    ],
+)
+def test_check_reads_the_handout(old: str, new: str, message: str, project: Path, replicate: Run) -> None:
+    replaced(project / "handout.md", old, new)
+    status, _, err = replicate("check", "-j1")
+    assert status == 2
+    assert f"broken: {message}" in err
 
 
 def test_one_text_that_cannot_be_shown_breaks_no_other_paper(project: Path, replicate: Run) -> None:

@@ -22,6 +22,7 @@ _STEERING = re.compile(
 )
 
 
+_ARCHIVE = b"PK\x03\x04"
 LARGEST = 16 * 2**20  # bytes of a text
 
 
@@ -77,6 +78,9 @@ def read_text(path: Path | Traversable, name: str, error: type[ReplicateError], 
         raise error(msg) from why
     if len(content) > LARGEST:
         msg = f"{name}: is larger than {LARGEST // 2**20} MiB; allowed: texts that a person wrote"
+        raise error(msg)
+    if content.startswith(_ARCHIVE):
+        msg = f"{name}: is a spreadsheet or an archive; expected: text (save a table as CSV in UTF-8)"
         raise error(msg)
     try:
         text = content.decode("utf-8")

@@ -241,8 +241,16 @@ def _grid(
         msg = f"{name}:1: the file is empty; expected: a header with the columns {_listed(needed)}"
         raise PrintedFileError(msg)
     (header_line, header), *body = records
-    if len(header) == 1 and ";" in header[0]:
-        msg = f"{name}:{header_line}: cells are separated by semicolons; allowed: commas, and quotes around 1,5"
+    for sign, called in ((";", "semicolons"), ("\t", "tabs")):
+        if len(header) == 1 and sign in header[0]:
+            msg = f"{name}:{header_line}: cells are separated by {called}; allowed: commas, and quotes around 1,5"
+            raise PrintedFileError(msg)
+    for line, cells in records:
+        if (cells[0].startswith("#") and len(cells) == 1) or cells[0].lower() == "sep=":
+            msg = f"{name}:{line}: '{cells[0]}' is no row; a CSV has no comments: remove the line"
+            raise PrintedFileError(msg)
+    if "" in header[1:]:
+        msg = f"{name}:{header_line}: column {header.index('', 1) + 1} has no name; remove the comma too many"
         raise PrintedFileError(msg)
     for line, cells in body:
         if len(cells) != len(header):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
 import sys
-from typing import Literal
+from collections.abc import Callable
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -59,7 +61,16 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
 def _drawn(exhibit: Figure) -> Canvas:
     """Let an exhibit draw; what is too large is refused, crowds of marks become pixels."""
     canvas = Canvas(figsize=exhibit.size)
-    exhibit.draw(canvas)
+    draw: Callable[..., Any] = exhibit.draw
+    made = draw(canvas)
+    if inspect.iscoroutine(made) or inspect.isgenerator(made):
+        kind = "asynchronous" if inspect.iscoroutine(made) else "a generator"
+        getattr(made, "close")()  # noqa: B009  -- both kinds have it; nothing of it has run
+        msg = f"the function is {kind}, so nothing was drawn; expected: a plain function"
+        raise PaperDefinitionError(msg)
+    if isinstance(made, Canvas) and made is not canvas:
+        msg = "the function returns a figure of its own; expected: something drawn on the figure given"
+        raise PaperDefinitionError(msg)
     check_limits(canvas)
     rasterise_crowds(canvas)
     return canvas

@@ -88,10 +88,14 @@ def find_project(start: Path | None = None) -> Project | None:
     """
     here = (start or Path()).resolve()
     for folder in (here, *here.parents):
-        if (folder / FILE).is_file():
-            return read_project(folder / FILE)
         pyproject = folder / PYPROJECT
-        if pyproject.is_file() and "replicate" in _tables(pyproject).get("tool", {}):
+        also = pyproject.is_file() and "replicate" in _tables(pyproject).get("tool", {})
+        if (folder / FILE).is_file():
+            if also:
+                why = f"[tool.replicate] beside {FILE}: there are two project files; allowed: one of them"
+                raise _wrong(pyproject, "replicate", why)
+            return read_project(folder / FILE)
+        if also:
             return read_project(pyproject)
     return None
 
@@ -144,6 +148,11 @@ def read_project(path: Path) -> Project:
     if methods is not None and not methods.is_file():
         raise _wrong(path, "methods", f"methods: there is no file {data['methods']}")
     folders, installed = _papers(path, data)
+    out = root / (data.get("out") or "build")
+    for taken in (*folders, root / (data.get("accepted") or "accepted")):
+        if taken.resolve() in (out.resolve(), *out.resolve().parents):
+            why = f"out is {data.get('out', 'build')!r}, inside {taken.name}/; allowed: a folder of its own"
+            raise _wrong(path, "out", why)
     return Project(
         root,
         path,
@@ -154,7 +163,7 @@ def read_project(path: Path) -> Project:
         installed=installed,
         bundled=data.get("bundled", False),
         accepted=root / (data.get("accepted") or "accepted"),
-        out=root / (data.get("out") or "build"),
+        out=out,
         language=language,
         theme=_theme(path, data.get("theme", {})),
     )

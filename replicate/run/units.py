@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import inspect
+import math
 import traceback
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -105,8 +106,14 @@ def fits(result: Result, unit: Unit, exhibit: Exhibit) -> bool:
     return isinstance(exhibit, Figure) and isinstance(result, FigureResult)
 
 
-def reason(error: BaseException) -> str:
-    """Return one line that says what was raised, and where in the paper's own code, or in the core if not there."""
+def reason(error: BaseException, function: Callable[..., object] | None = None) -> str:
+    """Return one line that says what was raised, and where in the paper's own code, or in the core if not there.
+
+    Parameters
+    ----------
+    function
+        What was called: named where the call itself was wrong and nothing of the paper ran.
+    """
     own, core = "", ""
     for frame, line in traceback.walk_tb(error.__traceback__):
         module, file = frame.f_globals.get("__name__", ""), frame.f_code.co_filename
@@ -117,7 +124,7 @@ def reason(error: BaseException) -> str:
             own = place
         elif module.rpartition(".")[0] != __package__:
             core = place
-    place = own or core
+    place = own or core or (f" ({_place(function)})" if function else "")
     if isinstance(error, SystemExit):
         return f"it tries to end the program, with status {_text(error.code)}{place}"
     text = _text(error)
@@ -148,7 +155,8 @@ def _compute_reading(unit: Unit, paper: Paper, table: Table) -> TableResult:
             made = reading.compute()
         frame = _checked(table, reading, made, printed)
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
-        return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error)})
+        function = table.readings[unit.reading].compute if unit.reading in table.readings else None
+        return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error, function)})
     return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame}, ranges=ranges)
 
 
@@ -190,7 +198,7 @@ def _draw(unit: Unit, figure: Figure) -> FigureResult:
     except PaperDefinitionError as error:
         return no_figure(unit.paper, unit.exhibit, f"{_place(figure.draw)}: {reason(error)}")
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
-        return no_figure(unit.paper, unit.exhibit, reason(error))
+        return no_figure(unit.paper, unit.exhibit, reason(error, figure.draw))
 
 
 def _check_claims(
@@ -205,7 +213,7 @@ def _check_claims(
         try:
             findings[id] = _valid(claim, claim.check())
         except BaseException as error:  # noqa: BLE001  -- one claim must not take the others down
-            errors[id] = reason(error)
+            errors[id] = reason(error, claim.check)
     return ClaimsResult(unit.paper, unit.exhibit, findings, errors)
 
 
@@ -223,7 +231,10 @@ def _valid(claim: Claim, found: object) -> Finding:
         msg = f"{where}the evidence is {type(found.evidence).__name__}; expected: text"
     else:
         try:
-            return Finding(found.verdict, number(found.value, f"{where}the value is"), found.evidence)
+            value = number(found.value, f"{where}the value is")
+            if not math.isnan(value) or found.verdict == "undecided":
+                return Finding(found.verdict, value, found.evidence)
+            msg = f"{where}the value is nan; expected: the number that decides it"
         except (TypeError, ValueError) as error:
             raise PaperDefinitionError(str(error)) from error
     raise PaperDefinitionError(msg)
