@@ -82,6 +82,7 @@ def test_the_columns_of_what_a_run_writes_are_those_of_their_schemas() -> None:
         "verdicts": (*data.VERDICT_COLUMNS, "address"),
         "errata": (*data.ERRATA_COLUMNS, "address"),
         "exhibits": data.EXHIBIT_COLUMNS,
+        "ranges": data.RANGE_COLUMNS,
         "columns": COLUMN_COLUMNS,
     }
     for name, columns in written.items():
