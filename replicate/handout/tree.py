@@ -17,13 +17,17 @@ _WORDS = {"Str", "Space", "SoftBreak", "LineBreak"}  # nine of ten elements
 
 def elements(node: object) -> Iterator[Element]:
     """Yield every element below a node, in the order of the text."""
-    if isinstance(node, list):
-        for child in node:
-            yield from elements(child)
-    elif isinstance(node, dict):
-        if "t" in node:
-            yield node
-        yield from elements(node.get("c"))
+    waiting = [node]  # a stack, not a recursion: trees of a class set are walked a thousand times
+    while waiting:
+        found = waiting.pop()
+        if isinstance(found, list):
+            waiting += [child for child in reversed(found) if isinstance(child, list | dict)]
+        elif isinstance(found, dict):
+            if "t" in found:
+                yield found
+            content = found.get("c")
+            if isinstance(content, list | dict):
+                waiting.append(content)
 
 
 def transform(node: Any, change: Callable[[Element], list[Element] | None]) -> Any:
