@@ -78,13 +78,13 @@ def _differentiation_matrix(degree: int) -> Array:
 
 def asymptotic_starts(transfer: LoopTransfer, count: int) -> ComplexArray:
     """Return about where the poles of high frequency are: s L = ln(-N(s)/D(s)) + 2 pi i m, L the longest dead time."""
-    turns = 2j * np.pi * np.arange(count + SPARE)
+    turns = np.asarray(2j * np.pi * np.arange(count + SPARE), dtype=complex)
     longest = transfer.longest_dead_time
-    s = turns / longest
+    s = np.asarray(turns / longest, dtype=complex)
     with np.errstate(all="ignore"):
         for _ in range(ITERATIONS):
             s = (np.log(-transfer.without_longest(s)) + turns) / longest
-    return s[np.isfinite(s) & (s.imag >= 0.0)]
+    return np.asarray(s[np.isfinite(s) & (s.imag >= 0.0)])
 
 
 def starts_on_grid(transfer: LoopTransfer) -> ComplexArray:

@@ -31,6 +31,7 @@ REAL = 1e-10  # imaginary part, relative to the modulus, of a pole that is real
 APART = 0.03  # relative distance of poles that may be one multiple pole
 TIE = 1e-6  # relative distance of real parts between which no line fits
 CROWDED = 0.98  # |L| at the far end of the line from which on a neutral loop may have infinitely many poles there
+REACH = 0.5  # farthest distance of the line from the pole, over the dead time, unless the pole's own is larger
 FARTHEST = 100.0  # distance of the line from the axis, in units of one over the dead time
 
 
@@ -102,10 +103,12 @@ def _newton(transfer: LoopTransfer, s: complex) -> complex | None:
 
 def _line(poles: list[complex], dead_time: float) -> float | None:
     """Return a real part that the first pole exceeds, and no other; None if the second is too close to it."""
-    if len(poles) < 2:
+    if not poles:
         return None
-    first, second = poles[:2]
-    if abs(second - first) <= APART * abs(first) or first.real - second.real <= TIE * abs(first.real):
-        return None
-    line = 0.5 * (first.real + second.real)
+    first, *others = poles
+    line = first.real - max(abs(first.real), REACH / dead_time)
+    if others:
+        if abs(others[0] - first) <= APART * abs(first) or first.real - others[0].real <= TIE * abs(first.real):
+            return None
+        line = max(line, 0.5 * (first.real + others[0].real))
     return line if abs(line) * dead_time <= FARTHEST else None

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.plant import Plant
+from replicate.loops.sweep.batch_poles import rightmost_poles
 from replicate.loops.sweep.frequency_metrics import FrequencyMetrics
 from replicate.loops.sweep.loop_columns import LoopColumns
 from replicate.loops.sweep.marching import march
-from replicate.loops.sweep.metric_names import LOAD, STABLE
+from replicate.loops.sweep.metric_names import LOAD, POLE, STABLE
 from replicate.loops.sweep.one_loop import UNSTABLE
 from replicate.loops.sweep.response_metrics import ResponseMetrics
 from replicate.loops.sweep.stability_counts import STABLE as IS_STABLE
@@ -29,7 +30,9 @@ OF_THE_LOOP = ("ms", "mp", "gain_margin", "phase_margin", "delay_margin")
 FEWEST = 4  # loops below which a block costs more than they do one by one
 OF_A_STEP = ("overshoot", "rise_time", "delay_time")  # relative to the final value
 OF_THE_SIZE = ("overshoot", "peak")  # no unit of time in them
-OF_A_RESPONSE = (*OF_A_STEP, "peak", "peak_time", "settling_time", "iae", "ise", "ie")
+OF_A_SQUARE = ("itae", "itse")  # squares of the unit of time
+VARIATION = "total_variation"  # in the unit of the control signal
+OF_A_RESPONSE = (*OF_A_STEP, "peak", "peak_time", "settling_time", "iae", "ise", "ie", *OF_A_SQUARE, VARIATION)
 
 
 @dataclass(frozen=True)
@@ -73,7 +76,13 @@ def _of_the_loop(
 
 def answered(metrics: tuple[str, ...]) -> tuple[str, ...]:
     """Return the metrics that blocks can answer."""
-    known = {STABLE, *OF_THE_LOOP, *OF_A_RESPONSE, *(LOAD + name for name in OF_A_RESPONSE if name not in OF_A_STEP)}
+    known = {
+        STABLE,
+        POLE,
+        *OF_THE_LOOP,
+        *OF_A_RESPONSE,
+        *(LOAD + name for name in OF_A_RESPONSE if name not in OF_A_STEP),
+    }
     return tuple(name for name in metrics if name in known)
 
 
@@ -92,14 +101,20 @@ def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | N
     """Return the metrics, which `answered` must contain, of loops for which `is_batched`."""
     decided, crossovers = stability(loops)
     stable, alone = decided == IS_STABLE, decided == UNDECIDED
-    values = {name: np.full(len(loops), np.nan) for name in metrics if name != STABLE}
+    values: dict[str, NDArray[Any]] = {
+        name: np.full(len(loops), np.nan) for name in metrics if name not in {STABLE, POLE}
+    }
     reasons = [(~stable & ~alone, UNSTABLE)] if values else []
+    if POLE in metrics:
+        pole, proven = rightmost_poles(loops)
+        values[POLE] = pole / loops.time
+        alone |= ~proven
     chosen = np.nonzero(stable)[0]
     asked = [name for name in values if name in OF_THE_LOOP]
     if asked:
         _of_the_loop(loops, crossovers, asked, values, chosen, alone)
     for load in (False, True):
-        asked = [name for name in values if name.startswith(LOAD) == load and name not in OF_THE_LOOP]
+        asked = [name for name in values if name.startswith(LOAD) == load and name not in {POLE, *OF_THE_LOOP}]
         if not asked or chosen.size == 0:
             continue
         end = None if until is None else until / loops.time
@@ -107,13 +122,14 @@ def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | N
         for shorter in SHORTER:  # again, with shorter pieces, for loops that need them
             if part.size == 0:
                 break
-            responses = march(loops.take(part), setpoint, step, end, band, shorter)
+            moved = any(name.endswith(VARIATION) for name in asked)
+            responses = march(loops.take(part), setpoint, step, end, band, shorter, control=moved)
             if not responses.pieces:  # nothing here has a final value to settle to
                 alone[part] = True
                 break
             found = ResponseMetrics(responses)
             for name in asked:
-                value, missing, why = _answer(found, name.removeprefix(LOAD), band, loops.time)
+                value, missing, why = _answer(found, name.removeprefix(LOAD), band, loops)
                 values[name][part] = np.where(missing, np.nan, value)
                 flags = np.zeros(len(loops), dtype=bool)
                 flags[part] = missing & ~found.doubtful
@@ -125,10 +141,10 @@ def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | N
     return BlockMetrics(stable, values, reasons, alone)
 
 
-def _answer(found: ResponseMetrics, name: str, band: float, time: float) -> tuple[Array, Flags, str]:
-    """Return the values of a metric in the user's unit of time, where they are missing, and why."""
+def _answer(found: ResponseMetrics, name: str, band: float, loops: LoopColumns) -> tuple[Array, Flags, str]:
+    """Return the values of a metric in the user's units, where they are missing, and why."""
     missing, why = np.zeros(found.count, dtype=bool), ""
-    by = f"by t = {found.end * time:g}"
+    by = f"by t = {found.end * loops.time:g}"
     if name == "settling_time":
         value, missing = found.settling_time(band)
         why = f"the response has not settled within {band:g} of its final value {by}"
@@ -140,4 +156,7 @@ def _answer(found: ResponseMetrics, name: str, band: float, time: float) -> tupl
         value, why = high - low, f"the response does not reach 0.9 of its final value {by}"
     else:
         value = getattr(found, name)()
-    return value * (1.0 if name in OF_THE_SIZE else time), missing, why
+    if name == VARIATION:
+        return value / loops.gain * np.ones(found.count), missing, why
+    power = 0 if name in OF_THE_SIZE else 2 if name in OF_A_SQUARE else 1
+    return value * loops.time**power, missing, why

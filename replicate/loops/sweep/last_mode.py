@@ -9,7 +9,8 @@ the output over two dead times is the whole state of the loop.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +81,37 @@ class LastModes:
         c, pole = self.coefficient, self.pole
         mean = np.abs(c) ** 2 / (-4.0 * pole.real)
         return np.where(pole.imag > 0.0, mean - np.real(c**2 / (4.0 * pole)), 2.0 * mean)
+
+    def square_moment(self) -> Array:
+        """Return the integrals of the squares, weighted with the time."""
+        c, pole, start = self.coefficient, self.pole, self.start
+
+        mean, twice = np.abs(c) ** 2 * (1.0 / (2.0 * pole.real) - start) / (2.0 * pole.real), 2.0 * pole
+        turning = np.real(c**2 * (1.0 / twice - start) / twice)
+        return np.asarray(np.where(pole.imag > 0.0, 0.5 * mean + 0.5 * turning, mean))
+
+    def absolute_moment(self) -> Array:
+        """Return the integrals of the absolute values, weighted with the time."""
+        pole, c, start = self.pole, self.coefficient, self.start
+        real = np.abs(c * (1.0 / pole**2 - start / pole))
+        frequency = np.where(pole.imag > 0.0, pole.imag, 1.0)
+        wait, half = np.mod(0.5 * np.pi - np.angle(c), np.pi) / frequency, np.pi / frequency
+        first, decay = c * np.exp(pole * wait), np.exp(pole * half)
+        # up to the first zero, then half-waves, each a fixed fraction of the one before
+        before = np.abs(np.real(first * ((start + wait) / pole - 1.0 / pole**2) - c * (start / pole - 1.0 / pole**2)))
+        area = np.abs(np.real(first * (decay - 1.0) / pole))
+        own = np.abs(np.real(first * (decay * (half / pole - 1.0 / pole**2) + 1.0 / pole**2)))
+        left = 1.0 - np.abs(decay)
+        after = ((start + wait) * area + own) / left + half * area * np.abs(decay) / left**2
+        return np.where(pole.imag > 0.0, before + after, real)
+
+    def absolute_change(self) -> Array:
+        """Return the integrals of the absolute values of the derivatives."""
+        return replace(self, coefficient=self.coefficient * self.pole).absolute_integral()
+
+    def times(self, factor: NDArray[Any]) -> LastModes:
+        """Return the modes of signals that are these, multiplied by a transfer function's values at the poles."""
+        return replace(self, coefficient=np.where(self.found, self.coefficient * factor, 0.0))
 
     def first_at(self, level: Array) -> Array:
         """Return when real modes that approach zero from below a level reach it; ``nan`` for the others."""

@@ -106,7 +106,7 @@ class LoopColumns:
     @cached_property
     def num(self) -> Array:
         """Coefficients of L's numerator, shape (degree + 1, n)."""
-        return _product(self.controller_zeros, self.shared_num)
+        return column_products(self.controller_zeros, self.shared_num)
 
     @cached_property
     def den(self) -> Array:
@@ -134,6 +134,12 @@ class LoopColumns:
     def value(self, s: ComplexArray) -> ComplexArray:
         """Evaluate L at ``s`` of shape (..., n), in the columns' unit of time."""
         return np.asarray(horner(self.num, s) / np.polyval(self.den, s) * np.exp(-s))
+
+    def feedback(self, s: ComplexArray) -> ComplexArray:
+        """Evaluate the controllers' transfer functions from -y to u at ``s`` of shape (n,)."""
+        num, den = self.form.measurement_filter_polynomials()
+        controller = horner(self.controller_zeros, s) / np.polyval(self.controller_poles, s)
+        return np.asarray(controller * np.polyval(num, s) / np.polyval(den, s))
 
     def newton_step(self, s: ComplexArray) -> ComplexArray:
         """Return f(s)/f'(s) of the characteristic function f = D + N exp(-s)."""
@@ -181,7 +187,8 @@ def horner_with_slope(coefficients: Array, s: ComplexArray) -> tuple[ComplexArra
     return value, slope
 
 
-def _product(rows: Array, polynomial: Array) -> Array:
+def column_products(rows: Array, polynomial: Array) -> Array:
+    """Return the products of polynomials in columns with one polynomial."""
     product = np.zeros((rows.shape[0] + polynomial.size - 1, rows.shape[1]))
     for i, factor in enumerate(polynomial):
         product[i : i + rows.shape[0]] += factor * rows

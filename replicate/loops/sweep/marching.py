@@ -46,6 +46,8 @@ class Piece:
         Deviations at the nodes, shape (points, loops).
     low, high, area
         Smallest and largest of the values, and the integral over [-1, 1].
+    control
+        The control signal at the nodes, if it is kept.
     """
 
     columns: Places
@@ -53,11 +55,12 @@ class Piece:
     low: Array
     high: Array
     area: Array
+    control: Array | None = None
 
     @classmethod
-    def of(cls, columns: Places, values: Array) -> Piece:
+    def of(cls, columns: Places, values: Array, control: Array | None = None) -> Piece:
         """Return the record of a piece."""
-        return cls(columns, values, values.min(axis=0), values.max(axis=0), WEIGHTS @ values)
+        return cls(columns, values, values.min(axis=0), values.max(axis=0), WEIGHTS @ values, control)
 
 
 @dataclass
@@ -74,8 +77,8 @@ class Responses:
         The pieces.
     ends
         Number of pieces of each loop.
-    modes
-        What follows after the last piece.
+    modes, control_modes
+        What follows after the last piece: deviations of the output, and of the control signal.
     unresolved
         Loops whose pieces are too long.
     failed
@@ -90,13 +93,21 @@ class Responses:
     pieces: list[Piece]
     ends: NDArray[np.intp]
     modes: LastModes
+    control_modes: LastModes
     unresolved: Flags
     failed: Flags
     settles: bool
 
 
 def march(
-    loops: LoopColumns, setpoint: float, load: float, until: float | None, band: float, shorter: int = 1
+    loops: LoopColumns,
+    setpoint: float,
+    load: float,
+    until: float | None,
+    band: float,
+    shorter: int = 1,
+    *,
+    control: bool = False,
 ) -> Responses:
     """Return the responses of stable loops to steps of set-point and load.
 
@@ -110,19 +121,29 @@ def march(
         Half-width of the settling band: a response is followed at least until it is inside for good.
     shorter
         How many times shorter the pieces are than they usually need to be.
+    control
+        Whether the control signals are kept.
     """
     chain = build_chain(loops.plant, loops.form, integral=bool(loops.form.ki), derivative=bool(loops.form.kd))
     chain = chain.balanced(np.max(np.abs(loops.gains), axis=1))
     radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
-    march = _March(loops, chain, setpoint, load, until, band)
+    march = _March(loops, chain, setpoint, load, until, band, control)
     return march.run(shorter * max(1, int(np.ceil(radius / STIFFNESS))))
 
 
 class _March:
     def __init__(
-        self, loops: LoopColumns, chain: Chain, setpoint: float, load: float, until: float | None, band: float
+        self,
+        loops: LoopColumns,
+        chain: Chain,
+        setpoint: float,
+        load: float,
+        until: float | None,
+        band: float,
+        control: bool,
     ) -> None:
         self.loops, self.chain, self.setpoint, self.load, self.until = loops, chain, setpoint, load, until
+        self.control = control
         self.final, self.final_control = loops.final(setpoint, load)
         self.band = band * np.where(self.final == 0.0, 1.0, np.abs(self.final))
 
@@ -139,7 +160,7 @@ class _March:
                 failed[:] = True
         found = Responses(
             1.0 / splits, self.final, share, [], np.zeros(count, dtype=np.intp), LastModes.none(count),
-            np.zeros(count, dtype=bool), failed, self.until is None,
+            LastModes.none(count), np.zeros(count, dtype=bool), failed, self.until is None,
         )  # fmt: skip
         state = _Moving(self, splits, np.nonzero(~failed)[0])
         look = FIRST_LOOK
@@ -165,7 +186,12 @@ class _March:
         state.keep(np.zeros(0, dtype=np.intp), found)
         if share < 1.0 and found.pieces:
             last = found.pieces[-1]
-            found.pieces[-1] = Piece.of(last.columns, _restriction(share) @ last.values)
+            cut = _restriction(share)
+            control = None if last.control is None else cut @ last.control
+            found.pieces[-1] = Piece.of(last.columns, cut @ last.values, control)
+        if self.control:
+            with np.errstate(all="ignore"):
+                found.control_modes = found.modes.times(-self.loops.feedback(found.modes.pole))
         return found
 
 
@@ -197,7 +223,7 @@ class _Moving:
                 inputs[POINTS:-1] += chain.b * self.impulse
                 self.impulse = self.impulse * self.law.gains[3] * chain.wv[3, 0]
         y, u, inputs[POINTS:-1] = self.law.apply(inputs)
-        piece = Piece.of(self.columns, y - self.final)
+        piece = Piece.of(self.columns, y - self.final, u if march.control else None)
         self.history.append(u)
         self.recent.append(piece.values)
         np.maximum(self.high, piece.high, out=self.high)

@@ -6,7 +6,7 @@ A response in which an extremum nearly touches the level that counts is left to 
 
 from __future__ import annotations
 
-from functools import cache, cached_property
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,72 +15,18 @@ from replicate.loops import chebyshev, series_roots
 from replicate.loops.signal import APPROACH, ARRIVAL, ROUNDING
 from replicate.loops.sweep import block_series
 from replicate.loops.sweep.block_series import DEGREE
-from replicate.loops.sweep.marching import Responses
+from replicate.loops.sweep.response_integrals import ResponseIntegrals
+from replicate.loops.sweep.response_pieces import MARGIN, summits
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
-MARGIN = 0.04  # of the range in a piece: more than an extremum exceeds the values at the nodes
 TOUCHING = 5e-3  # of the range in a piece: an extremum so close to a level may cross it between samples
-NEGLIGIBLE = 3e-11  # share of an integral that all pieces together may have which are looked at no further
 
 
-class ResponseMetrics:
-    """The metrics of the responses of a block, in the block's unit of time.
-
-    Attributes
-    ----------
-    doubtful : array, shape (n,)
-        Which loops must be asked one by one; grows with the questions.
-    """
-
-    def __init__(self, responses: Responses) -> None:
-        self.responses = responses
-        self.pieces, self.final = responses.pieces, responses.final
-        self.count = responses.final.size
-        self.doubtful = responses.failed.copy()
-
-    @property
-    def end(self) -> float:
-        """The end of the longest response."""
-        return float(self._lengths().sum())
-
-    # ---- what each piece says --------------------------------------------------------------------------------------
-
-    @cached_property
-    def _ranges(self) -> tuple[Array, Array]:
-        """Lowest and highest deviation at the nodes, shape (pieces, n); zero where a loop has no such piece."""
-        low, high = (np.zeros((len(self.pieces), self.count)) for _ in range(2))
-        for index, piece in enumerate(self.pieces):
-            low[index, piece.columns], high[index, piece.columns] = piece.low, piece.high
-        return low, high
-
-    @cached_property
-    def _exists(self) -> Flags:
-        pieces = len(self.pieces)
-        exists = np.arange(pieces)[:, None] < self.responses.ends
-        return np.asarray(exists & ~self.doubtful)
-
-    def _gathered(self, piece: Places, column: Places) -> Array:
-        """Return node values of some pieces of some loops, in the order given; shape (points, many)."""
-        values = np.empty((DEGREE + 1, piece.size))
-        order = np.argsort(piece, kind="stable")
-        edges = np.searchsorted(piece[order], np.arange(len(self.pieces) + 1))
-        for p in np.unique(piece):
-            chosen = order[edges[p] : edges[p + 1]]
-            place = np.searchsorted(self.pieces[p].columns, column[chosen])
-            values[:, chosen] = self.pieces[p].values[:, place]
-        return values
-
-    def _time(self, piece: Places, x: Array) -> Array:
-        length = np.where(piece == len(self.pieces) - 1, self.responses.share, 1.0)
-        return np.asarray(self.responses.length * (piece + 0.5 * (x + 1.0) * length))
-
-    def _lengths(self) -> Array:
-        lengths = np.full(len(self.pieces), self.responses.length)
-        lengths[-1] *= self.responses.share
-        return lengths
+class ResponseMetrics(ResponseIntegrals):
+    """The metrics of the responses of a block."""
 
     # ---- peak ------------------------------------------------------------------------------------------------------
 
@@ -150,7 +96,7 @@ class ResponseMetrics:
             dense = self._gathered(piece, column)
             series, nodes = block_series.series(dense), np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], dense.shape)
             size, sign = np.abs(dense), np.sign(dense)
-            touching = _summits(size, np.abs(size - width[column]) < MARGIN * np.ptp(dense, axis=0))
+            touching = summits(size, np.abs(size - width[column]) < MARGIN * np.ptp(dense, axis=0))
             nodes, dense = block_series.sharpened(series, nodes, dense, touching, sign)
             beyond = np.abs(dense) > width[column]
             some = beyond.any(axis=0)
@@ -190,7 +136,7 @@ class ResponseMetrics:
             piece = np.argmax(reaching[:, column], axis=0)
             series = block_series.series(self._gathered(piece, column))
             dense = block_series.samples(series)
-            touching = _summits(dense, np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0))
+            touching = summits(dense, np.abs(dense - level[column]) < TOUCHING * np.ptp(dense, axis=0))
             nodes, dense = block_series.sharpened(series, _dense(column.size), dense, touching, np.ones(dense.shape))
             beyond = dense >= level[column]
             some, at = beyond.any(axis=0), np.argmax(beyond, axis=0)
@@ -215,90 +161,7 @@ class ResponseMetrics:
         self.doubtful |= missing & self.responses.modes.found & np.isnan(later)
         return time, missing & ~self.responses.modes.found
 
-    # ---- integrals -------------------------------------------------------------------------------------------------
-
-    @cached_property
-    def _areas(self) -> Array:
-        """Integrals of the deviation over the pieces, shape (pieces, n)."""
-        areas = np.zeros((len(self.pieces), self.count))
-        for index, piece in enumerate(self.pieces):
-            areas[index, piece.columns] = piece.area
-        return np.asarray(np.where(self._exists, areas, 0.0) * (0.5 * self._lengths())[:, None])
-
-    def ie(self) -> Array:
-        """Return the integrated error, for a load response the integrated deviation."""
-        total = self._areas.sum(axis=0) + self.responses.modes.integral()
-        return np.asarray(np.where(self.final == 0.0, total, -total))
-
-    def ise(self) -> Array:
-        """Return the integrated squared error."""
-        points, weights = chebyshev.gauss_legendre(DEGREE + 2)
-        matrix = chebyshev.basis(points, DEGREE).T @ chebyshev.values_to_coefficients(DEGREE)
-        squares = np.zeros((len(self.pieces), self.count))
-        for index, piece in enumerate(self.pieces):
-            squares[index, piece.columns] = weights @ (matrix @ piece.values) ** 2
-        squares = np.where(self._exists, squares, 0.0) * (0.5 * self._lengths())[:, None]
-        return np.asarray(squares.sum(axis=0) + self.responses.modes.square_integral())
-
-    def iae(self) -> Array:
-        """Return the integrated absolute error."""
-        low, high = self._ranges
-        total = np.abs(self._areas)
-        span = high - low
-        near = self._exists & (low - MARGIN * span < 0.0) & (high + MARGIN * span > 0.0) & (span > 0.0)
-        near &= span * self._lengths()[:, None] > NEGLIGIBLE / len(self.pieces) * total.sum(axis=0)
-        piece, column = np.nonzero(near)
-        if piece.size:
-            values = self._gathered(piece, column)
-            total[piece, column] = self._absolute(values) * (0.5 * self._lengths()[piece])
-        return np.asarray(total.sum(axis=0) + self.responses.modes.absolute_integral())
-
-    def _absolute(self, values: Array) -> Array:
-        """Return the integrals of |e| over [-1, 1] of polynomials in columns."""
-        sign = np.sign(values)
-        # two zeros may hide next to an extremum that nearly touches zero, away from other zeros
-        touching = np.abs(values) < MARGIN * np.ptp(values, axis=0)
-        turned = sign[1:] != sign[:-1]
-        touching[1:] &= ~turned
-        touching[:-1] &= ~turned
-        series = block_series.series(values)
-        nodes = np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], values.shape)
-        if touching.any():
-            summits = _summits(-np.abs(values), touching)
-            nodes, values = block_series.sharpened(series, nodes, values, summits, -sign)
-        negative = values < 0.0
-        before, place = np.nonzero(negative[1:] != negative[:-1])
-        running = _antiderivative() @ series  # zero at -1
-        x = series_roots.roots(
-            series[:, place], nodes[before, place], nodes[before + 1, place],
-            values[before, place], values[before + 1, place],
-        )  # fmt: skip
-        at_root = series_roots.evaluate(running[:, place], x)
-        sides = np.where(negative[before, place], -2.0, 2.0)
-        total = np.where(negative[-1], -1.0, 1.0) * running.sum(axis=0)
-        return np.asarray(total + np.bincount(place, weights=sides * at_root, minlength=total.size))
-
 
 def _dense(count: int) -> Array:
     """Return the dense nodes as columns."""
     return np.broadcast_to(block_series.dense_nodes()[:, None], (block_series.DENSE, count))
-
-
-def _summits(values: Array, candidates: Flags) -> Flags:
-    """Return which candidates among samples are no lower than their neighbours, ends included."""
-    columns = np.nonzero(candidates.any(axis=0))[0]
-    part = values[:, columns]
-    falls = part[1:] <= part[:-1]
-    rises = part[1:] >= part[:-1]
-    summits = candidates[:, columns]
-    summits[:-1] &= falls
-    summits[1:] &= rises
-    result = np.zeros(candidates.shape, dtype=bool)
-    result[:, columns] = summits
-    return result
-
-
-@cache
-def _antiderivative() -> Array:
-    """Return the matrix from coefficients to those of the antiderivative that is zero at -1."""
-    return np.asarray(np.polynomial.chebyshev.chebint(np.eye(DEGREE + 1), lbnd=-1.0, axis=0))

@@ -7,12 +7,14 @@ crossovers nearly touch or the curve nearly passes through -1, is left to the si
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.sweep.loop_columns import LoopColumns
+from replicate.loops.sweep.loop_columns import LoopColumns, horner
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
@@ -24,36 +26,79 @@ CLEAR = 1e-4  # distance of L from -1 at a crossover that leaves no doubt; of |L
 UNSTABLE, STABLE, UNDECIDED = 0, 1, 2
 
 
+@dataclass(frozen=True)
+class Characteristic:
+    """N, D and the dead time, one, of the characteristic functions D + N exp(-s) of many loops.
+
+    Attributes
+    ----------
+    num, den
+        Coefficients, descending powers, shapes (degree + 1, n) or (degree + 1, 1) where all loops share them.
+    zeros, poles
+        The roots of N and of D, each of shape (n,) or (1,).
+    lost
+        Loops whose N is of lower degree than the others'.
+    """
+
+    num: Array
+    den: Array
+    zeros: Sequence[ComplexArray]
+    poles: Sequence[ComplexArray]
+    lost: Flags
+
+    @classmethod
+    def of(cls, loops: LoopColumns) -> Characteristic:
+        """Return those of a block."""
+        own, lost = _controller_roots(loops.controller_zeros)
+        return cls(loops.num, loops.den[:, None], [*loops.zeros[:, None], *own], [*loops.poles[:, None]], lost)
+
+    def shifted(self, by: Array) -> Characteristic:
+        """Return those whose roots are moved by -by, which differs from loop to loop."""
+        num, den = _shifted(self.num, by) * np.exp(-by), _shifted(self.den, by)
+        return Characteristic(num, den, [z - by for z in self.zeros], [p - by for p in self.poles], self.lost)
+
+    @property
+    def feedthrough(self) -> Array:
+        """The limits of |L| at infinite frequency."""
+        if self.num.shape[0] < self.den.shape[0]:
+            return np.zeros(self.num.shape[1])
+        return np.asarray(np.abs(self.num[0] / self.den[0]))
+
+
 def stability(loops: LoopColumns) -> tuple[NDArray[np.int8], Array]:
     """Return for each loop UNSTABLE, STABLE or UNDECIDED, and the gain crossovers.
 
     The crossovers have shape (most, n), ascending; ``inf`` where a loop has fewer.
     """
-    crossovers, doubtful = gain_crossovers(loops)
-    poles, shared = loops.poles, loops.zeros
-    own, lost = _controller_roots(loops.controller_zeros)
-    doubtful |= lost
-    most = crossovers.shape[0]
+    function = Characteristic.of(loops)
+    count, doubtful, crossovers = unstable_poles(function)
+    decided = np.where(count <= 0.0, STABLE, UNSTABLE)
+    # without bound at high frequency: infinitely many unstable poles
+    decided = np.where(function.feedthrough >= 1.0, UNSTABLE, np.where(doubtful, UNDECIDED, decided))
+    return decided.astype(np.int8), crossovers
+
+
+def unstable_poles(function: Characteristic) -> tuple[Array, Flags, Array]:
+    """Return the numbers of zeros with Re s > 0, which of them are in doubt, and the gain crossovers."""
+    crossovers, doubtful = gain_crossovers(function)
+    doubtful |= function.lost
+    most, count = crossovers.shape
     finite = np.isfinite(crossovers)
     w = np.where(finite, crossovers, 1.0)
-    value = loops.value(1j * w)
+    value = horner(function.num, 1j * w) / horner(function.den, 1j * w) * np.exp(-1j * w)
     doubtful |= np.any(finite & (np.abs(1.0 + value) < CLEAR), axis=0)
     principal = np.angle(1.0 + value)  # where |L| = 1 the argument of 1 + 1/L is the opposite
-    small_side = _argument(poles, w) + principal
-    right = np.where(own.real > 0.0, 1.0, 0.0)
-    large_side = _argument(shared, w) - w - principal
-    for zero, is_right in zip(own, right, strict=True):
-        large_side += _own_argument(zero, is_right, w)
+    small_side = _argument(function.poles, w) + principal
+    large_side = _argument(function.zeros, w) - w - principal
     # at rest
-    at_rest = loops.num[-1] / loops.den[-1] if loops.den[-1] else np.full(len(loops), np.inf)
+    with np.errstate(all="ignore"):
+        at_rest = np.where(function.den[-1] == 0.0, np.inf, function.num[-1] / function.den[-1])
     small = np.abs(at_rest) < 1.0
     doubtful |= np.abs(np.abs(at_rest) - 1.0) < CLEAR
     doubtful |= np.abs(1.0 + at_rest) < CLEAR
-    rest = np.zeros(len(loops))
-    before_small, before_large = _argument(poles, rest), _argument(shared, rest)
-    for root, is_right in zip(own, right, strict=True):
-        before_large = before_large + _own_argument(root, is_right, rest)
-    change = np.zeros(len(loops))
+    rest = np.zeros(count)
+    before_small, before_large = _argument(function.poles, rest), _argument(function.zeros, rest)
+    change = np.zeros(count)
     for i in range(most):
         here = finite[i]
         step = np.where(small, small_side[i] - before_small, large_side[i] - before_large)
@@ -64,20 +109,17 @@ def stability(loops: LoopColumns) -> tuple[NDArray[np.int8], Array]:
         )
         small = np.where(here, ~small, small)
     doubtful |= ~small  # |L| ends below one
-    change += 0.5 * np.pi * poles.size - before_small
-    zeros = 0.5 * poles.size - change / np.pi
-    count = np.round(zeros)
-    doubtful |= np.abs(zeros - count) > 0.1
-    decided = np.where(count <= 0.0, STABLE, UNSTABLE)
-    # without bound at high frequency: infinitely many unstable poles
-    decided = np.where(loops.feedthrough >= 1.0, UNSTABLE, np.where(doubtful, UNDECIDED, decided))
-    return decided.astype(np.int8), crossovers
+    degree = function.den.shape[0] - 1
+    change += 0.5 * np.pi * degree - before_small
+    zeros = 0.5 * degree - change / np.pi
+    found = np.round(zeros)
+    return found, doubtful | (np.abs(zeros - found) > 0.1), crossovers
 
 
-def gain_crossovers(loops: LoopColumns) -> tuple[Array, Flags]:
+def gain_crossovers(function: Characteristic) -> tuple[Array, Flags]:
     """Return the frequencies with |L| = 1, ascending and ``inf`` at the end, and whether some may be missing."""
-    n, d = squared_magnitude(loops.num), squared_magnitude(loops.den[:, None])
-    difference = np.repeat(d, len(loops), axis=1)
+    n, d = squared_magnitude(function.num), squared_magnitude(function.den)
+    difference = np.array(np.broadcast_to(d, (d.shape[0], n.shape[1])))
     difference[-n.shape[0] :] -= n
     roots, lost = polynomial_roots(difference)
     with np.errstate(all="ignore"):
@@ -128,11 +170,14 @@ def _controller_roots(rows: Array) -> tuple[ComplexArray, Flags]:
     return polynomial_roots(rows)
 
 
-def _argument(roots: ComplexArray, w: Array) -> Array:
+def _argument(roots: Sequence[ComplexArray], w: Array) -> Array:
     """Return the argument of the product of i w - root, continuous in w >= 0."""
     total = np.zeros(w.shape)
     for root in roots:
-        if root.real > 0.0:
+        if root.size > 1:
+            left = np.arctan2(w - root.imag, -root.real)
+            total += np.where(root.real > 0.0, np.pi + np.arctan2(root.imag - w, root.real), left)
+        elif root.real > 0.0:
             total += np.pi + np.arctan2(root.imag - w, root.real)
         elif root == 0.0:
             total += 0.5 * np.pi
@@ -141,6 +186,10 @@ def _argument(roots: ComplexArray, w: Array) -> Array:
     return total
 
 
-def _own_argument(root: ComplexArray, right: Array, w: Array) -> Array:
-    left = np.arctan2(w - root.imag, -root.real)
-    return np.where(right > 0.0, np.pi + np.arctan2(root.imag - w, root.real), left)
+def _shifted(rows: Array, by: Array) -> Array:
+    """Return the polynomials p(s + by), one in each column, by repeated synthetic division."""
+    shifted = np.array(np.broadcast_to(rows, (rows.shape[0], by.size)))
+    for last in range(rows.shape[0] - 1, 0, -1):
+        for i in range(1, last + 1):
+            shifted[i] += by * shifted[i - 1]
+    return shifted
