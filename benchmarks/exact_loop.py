@@ -54,6 +54,7 @@ def metrics() -> dict[str, float]:
         for n in range(1, int(UNTIL))
     ]
     extrema, crossings, absolute = [], [0.0], 1.0  # the error is one during the dead time
+    reached: dict[float, float] = {}
     for n, piece in enumerate(series, start=1):
 
         def time(at: float, start: int = n) -> float:
@@ -62,12 +63,17 @@ def metrics() -> dict[str, float]:
         extrema += [(chebyshev.chebval(v, piece), time(v)) for v in _roots(chebyshev.chebder(piece))]
         for level in (0.02, -0.02):
             crossings += [time(v) for v in _roots(chebyshev.chebsub(piece, [level]))]
+        for fraction in (0.1, 0.9):
+            at_fraction = _roots(chebyshev.chebsub(piece, [fraction - 1.0]))
+            if at_fraction:
+                reached.setdefault(fraction, time(at_fraction[0]))
         integral = chebyshev.chebint(piece)
         points = np.array([-1.0, *_roots(piece), 1.0])
         absolute += 0.5 * float(np.sum(np.abs(np.diff(chebyshev.chebval(points, integral)))))
     peak, at = max(extrema)
     return {
-        "overshoot": float(peak), "peak_time": at, "settling_time": max(crossings), "iae": absolute, **margins(),
+        "overshoot": float(peak), "peak_time": at, "settling_time": max(crossings),
+        "rise_time": reached[0.9] - reached[0.1], "iae": absolute, **margins(),
     }  # fmt: skip
 
 
@@ -92,5 +98,12 @@ def margins() -> dict[str, float]:
     return {
         "ms": float(1 / abs(1 + loop(closest))),
         "gain_margin": float(1 / abs(loop(phase_crossover))),
+        "rightmost_pole": rightmost_pole(),
         "phase_margin": float(mp.degrees(mp.arg(loop(gain_crossover)) + mp.pi)),
     }
+
+
+def rightmost_pole() -> float:
+    """Return the rightmost zero of s (s + 1) + (k s + ki) e^{-s}, which is real here."""
+    f = lambda s: s * (s + 1) + (mp.mpf(K) * s + mp.mpf(KI)) * mp.exp(-s)  # noqa: E731
+    return float(mp.findroot(f, (-0.6, -0.65)))

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 from benchmarks import exact_loop
 from benchmarks.common import Table, open_loop, processor_time, seconds, times
 from benchmarks.exact_loop import KI, K
-from replicate.loops import PI, Loop, Plant, design_pi, design_pid
+from replicate.loops import PI, Loop, PIDDesign, Plant, Signal, design_pi, design_pid, step_responses
 
 UNTIL = 40.0
 TIMES = np.linspace(0.0, UNTIL, 4001)
@@ -77,7 +77,7 @@ def tables() -> list[Table]:
     """Return the tables of single loops."""
     reference = np.array([float(exact_loop.response(float(t))) for t in CHECKED])
     plant, controller = Plant.foptd(1.0, 1.0, 1.0), PI(K, KI)
-    anchor = processor_time(by_control, 5)
+    anchor = processor_time(by_control, 10)
     responses = Table(
         "One step response, 4001 points of (0.6 + 0.5/s) e^(-s)/(s + 1)",
         ("how", "processor time", "times as fast as python-control", "largest error"),
@@ -96,18 +96,80 @@ def tables() -> list[Table]:
         error = float(np.max(np.abs(np.asarray(way())[::40] - reference)))
         responses.add(name, seconds(spent), times(anchor / spent), f"{error:.1e}")
 
-    whole = Table(
-        "Whole questions, each beside one python-control step_response",
-        ("question", "processor time", "share of one step_response", "error"),
+    return [responses, _questions(plant, controller), _designs(plant)]
+
+
+def _questions(plant: Plant, controller: PI) -> Table:
+    """Return what single questions cost, each beside the python-control call that answers it."""
+    loop: Any = open_loop(K, KI, [1.0], [1.0, 1.0], 1.0)
+    exact, gains = exact_loop.metrics(), [PI(K, KI * (1.0 + 1e-4 * i)) for i in range(1000)]
+    reference = np.array([float(exact_loop.response(float(t))) for t in CHECKED])
+    signal = Loop(plant, controller).step()
+    lags = iter(1.0 + 1e-9 * i for i in range(10**6))
+
+    def of_the_response(name: str) -> Callable[[], Any]:
+        def ask() -> Any:
+            fresh = Signal(signal.breaks, signal.coefficients, final=signal.final, stable=signal.stable)
+            return float(fresh.peak().time) if name == "peak_time" else getattr(fresh, name)()
+
+        return ask
+
+    def of_the_loop(name: str) -> Callable[[], Any]:
+        def ask() -> Any:
+            return getattr(Loop(plant, controller), name)()
+
+        return ask
+
+    step_response = ("step_response", by_control)
+    step_info = ("feedback + step_info", lambda: control.step_info(control.feedback(loop)))
+    stability_margins = ("stability_margins", lambda: control.stability_margins(loop))
+    poles = ("feedback + poles", lambda: control.feedback(loop).poles())
+
+    def shown(value: Any, of: str) -> str:
+        return f"{abs(value / exact[of] - 1.0):.1e}"
+
+    margins = Loop(plant, controller).margins()
+    worst = max(abs(margins.gain / exact["gain_margin"] - 1.0), abs(margins.phase / exact["phase_margin"] - 1.0))
+    many = step_responses(plant, gains[:1], UNTIL)[0](CHECKED)
+    rows: list[tuple[str, Callable[[], Any], float, tuple[str, Callable[[], Any]], str]] = [
+        ("Loop(...).step().overshoot()", lambda: Loop(plant, controller).step().overshoot(), 1, step_response,
+         shown(signal.overshoot(), "overshoot")),
+        ("the same, each loop of another plant",
+         lambda: Loop(Plant.foptd(1.0, next(lags), 1.0), controller).step().overshoot(), 1, step_response,
+         shown(signal.overshoot(), "overshoot")),
+        ("each of 1000 in one step_responses", lambda: step_responses(plant, gains, UNTIL), 1000, step_response,
+         f"{np.max(np.abs(many - reference)):.1e}"),
+        *((f"{name} of a response", of_the_response(name), 1, step_info, shown(of_the_response(name)(), name))
+          for name in ("overshoot", "peak_time", "settling_time", "rise_time", "iae")),
+        ("sensitivity_peak", of_the_loop("sensitivity_peak"), 1, stability_margins,
+         shown(Loop(plant, controller).sensitivity_peak().value, "ms")),
+        ("margins", of_the_loop("margins"), 1, stability_margins, f"{worst:.1e}"),
+        ("rightmost_pole", of_the_loop("rightmost_pole"), 1, poles,
+         shown(Loop(plant, controller).rightmost_pole().real, "rightmost_pole")),
+    ]  # fmt: skip
+    table = Table(
+        "One question about (0.6 + 0.5/s) e^(-s)/(s + 1), each beside python-control",
+        ("question", "processor time", "beside it", "processor time", "times as quick", "largest error"),
     )
-    exact = exact_loop.metrics()["overshoot"]
-    spent = processor_time(lambda: Loop(plant, controller).step().overshoot(), 30)
-    error = abs(Loop(plant, controller).step().overshoot() - exact)
-    whole.add("Loop(...).step().overshoot()", seconds(spent), f"1/{anchor / spent:.3g}", f"{error:.1e}")
+    beside: dict[str, float] = {}
+    for name, ask, share, (other, anchor), error in rows:
+        if other not in beside:
+            beside[other] = processor_time(anchor, 7)
+        spent = processor_time(ask, 2 if share > 1 else 30) / share
+        table.add(name, seconds(spent), other, seconds(beside[other]), times(beside[other] / spent), error)
+    return table
+
+
+def _designs(plant: Plant) -> Table:
+    anchor = processor_time(by_control, 10)
+    table = Table(
+        "Designs with Ms = 1.4, each beside one python-control step_response",
+        ("design", "processor time", "share of one step_response", "error of Ms"),
+    )
     for name, design in (("design_pi", design_pi), ("design_pid", design_pid)):
-        spent = processor_time(partial(design, plant, ms=1.4), 5)
+        spent = processor_time(partial(design, plant, ms=1.4), 7)
         found = design(plant, ms=1.4)
-        reached = Loop(plant, found.controller).sensitivity_peak().value if name == "design_pid" else None
-        reached = Loop(plant, PI(found.k, found.ki)).sensitivity_peak().value if reached is None else reached
-        whole.add(f"{name}, Ms = 1.4", seconds(spent), times(spent / anchor), f"{abs(reached - 1.4):.1e} of Ms")
-    return [responses, whole]
+        made = found.controller if isinstance(found, PIDDesign) else PI(found.k, found.ki)
+        reached = Loop(plant, made).sensitivity_peak().value
+        table.add(name, seconds(spent), times(spent / anchor), f"{abs(reached - 1.4):.1e}")
+    return table

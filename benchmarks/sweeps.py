@@ -49,13 +49,14 @@ def _beside_control() -> Table:
     anchors = {
         RESPONSE: lambda: control.step_info(control.feedback(loop)),
         FREQUENCY: lambda: control.stability_margins(loop),
+        ("rightmost_pole",): lambda: control.feedback(loop).poles(),
     }
     rows, exact = gains(MANY), exact_loop.metrics()
     for names, anchor in anchors.items():
         theirs = processor_time(anchor, 10)
         ours = processor_time(partial(sweep, PLANT, rows, metrics=names), 3) / MANY
         result = sweep(PLANT, rows[:10], metrics=names)
-        error = max(abs(float(result[name][0, 0]) / exact[name] - 1.0) for name in names)
+        error = max(abs(complex(result[name][0, 0]) / exact[name] - 1.0) for name in names)
         table.add(", ".join(names), seconds(ours), seconds(theirs), times(theirs / ours), f"{error:.1e}")
     return table
 

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 APPROACH = 1e-12  # of the final value: a response that never exceeds it by more only approaches it
 ARRIVAL = 1e-3  # of the final value: no mode decays from there to rounding within one piece
+NEGLIGIBLE = 1e-14  # share of an integral that all pieces together may have whose zeros are not looked for
 ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
 
 
@@ -191,7 +192,9 @@ class Signal(SignalViews, Piecewise):
     def _absolute_moment(self, power: int) -> float:
         self._require_stable("integrated absolute error")
         samples = self.final - self._samples
-        negligible = np.max(np.abs(samples), axis=1) <= 1e-15 * np.max(np.abs(samples))
+        # what all small pieces together add is below rounding
+        sizes = np.max(np.abs(samples), axis=1) * self._lengths * (self.breaks[1:] if power else 1.0)
+        negligible = sizes <= NEGLIGIBLE / sizes.size * np.sum(sizes)
         signed = (samples.min(axis=1) - MARGIN * np.ptp(samples, axis=1) < 0.0) & (
             samples.max(axis=1) + MARGIN * np.ptp(samples, axis=1) > 0.0
         )
@@ -199,7 +202,7 @@ class Signal(SignalViews, Piecewise):
         weighted = self._error
         for _ in range(power):
             weighted = _times_argument(weighted, self.breaks[:-1] + half, half)
-        total = float(np.sum(np.abs(self._piece_integrals(weighted))[~signed]))
+        total = float(np.sum(np.abs(self._piece_integrals(weighted))[~signed | negligible]))
         pieces = np.nonzero(signed & ~negligible)[0]
         owners, roots = self._zeros_of_error(pieces, samples)
         # between neighbouring zeros the integral is a difference of the antiderivative
