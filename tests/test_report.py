@@ -1,6 +1,7 @@
 import re
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -12,13 +13,16 @@ from replicate.display.markdown import MarkdownBatch
 from replicate.display.numbers import aligned, shown
 from replicate.errors import TemplateError
 from replicate.exhibits import Figure, Finding, Paper
+from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import ClaimsResult, Results, TableResult
 from replicate.report import build_report
+from replicate.report.errata_sheet import Erratum
 from replicate.resources import templates_dir
 from replicate.run.drawing import capture
 from replicate.verdicts.inputs import read_inputs
 from replicate.verdicts.judge import judge
+from replicate.verdicts.rows import Computed, VerdictRow
 
 Make = Callable[..., dict[str, str]]
 
@@ -356,6 +360,15 @@ def test_the_errata_page_has_print_right_value_and_a_text_for_the_authors(make: 
     assert "Dear authors" in page.text
     assert "The margin is above 2.5." in page.text
     assert "synthetic.html#table-1.ZN.Ti" in page.values("href")
+
+
+def test_a_value_by_another_definition_is_not_called_the_right_one() -> None:
+    value = PrintedValue("10.3", "A", "ts")
+    one = Computed("authors", 9.9013, Match("near"))
+    row = VerdictRow("toy", "table-1", "A", "ts", "10.3", "discrepant", "authors", "9.9013", value=value, values=(one,))
+    by_definition, by_method = replace(row, cause="definition"), replace(row, cause="method")
+    assert (Erratum.right(by_definition), Erratum.right(by_method)) == ("", "9.901")
+    assert Erratum.ours(by_definition) == "9.901"
 
 
 def test_the_first_screen_counts_consequential_errors(make: Make) -> None:

@@ -75,7 +75,15 @@ class Erratum:
 
     @classmethod
     def right(cls, row: VerdictRow) -> str:
-        """Return the right value of a cell as text: the corrected one, or what the deciding reading gives."""
+        """Return the right value of a cell as text: the corrected one, or what the deciding reading gives.
+
+        Empty where the definition differs, so that no one value is the right one.
+        """
+        return "" if row.cause == "definition" else cls.ours(row)
+
+    @classmethod
+    def ours(cls, row: VerdictRow) -> str:
+        """Return the corrected value of a cell, or what the deciding reading gives, as text."""
         return row.corrected or numbers.shown(cls.number(row), row.value)
 
 
