@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from replicate.display.tables import table_view
 from replicate.exhibits import Paper, Table
 from replicate.exhibits.exclusion import Box, Ends, excluded
 from replicate.exhibits.many_inputs import ManyInputs
@@ -19,6 +20,7 @@ from replicate.exhibits.rounded_inputs import compute_reading
 from replicate.run.stored_ranges import ranges_from_data, ranges_to_data
 from replicate.run.units import Unit, compute
 from replicate.verdicts.ledger import Ledger
+from replicate.verdicts.rows import VerdictRow
 from replicate.verdicts.tables import TableJudge
 
 
@@ -74,7 +76,7 @@ def made(rules: bool = True) -> Table:
     return table
 
 
-def judged(table: Table, total: str, product: str) -> dict[str, tuple[str, str]]:
+def judgement(table: Table, total: str, product: str) -> tuple[TableResult, list[VerdictRow]]:
     texts = {"k": "2.0", "m": "3.0", "sum": total, "product": product}
     values: dict[Key, PrintedValue] = {("A", name): PrintedValue(text, "A", name) for name, text in texts.items()}
     frame, ranges = compute_reading(table, table.readings["as-written"], values)
@@ -82,8 +84,13 @@ def judged(table: Table, total: str, product: str) -> dict[str, tuple[str, str]]
     result = TableResult("toy", table.id, {"as-written": frame}, {}, {"as-written": ranges})
     judge = TableJudge("toy", table, result, values, Ledger())
     judge.judge()
-    found = {one.column: one for verdict in judge.judgement.verdicts for one in verdict.ranges}
-    verdicts = {verdict.column: verdict.verdict for verdict in judge.judgement.verdicts}
+    return result, judge.judgement.verdicts
+
+
+def judged(table: Table, total: str, product: str) -> dict[str, tuple[str, str]]:
+    _, rows = judgement(table, total, product)
+    found = {one.column: one for verdict in rows for one in verdict.ranges}
+    verdicts = {verdict.column: verdict.verdict for verdict in rows}
     return {column: (verdicts[column], one.certainty) for column, one in found.items()}
 
 
@@ -99,6 +106,16 @@ def test_values_that_are_possible_but_not_together_are_proven_to_be() -> None:
     assert judged(made(), "4.91", "5.77")["product"] == ("consistent", "witness")
     found = judged(made(), "4.91", "6.2")
     assert sorted(found.values()) == [("consistent", "witness"), ("near", "joint-proof")]
+
+
+def test_card_and_note_say_what_the_inputs_leave_open_and_how_certain_that_is() -> None:
+    table = made()
+    view = table_view(table, *judgement(table, "5.9", "6.0"))
+    (note,) = view.notes
+    assert note.ranges == {"none of which gives the print, by proof": [("A", "sum", "4.900 to 5.100")]}
+    values = {cell.column: cell.values[0] for _, cells in view.rows for cell in cells if cell.printed}
+    assert values["sum"].certainty == "none of which gives the print, by proof"
+    assert (values["product"].range, values["product"].certainty) == ("5.752 to 6.252", "")
 
 
 def test_without_a_rule_it_is_only_searched() -> None:

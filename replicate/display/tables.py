@@ -102,6 +102,7 @@ class Note:
     verdict: VerdictRow
     where: dict[str, list[str]]  # the rows of each column, or the columns of each row, whichever is shorter
     corrections: list[VerdictRow]
+    ranges: dict[str, list[tuple[str, str, str]]]  # row, column and range over printed inputs, by what is certain of it
 
 
 @dataclass(frozen=True)
@@ -312,5 +313,16 @@ def _notes(verdicts: Iterable[VerdictRow]) -> list[tuple[Note, list[Key]]]:
             by_column.setdefault(column, []).append(row)
         where = by_row if len(by_row) <= len(by_column) else by_column
         corrections = [verdict for verdict in group if verdict.corrected]
-        notes.append((Note(number, group[0], where, corrections), keys))
+        notes.append((Note(number, group[0], where, corrections, _ranges(group)), keys))
     return notes
+
+
+def _ranges(group: Iterable[VerdictRow]) -> dict[str, list[tuple[str, str, str]]]:
+    """Return the ranges over printed inputs of cells that do not hold, by what is certain of them, in words."""
+    found: dict[str, list[tuple[str, str, str]]] = {}
+    for verdict in group:
+        one = next((one for one in verdict.values if one.reading == verdict.reading), None)
+        if one is not None and (words := CERTAINTIES.get(one.certainty)):
+            low, high = (numbers.shown(end, verdict.value) for end in (one.lower, one.upper))
+            found.setdefault(words, []).append((verdict.row, verdict.column, f"{low} to {high}"))
+    return found
