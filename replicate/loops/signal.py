@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 APPROACH = 1e-12  # of the final value: a response that never exceeds it by more only approaches it
 ARRIVAL = 1e-3  # of the final value: no mode decays from there to rounding within one piece
+AT_REST = 1e-14  # of the largest value: a piece that deviates less is at rest to rounding
 NEGLIGIBLE = 1e-14  # share of an integral that all pieces together may have whose zeros are not looked for
 ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
 
@@ -156,6 +157,15 @@ class Signal(SignalViews, Piecewise):
         coefficients[:, 0] += self.final
         return coefficients
 
+    @cached_property
+    def _moving(self) -> NDArray[np.bool_]:
+        """Which pieces deviate from the final value by more than rounding.
+
+        A mode that cancels in the response makes its horizon long: rounding errors would add up over it.
+        """
+        error = np.max(np.abs(self._samples - self.final), axis=1)
+        return ~(error <= AT_REST * float(np.max(np.abs(self._samples))))
+
     def ie(self) -> float:
         """Return the integrated error over [0, horizon].
 
@@ -163,7 +173,7 @@ class Signal(SignalViews, Piecewise):
         the deviation y itself, so that a unit load step under integral action gives IE = 1/ki.
         """
         self._require_stable("integrated error")
-        error = float(np.sum(self._piece_integrals(self._error)))
+        error = float(np.sum(self._piece_integrals(self._error)[self._moving]))
         return error if self.final else -error
 
     def ise(self) -> float:
@@ -202,8 +212,8 @@ class Signal(SignalViews, Piecewise):
         weighted = self._error
         for _ in range(power):
             weighted = _times_argument(weighted, self.breaks[:-1] + half, half)
-        total = float(np.sum(np.abs(self._piece_integrals(weighted))[~signed | negligible]))
-        pieces = np.nonzero(signed & ~negligible)[0]
+        total = float(np.sum(np.abs(self._piece_integrals(weighted))[(~signed | negligible) & self._moving]))
+        pieces = np.nonzero(signed & ~negligible & self._moving)[0]
         owners, roots = self._zeros_of_error(pieces, samples)
         # between neighbouring zeros the integral is a difference of the antiderivative
         owners = np.concatenate([pieces, owners, pieces])

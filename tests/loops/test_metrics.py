@@ -365,3 +365,18 @@ def test_final_value_is_approached(name: str) -> None:
     response = loop.respond(setpoint=1.0, load=0.5)
     for signal in (response.output, response.control):
         assert signal.final == pytest.approx(float(signal(signal.horizon)), abs=1e-10)
+
+
+@pytest.mark.parametrize("dead_time", [1e-5, 1e-3, 0.1])
+@pytest.mark.parametrize("a", [0.1, 0.3])
+def test_integrals_do_not_collect_rounding_over_a_horizon_that_a_cancelled_mode_makes_long(
+    dead_time: float, a: float
+) -> None:
+    # Ti = T leaves L = (a/L) e^(-sL)/s, monotone for a < 1/e: E(s) = 1/(s + (a/L) e^(-sL)), IAE = IE = E(0),
+    # ITAE = -E'(0); the cancelled pole at -1 makes the horizon 34
+    y = Loop(Plant.foptd(1.0, 1.0, dead_time), PI(a / dead_time, a / dead_time)).step()
+    mean = dead_time / a
+    assert y.horizon > 34.0
+    assert y.iae() == pytest.approx(mean, rel=1e-12)
+    assert y.ie() == pytest.approx(mean, rel=1e-12)
+    assert y.itae() == pytest.approx((1.0 - a) * mean**2, rel=1e-11)
