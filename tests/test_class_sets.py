@@ -20,7 +20,10 @@ from replicate.exhibits.variants import Answer, Variation, rounded
 from replicate.handout import ClassSet, Form, Sheet, language, stressed
 from replicate.handout import class_set as class_set_module
 from replicate.handout.edition import edition
+from replicate.handout.key_figures import key_pages
+from replicate.handout.marking_key import key_pdf, key_rows
 from replicate.handout.printout import markup, pdf
+from replicate.papers.bayhan import paper as bayhan_paper
 from replicate.papers.bayhan.handout import exercises as bayhan
 
 TEXT = """# A toy
@@ -156,6 +159,22 @@ def test_a_sheet_made_again_has_the_same_bytes_if_what_is_set_is_given_again(
     bare = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(select=form.select))
     (other,) = dict(bare.again(form)).values()
     assert other != files["toy-Ada.pdf"]  # title, date, points and language are not in the form
+
+
+def test_the_key_shows_the_curves_that_students_were_to_sketch() -> None:
+    students = ["Ada", "$a_b$", "山田", *(str(number) for number in range(10))]
+    forms = {student: Form.of("bayhan", "1", student) for student in students}
+    pages = list(key_pages(bayhan.variations, forms, "bayhan"))
+    assert [page.heading for page in pages] == ["sketch: The response"] * 2  # twelve to a page
+    assert [page.alt.partition("One for each of: ")[2] for page in pages] == [
+        f"Ada, $a_b$, {forms['山田'].key}, 0, 1, 2, 3, 4, 5, 6, 7, 8.",
+        "9.",
+    ]
+    assert pages == list(key_pages(bayhan.variations, forms, "bayhan"))
+    rows = [row for student, form in forms.items() for row in key_rows(bayhan.variations, student, form)]
+    without, together = (key_pdf(rows, bayhan_paper, "1", some) for some in ((), pages))
+    assert together.count(b"/S/Figure") == without.count(b"/S/Figure") + 2
+    assert b"<pdfuaid:part>1</pdfuaid:part>" in together
 
 
 def test_progress_counts_the_sheets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

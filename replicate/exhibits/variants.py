@@ -107,12 +107,15 @@ class VariedFigure:
         As of `replicate.exhibits.Figure`.
     draw
         Draws on an empty matplotlib figure: ``draw(fig, inputs=...)``.
+    in_key
+        Whether those who mark need it beside the numbers: what a student was to draw.
     """
 
     title: str
     alt: str
     draw: Callable[..., None]
     size: tuple[float, float] = (6.4, 3.0)
+    in_key: bool = False
 
 
 @dataclass(frozen=True)

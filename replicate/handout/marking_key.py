@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from pathlib import Path
@@ -16,6 +17,7 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.variants import Variation
 from replicate.handout.form import Form
+from replicate.handout.key_figures import KeyPage
 from replicate.handout.letters import can_be_set, fonts_dir
 from replicate.resources import templates_dir
 
@@ -67,8 +69,13 @@ def key_csv(rows: Sequence[KeyRow]) -> bytes:
     return text.getvalue().encode()
 
 
-def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str) -> bytes:
+def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str, pages: Iterable[KeyPage] = ()) -> bytes:
     """Return the key as PDF; a student whose name no font at hand can show stands there by the key of the form.
+
+    Parameters
+    ----------
+    pages
+        Figures, behind the table.
 
     Raises
     ------
@@ -79,6 +86,11 @@ def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str) -> bytes:
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         (root / "key.csv").write_bytes(key_csv(shown))
+        listed = []
+        for number, page in enumerate(pages):
+            (root / f"{number}.svg").write_bytes(page.svg)
+            listed.append({"file": f"{number}.svg", "heading": page.heading, "alt": page.alt})
+        (root / "pages.json").write_text(json.dumps(listed), encoding="utf-8")
         (root / TEMPLATE).write_text((templates_dir() / TEMPLATE).read_text(encoding="utf-8"), encoding="utf-8")
         try:
             made = typst.compile(

@@ -62,7 +62,7 @@ def sketch(
         Of the axes.
     """
     exercises.figure(f"{name}-axes", "Axes for a sketch", alt=_AXES, size=_SIZE)(lambda fig: _blank(fig, top))
-    figures = {f"{name}-curve": VariedFigure("The response", _CURVE, partial(_curve, top=top), _SIZE)}
+    figures = {f"{name}-curve": VariedFigure("The response", _CURVE, partial(_curve, top=top), _SIZE, in_key=True)}
 
     def variant(rng: Random) -> Inputs:
         sign, (low, high) = math.copysign(1.0, pole[1]), sorted(abs(end) for end in pole)
