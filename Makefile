@@ -29,7 +29,7 @@ handouts: $(VENV)/.ready ## build the handouts of all papers, build/handouts/*.p
 
 .PHONY: test
 test: $(VENV)/.developed ## run the tests and the examples in the docstrings: make test [ARGS=--cov]
-	$(BIN)/python -m pytest -n auto --dist loadscope $(ARGS)
+	$(BIN)/python -m pytest -n auto --dist loadscope --durations=10 --durations-min=1 $(ARGS)
 
 .PHONY: check
 check: $(VENV)/.ready ## every printed value holds or is explained, and nothing has moved

@@ -11,6 +11,7 @@ from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from pathlib import Path
 
 import pytest
+from kept_results import kept_results
 
 from replicate.diff.check import check
 from replicate.exhibits import Paper
@@ -30,7 +31,8 @@ PAPERS = {paper.id: paper for paper in Library(bundled=True).papers()}
 
 @pytest.fixture(scope="module", params=sorted(PAPERS))
 def outcome(request: pytest.FixtureRequest) -> Outcome:
-    return recompute([PAPERS[request.param]], cache_dir=ROOT / "build" / "cache")
+    with kept_results() as kept:
+        return recompute([PAPERS[request.param]], cache_dir=kept)
 
 
 def altered(text: str, by: int = 3) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from kept_results import kept_results
 
 from browser.sight import SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
@@ -35,14 +36,12 @@ def page(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Path:
     """Compare a table and a figure with an accepted state that differs; without a browser nothing is compared."""
     assert browser
     out = tmp_path_factory.mktemp("diff")
-    kept = ROOT / "build" / "cache"
-    kept.mkdir(parents=True, exist_ok=True)
-    (out / "cache").symlink_to(kept)
     shutil.copytree(ROOT / "figures", out / "accepted")
     rewritten(out / "accepted" / "khan" / "table-2.csv", "computed", 0.25, 3)
     rewritten(out / "accepted" / "khan" / "fig-3.csv", "y", 0.02, 100)
     names = ["khan/table-2", "khan/fig-3"]
-    with pytest.MonkeyPatch.context() as patch:
+    with kept_results() as kept, pytest.MonkeyPatch.context() as patch:
+        (out / "cache").symlink_to(kept)
         arguments = ["replicate", "diff", *names, "--accepted", str(out / "accepted"), "--out", str(out)]
         patch.setattr(sys, "argv", arguments)
         with pytest.raises(SystemExit) as ended:

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from kept_results import kept_results
 
 from browser.sight import BY_COLOURS, BY_WIDTH, FOLD, SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
 from replicate.report.pages import INDEX, SEARCH
 
-ROOT = Path(__file__).parents[2]
 MOST_BYTES, MOST_ELEMENTS, MOST_SCRIPT = 2_000_000, 25_000, 30_000
 WRONG = {"misprint", "damaged", "discrepant", "unexplained"}
 
@@ -28,10 +28,8 @@ def report(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Path:
     """Build the report of the bundled papers; without a browser nothing is built."""
     assert browser
     out = tmp_path_factory.mktemp("bundled")
-    kept = ROOT / "build" / "cache"
-    kept.mkdir(parents=True, exist_ok=True)
-    (out / "cache").symlink_to(kept)
-    with pytest.MonkeyPatch.context() as patch:
+    with kept_results() as kept, pytest.MonkeyPatch.context() as patch:
+        (out / "cache").symlink_to(kept)
         patch.setattr(sys, "argv", ["replicate", "report", "--bundled", "--out", str(out)])
         with pytest.raises(SystemExit):
             cli.main()
