@@ -232,6 +232,17 @@ def test_curves_are_read_and_switched(report: Path, browser: Any) -> None:
         assert page.locator("#fig-4 .drawing svg").count() == 1
 
 
+def test_a_drawing_enlarged_on_a_phone_is_larger_than_the_screen(report: Path, browser: Any) -> None:
+    with Sight(browser, report / "khan.html", width=360) as page:
+        drawing = page.locator("#fig-4 .drawing")
+        drawing.scroll_into_view_if_needed()
+        before = drawing.locator("svg").bounding_box()["width"]
+        page.locator("#fig-4").get_by_role("button", name="enlarge").click()
+        large = page.locator("dialog[open] .drawing")
+        assert large.locator("svg").bounding_box()["width"] > 1.2 * before > 400
+        assert large.evaluate("(region) => region.scrollWidth > region.clientWidth")
+
+
 def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: Path, browser: Any) -> None:
     with Sight(browser, report / "khan.html") as page:
         page.context.grant_permissions(["clipboard-read", "clipboard-write"])
