@@ -144,3 +144,47 @@ def test_damage_and_merges_are_said(project: Project) -> None:
     status, out = project.run("-k", "fixture", "--accept-figures", "--reason", "mended")
     assert status == 0, out
     assert project.run()[0] == 0
+
+
+CLASSES = """
+import unittest
+import pytest
+from matplotlib.figure import Figure
+
+def drawn(height):
+    figure = Figure()
+    figure.subplots().plot([0, height])
+    return figure
+
+class TestOne:
+    @pytest.mark.figure_diff
+    def test_it(self):
+        return drawn(1)
+
+class TestOther(unittest.TestCase):
+    @pytest.mark.figure_diff
+    def test_it(self):
+        return drawn(HEIGHT)
+"""
+
+
+def test_methods_of_classes_are_compared_those_of_unittest_too(project: Project) -> None:
+    (project.folder / "tests" / "test_figures.py").unlink()
+    project.write(CLASSES.replace("HEIGHT", "2"), "test_c.py")
+    assert project.run("--accept-figures", "--reason", "first")[0] == 0
+    assert [name for name in project.accepted() if name.endswith(".json")] == [
+        "test_c-TestOne-test_it.json",
+        "test_c-TestOther-test_it.json",
+    ]
+    project.write(CLASSES.replace("HEIGHT", "3"), "test_c.py")
+    status, said = project.run()
+    assert status == 1
+    assert "figure 'test_c-TestOther-test_it' differs from its accepted state" in said
+    assert "1 failed, 1 passed" in said
+
+
+def test_a_mark_takes_a_name_only(project: Project) -> None:
+    project.write(TESTS.replace("STYLE", '"-"').replace("mark.figure_diff", 'mark.figure_diff(nam="x")'))
+    status, said = project.run()
+    assert status == 1
+    assert "the mark figure_diff takes a name only: figure_diff(name='...')" in said

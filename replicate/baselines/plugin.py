@@ -6,6 +6,7 @@ It does nothing unless a test asks for the fixture ``figure_diff`` or carries th
 from __future__ import annotations
 
 import shlex
+import unittest
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
@@ -139,7 +140,9 @@ def figure_diff(request: pytest.FixtureRequest) -> Iterator[Callable[..., None]]
 def _default_name(item: pytest.Item) -> str:
     from replicate.baselines.store import name_of
 
-    return name_of(f"{item.path.stem}-{item.name}")
+    owner = getattr(item, "cls", None)
+    names = (item.path.stem, *([owner.__name__] if owner else []), item.name)
+    return name_of("-".join(names))
 
 
 def _is_figure(value: Any) -> bool:
@@ -169,12 +172,36 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
         pyfuncitem.obj = original
     pyfuncitem.stash[_RETURNED] = returned
     if mark is not None:
-        figure = returned[0] if returned else None
-        if not _is_figure(figure):
-            _fail(f"{pyfuncitem.nodeid}: is marked figure_diff, but returns {type(figure).__name__} and no figure")
-        name = mark.kwargs.get("name", mark.args[0] if mark.args else _default_name(pyfuncitem))
-        pyfuncitem.config.stash[KEY].check(pyfuncitem, figure, name)
+        _check_returned(pyfuncitem, mark, returned[0] if returned else None)
     return result
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item: pytest.Item) -> Iterator[None]:
+    """Take what a method of a unittest class returns, which pytest itself does not; pytest calls it."""
+    mark = _mark(item)
+    if mark is None or not isinstance(item, pytest.Function) or not issubclass(item.cls or object, unittest.TestCase):
+        return (yield)
+    original = item.obj
+
+    def call(*arguments: Any, **options: Any) -> None:
+        _check_returned(item, mark, original(*arguments, **options))
+
+    item.obj = call
+    try:
+        return (yield)
+    finally:
+        item.obj = original
+
+
+def _check_returned(item: pytest.Item, mark: pytest.Mark, figure: object) -> None:
+    """Compare the figure that a marked test has returned."""
+    if len(mark.args) > 1 or mark.kwargs.keys() - {"name"}:
+        _fail(f"{item.nodeid}: the mark figure_diff takes a name only: figure_diff(name='...')")
+    if not _is_figure(figure):
+        _fail(f"{item.nodeid}: is marked figure_diff, but returns {type(figure).__name__} and no figure")
+    name = mark.kwargs.get("name", mark.args[0] if mark.args else _default_name(item))
+    item.config.stash[KEY].check(item, figure, name)
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
