@@ -81,7 +81,7 @@ goldens: $(VENV)/.developed ## compute the exact values of replicate/loops/golde
 lint: $(VENV)/.developed ## ruff (rules and format), mypy --strict, and oxlint for the script of the what-if page
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/oxlint --deny-warnings templates
+	$(BIN)/oxlint --deny-warnings templates/whatif
 	$(BIN)/mypy
 
 COMPILE := --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
