@@ -20,11 +20,9 @@ export function element(name, attributes, parent, text) {
 
 // Round numbers for an axis.
 function ticks(low, high, count = 5) {
-  const rough = (high - low) / count, power = Math.pow(10, Math.floor(Math.log10(rough)));
-  const step = [1, 2, 5, 10].map((f) => f * power).find((s) => s >= rough) || power * 10;
-  const found = [];
-  for (let x = Math.ceil(low / step - 1e-9) * step; x <= high + 1e-9 * step; x += step) found.push(Math.abs(x) < step * 1e-9 ? 0 : x);
-  return found;
+  const rough = (high - low) / count, power = 10 ** Math.floor(Math.log10(rough)), step = power * [1, 2, 5, 10].find((factor) => factor * power >= rough * (1 - 1e-9));
+  const first = Math.ceil(low / step - 1e-9);
+  return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
 }
 
 // An empty diagram in an <svg>: axes, and functions from values to places.
@@ -36,19 +34,15 @@ export function diagram(svg, box, { height, x, y }) {
   const px = (value) => left + (value - box.left) / (box.right - box.left) * (right - left);
   const py = (value) => bottom - (value - box.bottom) / (box.top - box.bottom) * (bottom - top);
   const grid = element("g", { class: "grid" }, svg);
-  for (const value of ticks(box.left, box.right)) {
-    element("path", { d: `M${px(value)} ${top}V${bottom}` }, grid);
-    element("text", { x: px(value), y: bottom + 15, "text-anchor": "middle" }, svg, shown(value));
-  }
-  for (const value of ticks(box.bottom, box.top, 4)) {
-    element("path", { d: `M${left} ${py(value)}H${right}` }, grid);
-    element("text", { x: left - 6, y: py(value) + 4, "text-anchor": "end" }, svg, shown(value));
-  }
+  const tick = (d, at, value) => { element("path", { d }, grid); element("text", at, svg, shown(value)); };
+  for (const value of ticks(box.left, box.right)) tick(`M${px(value)} ${top}V${bottom}`, { x: px(value), y: bottom + 15, "text-anchor": "middle" }, value);
+  for (const value of ticks(box.bottom, box.top, 4)) tick(`M${left} ${py(value)}H${right}`, { x: left - 6, y: py(value) + 4, "text-anchor": "end" }, value);
   element("text", { x: (left + right) / 2, y: height - 5, "text-anchor": "middle", class: "axis" }, svg, x);
   element("text", { x: 12, y: (top + bottom) / 2, "text-anchor": "middle", class: "axis", transform: `rotate(-90 12 ${(top + bottom) / 2})` }, svg, y);
   const clip = `${svg.id}-clip`, inside = element("g", { "clip-path": `url(#${clip})` }, svg);
-  element("rect", { x: left, y: top, width: right - left, height: bottom - top }, element("clipPath", { id: clip }, svg));
-  element("rect", { x: left, y: top, width: right - left, height: bottom - top, class: "frame" }, svg);
+  const frame = { x: left, y: top, width: right - left, height: bottom - top };
+  element("rect", frame, element("clipPath", { id: clip }, svg));
+  element("rect", { ...frame, class: "frame" }, svg);
   return { inside, px, py, box, left, right, top, bottom };
 }
 

@@ -103,7 +103,7 @@ export function solve(matrix, right) {
 // A place between a and c, where f has different signs, at which it is zero: regula falsi, with a bisection each third time.
 export function root(f, a, c) {
   let low = f(a), high = f(c);
-  for (let round = 0; round < 200 && c - a > 2e-16 * Math.max(Math.abs(a), Math.abs(c)); round++) {
+  for (let round = 0; round < 100 && c - a > 2e-16 * Math.max(Math.abs(a), Math.abs(c)); round++) {
     let s = round % 3 === 2 ? a + (c - a) / 2 : a - low * (c - a) / (high - low);
     if (!(s > a && s < c)) s = a + (c - a) / 2;
     const here = f(s);

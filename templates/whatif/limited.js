@@ -1,36 +1,39 @@
 // Loops that are not as drawn: a control signal with limits, a plant that is off.
-// Responses of a loop whose control signal is limited: small steps in time, so only as exact as a line is wide. Nothing
-// where the plant is too fast for such steps.
 
-import { fastest, prepare } from "./loop.js";
+import { dot, NODES, nodes } from "./chebyshev.js";
+import { prepare } from "./loop.js";
+import { closedRate, pieceMap, spaceOf } from "./response.js";
 
+const STEPS = 12000; // of a limited response, at least
+
+// A loop whose control signal is limited, in small steps, between which signals are lines. Nothing where it is too fast.
 export function limited(plant, controller, limit, antiWindup, end) {
-  const n = plant.order, direct = plant.num.length > n ? plant.num[0] : 0, fast = end * fastest(plant.poles), count = Math.max(4000, Math.ceil(fast));
-  if (count > 60000) return null;
-  const dt = end / count, delay = Math.round(plant.deadTime / dt), every = Math.ceil(count / 1000);
-  const x = new Float64Array(n), history = new Float64Array(count + delay + 1), output = [], control = [];
-  let integral = 0, lagged = 0;
-  const { k, ki, kd, b, c, filter, prefilter } = controller, lag = Math.max(filter, 2 * dt), tracking = ki ? Math.max(Math.abs(k / ki), dt) : 1;
-  const rate = (z, v) => {
-    const d = new Float64Array(n);
-    for (let j = 0; j < n - 1; j++) d[j] = z[j + 1];
-    d[n - 1] = v;
-    for (let j = 0; j < n; j++) d[n - 1] -= plant.den[n - j] * z[j];
-    return d;
-  };
+  const { k, ki, kd, b, c, filter, prefilter } = controller, { order: n, deadTime } = plant, { A, B, C, D } = spaceOf(plant), delay = deadTime ? Math.ceil(STEPS * deadTime / end) : 0;
+  const dt = deadTime ? deadTime / delay : end / Math.max(STEPS, Math.ceil(5 * end * closedRate(plant, controller))), count = Math.ceil(end / dt);
+  if (!(count < 30000)) return null;
+  // from (state, input before, input after) to the state after a step
+  const stepped = (map, size) => map.slice(NODES * size).map((row) => [...row.slice(0, size), ...[-1, 1].map((side) => nodes.reduce((sum, node, j) => sum + row[size + j] * (1 + side * node) / 2, 0))]);
+  const plantStep = stepped(pieceMap(A, B, dt), n), lag = filter || dt, [lagStep] = stepped(pieceMap([[-1 / lag]], [1 / lag], dt), 1);
+  const time = kd && ki ? Math.sqrt(Math.abs(kd / ki)) : Math.abs(k / ki), pull = antiWindup && ki ? dt / 2 / Math.max(time, dt) : 0; // tracking, as replicate.loops has it
+  const clamped = (v) => Math.min(limit, Math.max(-limit, v)), used = [], output = [], control = [];
+  let x = new Float64Array(n), y = 0, integral = 0, before = { error: 0, lagged: 0, acted: 0, off: 0 };
   for (let i = 0; i <= count; i++) {
-    const r = prefilter ? -Math.expm1(-i * dt / prefilter) : 1;
-    let y = direct * history[i];
-    for (let j = 0; j < n; j++) y += ((plant.num.at(-1 - j) || 0) - direct * plant.den.at(-1 - j)) * x[j];
-    const slope = kd ? (y - c * r - lagged) / lag : 0, wanted = k * (b * r - y) + integral - kd * slope;
-    const u = Math.min(limit, Math.max(-limit, wanted));
-    if (i % every === 0) { output.push([i * dt, y]); control.push([i * dt, u]); }
-    integral += dt * (ki * (r - y) + (antiWindup ? (u - wanted) / tracking : 0));
-    lagged += dt * slope;
-    history[i + delay] = u;
-    // the plant in controllable form, a step of the midpoint rule
-    const first = rate(x, history[i]), middle = rate(x.map((value, j) => value + dt / 2 * first[j]), history[i]);
-    for (let j = 0; j < n; j++) x[j] += dt * middle[j];
+    const r = prefilter ? -Math.expm1(-i * dt / prefilter) : 1, input = (j) => (j < 0 ? 0 : used[j]);
+    let now, state = x;
+    for (let pass = 0; pass < (delay ? 1 : 3); pass++) { // without dead time the input afterwards is that of the pass before
+      const after = delay ? input(i - delay) : now?.u ?? input(i - 1);
+      if (i) state = plantStep.map((row) => dot(row, [...x, input(i - 1 - delay), i === delay ? 0 : after])); // u jumps at the start
+      y = dot(C, state) + D * after;
+      const acted = y - c * r, lagged = i ? dot(lagStep, [before.lagged, before.acted, acted]) : 0, error = r - y;
+      const part = k * (b * r - y) - (kd ? kd * (acted - lagged) / lag : 0), base = i ? integral + ki * dt / 2 * (before.error + error) + pull * before.off : 0;
+      const free = part + base, v = clamped(free) === free || !i ? free : part + (base + pull * (clamped(free) - part)) / (1 + pull);
+      now = { error, acted, lagged, u: clamped(v), off: clamped(v) - v, integral: v - part };
+    }
+    x = state;
+    ({ integral } = now);
+    before = now;
+    used.push(now.u);
+    if (i % Math.ceil(count / 1000) === 0) { output.push([i * dt, y]); control.push([i * dt, now.u]); }
   }
   return { output, control };
 }

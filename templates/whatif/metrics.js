@@ -73,12 +73,6 @@ function absoluteError(signals, points, final) {
 // Jumps count with their height, the first one from zero.
 const totalVariation = (points) => points.reduce((total, { value }, i) => total + Math.abs(value - (i ? points[i - 1].value : 0)), 0);
 
-// When a load has been worked off, but for a thirtieth of its largest effect.
-function quietAfter(points, final) {
-  const most = points.reduce((so, { value }) => Math.max(so, Math.abs(value - final)), 0);
-  return points.findLast(({ value }) => Math.abs(value - final) > most / 30)?.t ?? 0;
-}
-
 // All that the page says of a loop.
 export function measure(plant, controller) {
   const unstable = unstablePoles(plant, controller);
@@ -89,10 +83,11 @@ export function measure(plant, controller) {
   const step = respond({ final }), load = respond({ setpoint: 0, load: 1, final: finalLoad });
   const y = outline(step, step.output), d = outline(load, load.output);
   const ten = reaches(step, y, 0.1 * final), ninety = reaches(step, y, 0.9 * final);
+  const largest = d.reduce((most, { value }) => Math.max(most, Math.abs(value - finalLoad)), 0);
   const run = {
     stable: true, final, step, load, ten, ninety, rise: ninety - ten, ...overshoot(y, final),
     settling: settlingTime(step, y, final, 0.02 * Math.abs(final || 1)), iae: absoluteError(step, y, final), loadIae: absoluteError(load, d, finalLoad),
-    variation: totalVariation(outline(step, step.control)), loadQuiet: quietAfter(d, finalLoad), ...margins(plant, controller),
+    variation: totalVariation(outline(step, step.control)), loadQuiet: d.findLast(({ value }) => Math.abs(value - finalLoad) > largest / 30)?.t ?? 0, ...margins(plant, controller),
   };
   // What has not come to rest in time has no such numbers.
   if (step.pieces >= CONSTANTS.mostPieces) for (const name of ["settling", "iae", "variation"]) run[name] = NaN;

@@ -5,6 +5,8 @@ import { prepare } from "./loop.js";
 import { unstablePoles } from "./poles.js";
 import { responder } from "./response.js";
 import { measure } from "./metrics.js";
+import { limited } from "./limited.js";
+import { border, contour, extent, gainMap } from "./region.js";
 import { rules } from "./rules.js";
 import { controllerText, NotationError, parseController, parsePlant } from "./notation.js";
 import { shown } from "./charts.js";
@@ -59,16 +61,17 @@ function writeAddress() {
   const given = { plant: state.plantText, controller: controllerText(state.controller) };
   if (state.plane !== "ki") given.plane = state.plane;
   if (state.pins.length) given.pins = state.pins.map((pin) => controllerText(pin.controller)).join(";");
-  if (options.mismatch) given.mismatch = 100 * options.mismatch;
+  if (options.mismatch) given.mismatch = $("mismatch-size").value;
   if (options.limit) Object.assign(given, { limit: options.limit, windup: options.antiWindup ? "no" : "yes" });
   const hash = Object.entries(given).map(([name, value]) => `${name}=${encodeURIComponent(value)}`).join("&");
   try { history.replaceState(null, "", `#${hash}`); } catch { /* a page in a frame may not */ }
 }
 
 // Take what a field says; what makes no sense leaves everything as it was, and the field says why.
-const errorOf = (id) => $($(id).getAttribute("aria-describedby"));
+const tell = (id, text) => say($(id).getAttribute("aria-describedby"), text);
 function clear(id) {
-  if ($(id).hasAttribute("aria-invalid")) { $(id).removeAttribute("aria-invalid"); errorOf(id).textContent = ""; }
+  if ($(id).hasAttribute("aria-invalid")) tell(id, "");
+  $(id).removeAttribute("aria-invalid");
 }
 function take(id, change) {
   try {
@@ -78,7 +81,7 @@ function take(id, change) {
   } catch (error) {
     if (!(error instanceof NotationError)) throw error;
     $(id).setAttribute("aria-invalid", "true");
-    errorOf(id).textContent = error.message;
+    tell(id, error.message);
     return false;
   }
 }
@@ -91,7 +94,7 @@ function checked(controller, plant = state.plant) {
   const jumps = controller.kd && !controller.filter && ((plant.deadTime && plant.relativeDegree < 2) || (controller.c && !controller.prefilter));
   if (jumps) controller = { ...controller, filter: Math.abs(controller.kd / (controller.k || 1)) / 10 };
   if (Number.isNaN(unstablePoles(plant, controller))) refuse("so high a gain is not drawn here");
-  say("note", jumps ? "Without a filter the derivative part would jump without limit; a filter of kd/(10 k) is added." : "");
+  say("note", jumps ? "The derivative part would jump without limit: a filter of kd/(10 k) is added." : "");
   return controller;
 }
 
@@ -217,4 +220,4 @@ say("agreement", apart < 1e-7 ? `This page agrees with the report to ${shown(apa
 
 window.addEventListener("hashchange", fromAddress);
 fromAddress();
-window.whatif = { state, measure, responder, prepare, unstablePoles, parsePlant, parseController, rules, python, curves, picture };
+window.whatif = { state, measure, responder, prepare, unstablePoles, parsePlant, parseController, rules, limited, border, contour, extent, gainMap, python, curves, picture };

@@ -1,5 +1,6 @@
 // The gain plane of a plant: where loops are stable, and what their sensitivity peak is.
 
+import { root } from "./chebyshev.js";
 import { divide, sizes } from "./polynomials.js";
 import { controllerAt, named, plantAt } from "./loop.js";
 import { isStable } from "./poles.js";
@@ -54,34 +55,35 @@ export function gainMap(plant, controller, plane, box) {
     const fixed = controllerAt(named(controller, plane, 0, 0), w[i]), unit = controllerAt(named({ ki: 0, kd: 0, filter: controller.filter }, plane, 0, 1), w[i]);
     table.push([...plantAt(plant, w[i]), ...fixed, ...unit]);
   }
+  const logMs = ([x, y]) => {
+    let least = Infinity;
+    for (const [pr, pi, fr, fi, ur, ui] of table) {
+      const cr = x + fr + y * ur, ci = fi + y * ui, re = 1 + pr * cr - pi * ci, im = pr * ci + pi * cr;
+      least = Math.min(least, re * re + im * im);
+    }
+    return -Math.log(least) / 2;
+  };
   const stable = [], level = [];
   for (let row = 0; row <= ROWS; row++) {
     for (let column = 0; column <= COLUMNS; column++) {
-      const [x, y] = place(box, row, column), here = stableAt(plant, controller, plane, box, [x, y]);
-      let least = here ? Infinity : 0;
-      if (here) {
-        for (const [pr, pi, fr, fi, ur, ui] of table) {
-          const cr = x + fr + y * ur, ci = fi + y * ui, re = 1 + pr * cr - pi * ci, im = pr * ci + pi * cr;
-          least = Math.min(least, re * re + im * im);
-        }
-      }
+      const point = place(box, row, column), here = stableAt(plant, controller, plane, box, point);
       stable.push(here);
-      level.push(-Math.log(least) / 2);
+      level.push(here ? logMs(point) : Infinity);
     }
   }
-  return { box, stable, level };
+  return { box, stable, level, logMs };
 }
 
-// Segments inside cells where a field on the grid crosses a level: marching squares.
-export function contour({ box, stable, level }, value) {
+// Segments inside cells where log Ms crosses a level: marching squares, their ends found exactly.
+export function contour({ box, stable, level, logMs }, value) {
   const segments = [];
   for (let row = 0; row < ROWS; row++) {
     for (let column = 0; column < COLUMNS; column++) {
       const ring = corners(row, column), cuts = [];
       if (!ring.every((corner) => at(stable, corner))) continue;
       ring.forEach((one, i) => {
-        const other = ring[(i + 1) % 4], a = at(level, one) - value, b = at(level, other) - value, part = a / (a - b);
-        if ((a < 0) !== (b < 0)) cuts.push(place(box, one[0] + (other[0] - one[0]) * part, one[1] + (other[1] - one[1]) * part));
+        const other = ring[(i + 1) % 4], between = (part) => place(box, one[0] + (other[0] - one[0]) * part, one[1] + (other[1] - one[1]) * part);
+        if ((at(level, one) < value) !== (at(level, other) < value)) cuts.push(between(root((part) => logMs(between(part)) - value, 0, 1)));
       });
       while (cuts.length > 1) segments.push(cuts.splice(0, 2));
     }
@@ -105,19 +107,12 @@ export function region({ box, stable }, plant, controller, plane) {
     return known.get(key);
   };
   for (let row = 0; row < ROWS; row++) {
-    let run = -1; // whole cells side by side are one rectangle
-    for (let column = 0; column <= COLUMNS; column++) {
-      const ring = corners(row, column), count = column < COLUMNS ? ring.filter((corner) => at(stable, corner)).length : 0;
-      if (count === 4 && run < 0) run = column;
-      if (count !== 4 && run >= 0) {
-        polygons.push([[row, run], [row, column], [row + 1, column], [row + 1, run]].map((corner) => place(box, ...corner)));
-        run = -1;
-      }
-      if (count % 4 === 0) continue;
-      polygons.push(ring.flatMap((one, i) => {
-        const other = ring[(i + 1) % 4];
-        return [...(at(stable, one) ? [place(box, ...one)] : []), ...(at(stable, one) === at(stable, other) ? [] : [between(one, other)])];
-      }));
+    for (let column = 0; column < COLUMNS; column++) {
+      const polygon = corners(row, column).flatMap((one, i, ring) => {
+        const other = ring[(i + 1) % 4], here = at(stable, one);
+        return [...(here ? [place(box, ...one)] : []), ...(here === at(stable, other) ? [] : [between(one, other)])];
+      });
+      if (polygon.length) polygons.push(polygon);
     }
   }
   return polygons;

@@ -35,9 +35,11 @@ function stateSpace({ order: n, num, den, poles }) {
   return { A, B: A.map((_, i) => Number(i === n - 1)), C, D };
 }
 
+export const spaceOf = (plant) => (plant.space ||= stateSpace(plant));
+
 // For a piece of length h: from (states at its start, input at the nodes) to the states at the nodes, row i n + a for
 // state a at node i.
-function pieceMap(A, B, h) {
+export function pieceMap(A, B, h) {
   const n = A.length;
   if (!n) return [];
   const matrix = table(COUNT * n, COUNT * n, (row, column) => Number(row === column) - h / 2 * integrate[Math.floor(row / n)][Math.floor(column / n)] * A[row % n][column % n]);
@@ -50,8 +52,7 @@ function mapsOf(plant, length, ticks, unit, lag) {
   plant.maps ||= new Map();
   const h = length * unit, key = [h, lag].join();
   if (plant.maps.has(key)) return plant.maps.get(key);
-  plant.space ||= stateSpace(plant);
-  const { A, B, C, D } = plant.space, n = plant.order, map = pieceMap(A, B, h);
+  const { A, B, C, D } = spaceOf(plant), n = plant.order, map = pieceMap(A, B, h);
   const toOutput = table(COUNT, n + COUNT, (i, column) => (column === n + i ? D : 0));
   toOutput.forEach((row, i) => C.forEach((c, a) => row.forEach((_, column) => { row[column] += c * map[i * n + a][column]; })));
   const made = { toOutput, toState: map.slice(NODES * n), lag: lag ? pieceMap([[-1 / lag]], [1 / lag], h) : null };
@@ -71,15 +72,18 @@ const returns = (node, length, ticks) => !ticks || ahead(node, length, ticks) > 
 // A row of a map applied to the states at the start of a piece and the input at its nodes.
 const applied = (row, state, input) => dot(row, state) + dot(row, input, COUNT, state.length);
 
+// The fastest pole of a loop without dead time.
+export function closedRate(plant, controller) {
+  const { free, delayed } = characteristic(plant, controller);
+  return fastest(roots(add(free, delayed)));
+}
+
 // A function that gives the response of a loop to steps of set-point and load, from rest.
 // options: {setpoint, load, until} or, without until, {settle: how small what is left must be, final}
 export function responder(plant, controller) {
   const { k, ki, kd, b, c, prefilter } = controller, lag = kd ? controller.filter : 0, delay = plant.deadTime;
-  let rate = Math.max(fastest(plant.poles), lag && 1 / lag, prefilter && 1 / prefilter, 1e-12);
-  if (!delay) {
-    const { free, delayed } = characteristic(plant, controller);
-    rate = Math.max(2 * fastest(roots(add(free, delayed))), rate / 2);
-  }
+  const slow = Math.max(fastest(plant.poles), lag && 1 / lag, prefilter && 1 / prefilter, 1e-12);
+  const rate = delay ? slow : Math.max(2 * closedRate(plant, controller), slow / 2);
   const ticks = delay ? 2 ** Math.max(0, Math.ceil(Math.log2(delay * rate / CONSTANTS.decayPerPiece))) : 0; // of a dead time
   const unit = delay ? delay / ticks : CONSTANTS.decayPerPiece / rate;
   const growth = Math.max(0, ...plant.poles.map(([re]) => re)) * unit; // of the plant in a tick: its maps must not
@@ -154,8 +158,8 @@ export function responder(plant, controller) {
       if (!Number.isFinite(here) || here > 1e12 * Math.max(1, Math.abs(setpoint))) break;
       if (here > settle * largest) quietSince = signals.end;
       if (until === Infinity && signals.end > 1.05 * quietSince + 3 * Math.max(delay, unit)) break;
-      // While jumps can be seen, pieces end where they return, at whole dead times, and small ones follow. After some dead
-      // times one piece tries to hold all until the next return.
+      // While jumps can be seen, pieces end where they return, at whole dead times, and small ones follow; later one piece
+      // tries to hold all until the next return.
       if (tick > LAPS * ticks && length >= ticks) early = false;
       if (early && tick % ticks === 0) length = tick < LAPS * ticks ? 1 : ticks;
       else if (--wait < 0 && (!early || tick % (2 * length) === 0) && growth * length < 2) length *= 2;

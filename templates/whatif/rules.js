@@ -1,4 +1,4 @@
-// Where tuning rules put the controller of a plant; the rules are those of replicate.loops.tune, sent along as data.
+// Where the tuning rules of replicate.loops.tune, sent along as data, put the controller of a plant.
 
 import { CONSTANTS, DATA } from "./data.js";
 

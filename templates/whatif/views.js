@@ -100,7 +100,7 @@ export function drawResponses(state, options) {
     if (saturated && from === "step") draw(saturated[signal], "curve saturated");
   }
   const lost = others.length - cloud.length;
-  say("mismatch-note", (lost ? `${lost} of ${others.length} plants of the cloud make the loop unstable. ` : "") + (options.limit && now.stable && !saturated ? "This plant is too fast for the small steps of the limited response." : ""));
+  say("mismatch-note", (lost ? `${lost} of ${others.length} plants of the cloud make the loop unstable. ` : "") + (options.limit && now.stable && !saturated ? "The limited response would need too many steps here." : ""));
 }
 
 // Band, overshoot, rise and settling time where they are read.
@@ -158,7 +158,6 @@ export function summary({ controller, last }) {
   return `${controllerText(controller, 4)}: ${parts.join(", ")}.`;
 }
 
-// Numbers and our own words only.
 export function drawTable(state) {
   const columns = everyone(state);
   const heads = columns.map(({ name, controller }) => `<th scope="col" class="${name}">${name === "now" ? "now" : `pinned ${name}`}<br><small>${controllerText(controller, 4)}</small></th>`);

@@ -7,15 +7,15 @@ import json
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
 
 from browser.random_loops import random_loop
-from replicate.loops import PID, Loop, Plant
+from replicate.loops import PI, PID, Loop, Plant
 from replicate.loops.errors import LoopError
-from replicate.loops.notation import parse_plant
+from replicate.loops.notation import parse_controller, parse_plant
 from replicate.loops.tune import amigo, simc, ziegler_nichols
 from replicate.whatif import Row, whatif_page
 from replicate.whatif.script import script
@@ -311,6 +311,22 @@ def test_a_change_is_drawn_once_a_frame(page: Any) -> None:
         ("plant", "s^2/(s+1)", "improper"),
         ("plant", "e^{s}/(s+1)", "predicts"),
         ("plant", "1e308*1e308/(s+1)", "beyond any limit"),
+        ("plant", "1e309/(s+1)", "the number is too large"),
+        ("plant", "1/(s+1,5)", "a decimal point is written '.', not ','"),
+        ("plant", "NaN/(s+1)", "'NaN' is not known here"),
+        ("plant", "(s+1)/(s+2)", "answers at once"),
+        ("plant", "1/(s+1)^16", "at most order 15"),
+        ("plant", "(" * 500 + "s" + ")" * 500, "too many parentheses"),
+        ("plant", "e^{-s}/(s+1)+e^{-2s}/(s+1)", "a sum of different dead times is not drawn here"),
+        ("plant", "0/(s+1)", "the plant is zero"),
+        ("plant", "1/0", "division by zero"),
+        ("controller", "k=1,ti=0", "ti must not be zero"),
+        ("controller", "k=NaN", "'NaN' is not known here"),
+        ("controller", "k=1,k=2", "k is given twice"),
+        ("controller", "k=1,ki=1,ti=2", "ki and ti cannot both be given"),
+        ("controller", "k=1,derivative_filter=-1", "must not be negative"),
+        ("controller", "k=1,measurement_filter=1", "is not drawn here"),
+        ("controller", "k" * 5000, "is not known"),
         ("controller", "PI, please", "is not known; allowed are k, ki, kd"),
         ("controller", "k=abc", "'abc' is not known here"),
         ("controller", "k=1e308", "beyond any limit"),
@@ -320,6 +336,9 @@ def test_a_change_is_drawn_once_a_frame(page: Any) -> None:
         ("ki", "", "'' is not a number"),
         ("kd", "0,5", "'0,5' is not a number; write a point"),
         ("filter", "-1", "must not be negative"),
+        ("k", "NaN", "'NaN' is not a number"),
+        ("k", "-1e308", "beyond any limit"),
+        ("b", "Infinity", "'Infinity' is not a number"),
     ],
 )
 def test_nonsense_gets_a_sentence_and_changes_nothing(page: Any, field: str, text: str, reason: str) -> None:
@@ -388,3 +407,141 @@ def test_the_page_is_one_file_with_little_script() -> None:
 def test_no_two_modules_of_the_script_share_a_name() -> None:
     names = re.findall(r"^(?:export )?(?:const|let|class|function\*?) ([\w$]+)", script(), re.MULTILINE)
     assert len(names) == len(set(names)) > 50
+
+
+LIMITED = """([given, controller, limit, antiWindup, end]) =>
+  whatif.limited(whatif.prepare(given), controller, limit, antiWindup, end).output"""
+
+
+@pytest.mark.parametrize("anti_windup", ["none", "back-calculation"])
+@pytest.mark.parametrize(
+    ("plant", "controller"),
+    [
+        ("e^{-s}/(s+1)", "k=0.9,ki=0.7"),
+        ("e^{-0.5s}/(s(s+1))", "k=1.5,ki=0.15,kd=0.7,derivative_filter=0.1"),
+        ("1/((s+1)(0.1s+1)^2)", "k=6,ki=4,setpoint_filter=0.2"),
+        ("1/(s+1)^4", "k=1.5,ki=0.5,kd=1.5,derivative_filter=0.2"),
+    ],
+)
+def test_the_limited_response_is_right_to_a_line_width(
+    page: Any, plant: str, controller: str, anti_windup: Literal["none", "back-calculation"]
+) -> None:
+    """The page says that it is approximate; a line is about a hundredth of the picture's height wide."""
+    limit, loop = 1.2, Loop(parse_plant(plant), parse_controller(controller))
+    given = page.evaluate(
+        "([plant, controller]) => [whatif.parsePlant(plant), whatif.parseController(controller)]", [plant, controller]
+    )
+    points = np.array(page.evaluate(LIMITED, [*given, limit, anti_windup != "none", 30.0]))
+    exact = loop.saturated(limits=(-limit, limit), anti_windup=anti_windup, until=30.1).output(points[:, 0])
+    assert np.max(np.abs(exact - loop.step(until=30.1)(points[:, 0]))) > 0.01  # the limit is felt
+    assert np.max(np.abs(points[:, 1] - exact)) < 1e-3
+
+
+REGION = """([text, controller, plane]) => {
+  const plant = whatif.prepare(whatif.parsePlant(text)), given = whatif.parseController(controller);
+  const box = whatif.extent(plant, given, plane), map = whatif.gainMap(plant, given, plane, box);
+  return { border: whatif.border(plant, given, plane).filter(([k, ki]) =>
+      k > box.left && k < box.right && ki > box.bottom && ki < box.top),
+    levels: [1.4, 2].map((ms) => whatif.contour(map, Math.log(ms)).map((segment) => segment[0])),
+    box, stable: map.stable };
+}"""
+
+
+@pytest.mark.parametrize("text", ["e^{-s}/(s+1)", "e^{-0.4s}/(s-1)", "9/(s^3+s^2+9s+9)", "-2e^{-s}/(s+1)", "e^{-s}/s"])
+def test_region_and_contours_are_those_of_the_core(page: Any, text: str) -> None:
+    sign = -1.0 if text.startswith("-") else 1.0
+    plant = parse_plant(text)
+    found = page.evaluate(REGION, [text, f"k={sign * 1.3 if '-1)' in text else sign * 0.2},ki={sign * 0.05}", "ki"])
+    box, columns, rows = found["box"], 72, 54
+    assert box["top" if sign > 0 else "bottom"] * sign > 0
+    for index in range(0, len(found["stable"]), 97):  # the cells' corners
+        row, column = divmod(index, columns + 1)
+        k = box["left"] + (box["right"] - box["left"]) * column / columns
+        ki = box["bottom"] + (box["top"] - box["bottom"]) * row / rows
+        if abs(ki) > 1e-6:
+            assert found["stable"][index] == Loop(plant, PI(k, ki)).is_stable(), (k, ki)
+    assert found["border"]
+    for k, ki in found["border"][:: max(1, len(found["border"]) // 12)]:  # a pole on the imaginary axis
+        loop = Loop(plant, PI(k, ki))
+        assert min(abs(pole.real) for pole in loop.poles(6)) < 1e-6 * (1.0 + abs(k))
+    for level, points in zip((1.4, 2.0), found["levels"], strict=True):
+        for k, ki in points[:: max(1, len(points) // 8)]:
+            assert float(Loop(plant, PI(k, ki)).sensitivity_peak()) == pytest.approx(level, rel=1e-3)
+
+
+def test_a_minus_sign_may_be_typographic(page: Any) -> None:
+    page.fill("#plant", "e^{\u22121.5s}/(s+1)\u00b2")
+    page.press("#plant", "Enter")
+    page.fill("#k", "\u22120.1")
+    until(page, "whatif.state.controller.k === -0.1 && whatif.state.plant.deadTime === 1.5")
+    assert page.evaluate("whatif.state.plant.den") == [1, 2, 1]
+
+
+@pytest.mark.parametrize(
+    "fragment",
+    [
+        "%E0%A4%A", "plant=%&controller=%", "plant=", "controller=k", "controller=k%3D1e308", "plant=1/0", "pins=;;k;",
+        "pins=k%3D1%2Cki%3D1;nonsense", "mismatch=many", "mismatch=-5", "limit=-1", "limit=0", "plane=kx", "a" * 20000,
+        "plant=e%5E%7B-s%7D%2F(s%2B1)&controller=k%3DNaN&plane=kd&windup=maybe", "=&=&==",
+    ],
+)  # fmt: skip
+def test_a_damaged_address_leaves_a_page_that_works(page: Any, address: str, fragment: str) -> None:
+    page.goto(f"{address}#{fragment}")
+    page.wait_for_timeout(100)
+    until(page, "whatif.state.last && whatif.state.plant")
+    page.fill("#k", "0.55")
+    until(page, "whatif.state.last.stable && whatif.state.controller.k === 0.55")
+    assert page.locator("#metrics-body tr").count() == 10
+
+
+def test_the_address_keeps_set_point_filter_and_three_pins(page: Any, address: str) -> None:
+    page.fill("#controller", "k=0.6,ki=0.5,kd=0.2,derivative_filter=0.05,setpoint_filter=0.7,c=1,b=0.3")
+    page.press("#controller", "Enter")
+    for gain in ("0.5", "0.45", "0.4", "0.35"):
+        page.fill("#k", gain)
+        until(page, f"whatif.state.last && whatif.state.controller.k === {gain}")
+        page.wait_for_timeout(50)
+        page.click("#pin")
+        until(page, f"whatif.state.pins.at(-1)?.controller.k === {gain}")
+    until(page, "decodeURIComponent(location.hash).includes('k=0.35')")
+    page.wait_for_timeout(400)
+    before, there = page.evaluate("[whatif.state.controller, whatif.state.pins]"), page.evaluate("location.href")
+    page.goto(address + "#")
+    page.goto(there)
+    until(page, "whatif.state.pins.length === 3 && whatif.state.controller.k === 0.35")
+    after = page.evaluate("[whatif.state.controller, whatif.state.pins]")
+    assert after[0] == before[0]
+    assert [pin["controller"] for pin in after[1]] == [pin["controller"] for pin in before[1]]
+    assert [pin["controller"]["k"] for pin in after[1]] == [0.45, 0.4, 0.35]
+    assert after[0]["prefilter"] == 0.7
+
+
+def test_fine_steps_are_a_tenth_of_a_step(page: Any) -> None:
+    page.focus("#plane")
+    gains = [page.evaluate("whatif.state.controller.k")]
+    for key in ("ArrowRight", "Alt+ArrowRight", "Shift+ArrowRight"):
+        page.keyboard.press(key)
+        gains.append(page.evaluate("whatif.state.controller.k"))
+    normal, fine, large = np.diff(gains)
+    assert [fine / normal, large / normal] == pytest.approx([0.1, 10.0])
+
+
+def test_nothing_is_spoken_during_a_change(page: Any) -> None:
+    page.wait_for_timeout(800)
+    spoken = page.inner_text("#spoken")
+    for gain in ("0.61", "0.62", "0.63"):
+        page.fill("#k", gain)
+        page.wait_for_timeout(100)
+        assert page.inner_text("#spoken") == spoken
+    until(page, "document.getElementById('spoken').textContent.startsWith('k=0.63')")
+
+
+def test_touch_moves_the_point(browser: Any, address: str) -> None:
+    page = browser.new_context(has_touch=True, viewport={"width": 360, "height": 800}).new_page()
+    page.goto(address)
+    until(page, "window.whatif && whatif.state.view")
+    before = page.evaluate("whatif.state.controller")
+    box = page.locator("#plane").bounding_box()
+    page.touchscreen.tap(box["x"] + box["width"] * 0.6, box["y"] + box["height"] * 0.7)
+    until(page, f"whatif.state.controller.k !== {before['k']}")
+    page.close()
