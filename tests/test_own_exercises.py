@@ -78,7 +78,22 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
     [
         (("def variant(rng):", "def variante(rng):"), r"mine/exercise\.py: defines no function 'variant'"),
         (("return Answer(", "return ("), r"mine/exercise\.py:9: the program fails: SyntaxError"),
-        (("digits=3", "digits=0"), r"mine/exercise\.py:9: answers\(inputs\) fails: .*digits=0"),
+        (
+            ("digits=3", "digits=0"),
+            r"mine/exercise\.py:9: answers\(inputs\) fails: .*'digits' of an answer is 0, allowed",
+        ),
+        (("digits=3", "digits=2.5"), r"mine/exercise\.py:9: .*'digits' of an answer is 2\.5, allowed: a whole number"),
+        (("digits=3", "tolerance='x'"), r"mine/exercise\.py:9: .*'tolerance' of an answer is 'x', allowed: a number"),
+        (("digits=3", "digits=3, mistakes=[1]"), r"mine/exercise\.py:9: .*'mistakes' of an answer is \[1\], allowed"),
+        (("digits=3", "digits=3, carried=1.0"), r"mine/exercise\.py:9: .*'carried' of an answer is 1\.0, allowed"),
+        (("digits=3", "digits=3, asked=3"), r"mine/exercise\.py:9: .*'asked' of an answer is 3, allowed: a text"),
+        (('inputs["x"] / 7', '"three"'), r"mine/exercise\.py:9: .*'value' of an answer is 'three', allowed: a number"),
+        (('inputs["x"] / 7', 'float("nan")'), r"mine/exercise\.py:9: .*does not exist: \[nan"),
+        (('{"x": rng.randint(20, 90)}', "None"), r"mine/exercise\.py:4: variant\(rng\) fails: .*returns None, allowed"),
+        (
+            ('{"x": rng.randint(20, 90)}', '{"x": 1e999}'),
+            r"mine/exercise\.py:4: .*'x' is inf, allowed: a finite number",
+        ),
         (('inputs["x"] / 7', 'inputs["y"]'), r"mine/exercise\.py:9: answers\(inputs\) fails: KeyError: 'y'"),
         (('{"x": rng.randint(20, 90)}', '{"x": [1]}'), r"mine/exercise\.py:4: variant\(rng\) fails: .*'x' is \[1\]"),
         (("Answer(inputs", "dict(ki=inputs"), r"mine/exercise\.py:8: answers\(inputs\) fails|mine/exercise\.py:9"),
@@ -88,7 +103,7 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
         (("def variant", "raise SystemExit\n\n\ndef variant"), r"mine/exercise\.py:4: the program fails: SystemExit"),
         (
             ("def variant", "requires = {'never': lambda x: False}\n\n\ndef variant"),
-            r"no draw of 1000 .*1000 fail 'never'",
+            r"mine/exercise\.py:4: .*no draw of 1000 .*1000 fail 'never'",
         ),
     ],
 )

@@ -10,11 +10,13 @@ import math
 import random
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from numbers import Real
 
 from replicate.errors import PaperDefinitionError
 
 Inputs = Mapping[str, float | str]
 
+_MOST_DIGITS = 15  # that a floating-point number has
 TRIES = 1000  # draws before a seed is given up
 
 
@@ -61,6 +63,19 @@ class Answer:
     asked: str = ""
 
     def __post_init__(self) -> None:
+        """Check the types that Python does not, and that the answer exists."""
+        for field_, holds, allowed in (
+            ("value", _is_real(self.value), "a number"),
+            ("unit", isinstance(self.unit, str), "a text"),
+            ("digits", self.digits is None or _is_count(self.digits), "a whole number from 1 to 15"),
+            ("tolerance", self.tolerance is None or _is_real(self.tolerance), "a number"),
+            ("carried", _are_numbers(self.carried), "numbers: (1.2,)"),
+            ("mistakes", _are_named_numbers(self.mistakes), "a dictionary of numbers by the mistakes' words"),
+            ("asked", isinstance(self.asked, str), "a text"),
+        ):
+            if not holds:
+                msg = f"the field '{field_}' of an answer is {getattr(self, field_)!r}, allowed: {allowed}"
+                raise PaperDefinitionError(msg)
         if not all(math.isfinite(value) for value in (self.value, *self.carried)):
             msg = f"an answer, exact or carried on, does not exist: {[self.value, *self.carried]}"
             raise PaperDefinitionError(msg)
@@ -92,6 +107,22 @@ class Answer:
         if value == 0.0:
             return 0.0
         return 0.5 * 10.0 ** (math.floor(math.log10(abs(value))) - self.digits + 1)
+
+
+def _is_real(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= _MOST_DIGITS
+
+
+def _are_numbers(value: object) -> bool:
+    return isinstance(value, tuple | list) and all(map(_is_real, value))
+
+
+def _are_named_numbers(value: object) -> bool:
+    return isinstance(value, Mapping) and all(isinstance(key, str) and _is_real(one) for key, one in value.items())
 
 
 Answers = Mapping[str, Answer]

@@ -8,11 +8,13 @@ several by name; it may define ``original``, ``requires``, ``shown(inputs)``, ``
 
 from __future__ import annotations
 
+import math
 import re
 import runpy
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -135,16 +137,18 @@ def _loaded(home: Path) -> OwnExercise:
         values["figures"],
         guard(values["files"], "files(inputs)", dict),
     )
+    try:
+        drawn = variation.drawn("original")  # also where it is not needed: errors are found now
+    except PaperDefinitionError as error:
+        if str(error).startswith(source):
+            raise
+        msg = f"{source}:{_line(program, 'requires')}: {error}"
+        raise PaperDefinitionError(msg) from error
     if not variation.original:
-        variation = _with_original(variation)
+        variation = replace(variation, original=drawn)
+    variation.answers(drawn)
     variation.answers(variation.original)
     return OwnExercise(f"{name}/{TEXT}", read_text(home / TEXT, f"{name}/{TEXT}", ReplicateError), variation)
-
-
-def _with_original(variation: Variation) -> Variation:
-    from dataclasses import replace
-
-    return replace(variation, original=variation.drawn("original"))
 
 
 @dataclass(frozen=True)
@@ -184,8 +188,8 @@ def _checked_inputs(value: Any) -> Inputs:
         msg = f"returns {value!r}, allowed: a dictionary of numbers or texts"
         raise TypeError(msg)
     for key, one in value.items():
-        if not isinstance(one, int | float | str):
-            msg = f"the field '{key}' is {one!r}, allowed: a number or a text"
+        if not isinstance(one, str | Real) or (isinstance(one, Real) and not math.isfinite(one)):
+            msg = f"the field '{key}' is {one!r}, allowed: a finite number or a text"
             raise TypeError(msg)
     return value
 
