@@ -118,7 +118,7 @@ def _untold(
     said = "\n".join(" ".join(difference.text.split()) for difference in found)
     several = len(accepted.panels) > 1 or len(new.panels) > 1
     for old, fresh in matched_panels(accepted.panels, new.panels):
-        if old is None or fresh is None:
+        if old is None or fresh is None or "parts" not in old or "parts" not in fresh:
             continue
         panel = str(old["panel"])
         names = {name: was for (owner, name), was in curves.renamed.items() if owner == panel}
