@@ -333,13 +333,16 @@ class Loop(LoopViews):
         self, setpoint: float, load: float, end: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         plant, controller = self._plant, self._controller
+        size = max(abs(setpoint), abs(load)) or 1.0  # the quadrature's tolerance is absolute
 
         def forward(s: ArrayLike) -> ComplexArray:
             s = np.asarray(s, dtype=complex)
-            return np.asarray((setpoint * controller.feedforward(s) + load) * plant.delay_free(s) / s)
+            drive = setpoint / size * controller.feedforward(s) + load / size
+            return np.asarray(drive * plant.delay_free(s) / s)
 
         closed = inversion.ClosedLoop(self._transfer, forward, self.poles(count=8) * self._units.time, self._units.time)
         breaks, y = inversion.respond(closed, end, self._pace)
+        y = y * size
         return breaks, y, *control_signal(controller, breaks, y, setpoint)
 
     def __repr__(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from replicate.loops.loop import Loop
     from replicate.loops.signal import Signal
 
+T = TypeVar("T")
 NAN = float("nan")
 ROUNDING = 5e-14  # a fraction of the final value that only rounding errors have
 
@@ -82,13 +83,14 @@ class LoopSummary:
     stable
         Whether all closed-loop poles lie in the open left half-plane.
     rightmost_pole
-        The slowest mode.
+        The slowest mode; ``nan`` if there is none.
     ms, ms_frequency, mp, mp_frequency
         Peaks of |S| and |T| and where they are.
     gain_margin, phase_margin, delay_margin
         Factor, degrees, time.
     step, load
-        The responses to unit steps of the set-point and of a load at the plant input; None if the loop is unstable.
+        The responses to unit steps of the set-point and of a load at the plant input; None if the loop is unstable or
+        static.
     """
 
     stable: bool
@@ -164,20 +166,19 @@ def _range_after(signal: Signal, start: float) -> tuple[float, float]:
 
 
 def summarize_loop(loop: Loop) -> LoopSummary:
-    """Return the summary of a loop; never raises for one that is unstable."""
+    """Return the summary of a loop; never raises for one that is unstable or static."""
+    pole = _if_any(loop.rightmost_pole)
+    pole = complex(NAN, NAN) if pole is None else pole
     if not loop.is_stable():
-        try:
-            pole = loop.rightmost_pole()
-        except LoopError:
-            pole = complex(NAN, NAN)
         return LoopSummary(
             stable=False, rightmost_pole=pole, ms=NAN, ms_frequency=NAN, mp=NAN, mp_frequency=NAN, gain_margin=NAN,
             phase_margin=NAN, delay_margin=NAN, step=None, load=None,
         )  # fmt: skip
     ms, mp, margins = loop.sensitivity_peak(), loop.complementary_peak(), loop.margins()
+    step, load = _if_any(loop.step), _if_any(loop.load_step)
     return LoopSummary(
         stable=True,
-        rightmost_pole=loop.rightmost_pole(),
+        rightmost_pole=pole,
         ms=ms.value,
         ms_frequency=ms.frequency,
         mp=mp.value,
@@ -185,9 +186,17 @@ def summarize_loop(loop: Loop) -> LoopSummary:
         gain_margin=margins.gain,
         phase_margin=margins.phase,
         delay_margin=margins.delay,
-        step=summarize_signal(loop.step()),
-        load=summarize_signal(loop.load_step()),
+        step=None if step is None else summarize_signal(step),
+        load=None if load is None else summarize_signal(load),
     )
+
+
+def _if_any(quantity: Callable[[], T]) -> T | None:
+    """Return what a loop has, or None: a static loop has neither poles nor a horizon."""
+    try:
+        return quantity()
+    except LoopError:
+        return None
 
 
 def _items(record: SignalSummary) -> Iterator[tuple[str, float]]:
