@@ -159,7 +159,7 @@ def _final(step: Signal, events: list[Event]) -> float:
 
 def _cut(signal: Signal, end: float, final: float) -> Signal:
     cut = signal + _constant(0.0, end)
-    return Signal(cut.breaks, cut.coefficients, final=final, stable=signal.stable)
+    return type(cut)(cut.breaks, cut.coefficients, final=final, stable=signal.stable)
 
 
 def _constant(value: float, end: float) -> Signal:

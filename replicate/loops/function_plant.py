@@ -108,7 +108,7 @@ class FunctionPlant(Plant):
         if np.isfinite(at_rest):
             return float(at_rest.real)
         low, _ = self.corners
-        for limit in (self._mean_around_rest, self._limit_of_roots):
+        for limit in (self._mean_around_rest, lambda reach: limit_of_roots(lambda s: self.delay_free(s).real, reach)):
             near, nearer = limit(0.3 * low), limit(0.1 * low)
             if abs(near - nearer) <= LIMIT * abs(near):
                 return near
@@ -119,13 +119,6 @@ class FunctionPlant(Plant):
         """Return f(0) as the mean around it: right where f is analytic there."""
         turn = np.exp(2j * np.pi * (np.arange(CIRCLE_POINTS) + 0.5) / CIRCLE_POINTS)
         return float(np.mean(self.delay_free(radius * turn)).real)
-
-    def _limit_of_roots(self, reach: float) -> float:
-        """Return f(0) as a polynomial in the square root of s has it, fitted on the positive real axis."""
-        x = cheb.chebpts1(LIMIT_POINTS)
-        share = 0.1 + 0.9 * 0.5 * (1.0 + x)
-        series = cheb.chebfit(x, self.delay_free(0.1 * reach * share**2).real, LIMIT_POINTS - 1)
-        return float(cheb.chebval(-1.0 - 0.2 / 0.9, series))
 
     @property
     def gain_is_negative(self) -> bool:
@@ -205,3 +198,11 @@ def difference(g: Callable[[ComplexArray], ComplexArray], s: ComplexArray) -> Co
     h = STEP * np.abs(s)
     slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
     return np.asarray(slope / (60 * h))
+
+
+def limit_of_roots(function: Callable[[Array], Array], reach: float) -> float:
+    """Return f(0) as a polynomial in the square root of s has it, fitted on the positive real axis up to ``reach``."""
+    x = cheb.chebpts1(LIMIT_POINTS)
+    share = 0.1 + 0.9 * 0.5 * (1.0 + x)
+    series = cheb.chebfit(x, function(0.1 * reach * share**2), LIMIT_POINTS - 1)
+    return float(cheb.chebval(-1.0 - 0.2 / 0.9, series))

@@ -8,9 +8,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from replicate.loops import checks, inversion, margins, poles, sensitivity, stability
+from replicate.loops import checks, function_responses, margins, poles, sensitivity, stability
 from replicate.loops.chain import OpenLoop, open_loop_of
-from replicate.loops.control_signal import control_signal
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
 from replicate.loops.evaluation import INFINITE, values
@@ -22,6 +21,7 @@ from replicate.loops.plant import Plant
 from replicate.loops.proven_pole import proven_pole_with_others
 from replicate.loops.responses import responses
 from replicate.loops.signal import Response, Signal
+from replicate.loops.slow_signal import SlowSignal
 from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.steady_state import steady_state
 from replicate.loops.units import Units
@@ -29,6 +29,7 @@ from replicate.loops.units import Units
 ComplexArray = NDArray[np.complex128]
 
 TAIL = 1e13  # time constants of the slowest mode after which an algebraic tail no longer counts
+LONG = 1e-7  # of such a horizon, from which on rounding errors would show in its integrals
 CLEAR = 1e-6  # distance of a pole from the imaginary axis, relative to its modulus, that leaves no doubt
 SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rounding, exp(-34) = 2e-15
 
@@ -210,13 +211,13 @@ class Loop(LoopViews):
         self._require_stable("settling horizon")
         if not self.plant.parts:
             # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
-            return TAIL * self._pace * self._units.time
+            lasting = SETTLED / self._decay if self._decay else TAIL * function_responses.pace(self._poles)
+            return lasting * self._units.time + 4.0 * self._longest
         return SETTLED / self._slowest_decay() + 4.0 * self._longest
 
-    @property
-    def _pace(self) -> float:
-        """Time constant of the slowest mode of a loop around a function, in the loop's units; 1 if it has no mode."""
-        return 1.0 / abs(self._poles[0].real) if self._poles.size and self._poles[0].real else 1.0
+    @cached_property
+    def _decay(self) -> float:
+        return function_responses.decay(self._transfer, self._poles)
 
     @property
     def _longest(self) -> float:
@@ -296,9 +297,17 @@ class Loop(LoopViews):
         time, gain = self._units.time, self._units.gain
         breaks, y, control_breaks, u = self._responses(setpoint, load * gain, end / time)
         final_y, final_u = self.steady_state(setpoint, load)
+        u = u / gain
+        if not self.plant.parts and self._stable and not self._decay and end > LONG * self.horizon():
+            scaled = self._plant, self._controller, setpoint, load * gain, final_y
+            slow = SlowSignal(
+                breaks * time, y, final=final_y, stable=self.is_stable,
+                total_error=function_responses.total_error(*scaled) * time,
+            )  # fmt: skip
+            return Response(slow, SlowSignal(control_breaks * time, u, final=final_u, stable=self.is_stable))
         return Response(
             Signal(breaks * time, y, final=final_y, stable=self.is_stable),
-            Signal(control_breaks * time, u / gain, final=final_u, stable=self.is_stable),
+            Signal(control_breaks * time, u, final=final_u, stable=self.is_stable),
         )
 
     def steady_state(self, setpoint: float, load: float) -> tuple[float, float]:
@@ -325,25 +334,11 @@ class Loop(LoopViews):
         self, setpoint: float, load: float, end: float
     ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         if not self.plant.parts:
-            return self._by_inversion(setpoint, load, end)
+            found = self.poles(count=8) * self._units.time
+            inputs = (setpoint, load)
+            return function_responses.respond(self._transfer, self._controller, found, inputs, end, self._units.time)
         [(breaks, y, u)] = responses(self._plant, [self._controller], end, setpoint=setpoint, load=load)
         return breaks, y, breaks, u
-
-    def _by_inversion(
-        self, setpoint: float, load: float, end: float
-    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-        plant, controller = self._plant, self._controller
-        size = max(abs(setpoint), abs(load)) or 1.0  # the quadrature's tolerance is absolute
-
-        def forward(s: ArrayLike) -> ComplexArray:
-            s = np.asarray(s, dtype=complex)
-            drive = setpoint / size * controller.feedforward(s) + load / size
-            return np.asarray(drive * plant.delay_free(s) / s)
-
-        closed = inversion.ClosedLoop(self._transfer, forward, self.poles(count=8) * self._units.time, self._units.time)
-        breaks, y = inversion.respond(closed, end, self._pace)
-        y = y * size
-        return breaks, y, *control_signal(controller, breaks, y, setpoint)
 
     def __repr__(self) -> str:
         return f"Loop({self.plant!r}, {self.controller!r})"

@@ -158,7 +158,8 @@ class Piecewise:
         degree = max(self.degree, other.degree)
         values = self._resampled(breaks, degree) + other._resampled(breaks, degree)
         coefficients = values @ chebyshev.values_to_coefficients(degree).T
-        return type(self)(breaks, coefficients, final=self.final + other.final, stable=self.stable)
+        kind = type(other) if isinstance(other, type(self)) else type(self)  # the more particular of the two
+        return kind(breaks, coefficients, final=self.final + other.final, stable=self.stable)
 
     def __mul__(self, factor: float) -> Self:
         """Scale the response."""

@@ -29,6 +29,7 @@ SPARE = 8  # turns of the dead time beyond the number of poles
 ITERATIONS = 30  # each gains a digit or more where the frequency is high
 RADII, ANGLES = 160, 60  # of the grid for plants given by a function
 NEAREST = 1e-9  # rad from the negative real axis at which it is seen whether a function has a cut there
+CLOSEST, IMAGINARY = 1e-13, 1e-11  # the same where a cut begins like a power of s
 REAL = 1e-6  # imaginary part, relative to the modulus, of a value that is real
 
 
@@ -111,6 +112,18 @@ def has_cut(transfer: LoopTransfer, s: ComplexArray) -> NDArray[np.bool_]:
     with np.errstate(all="ignore"):
         value = transfer(-np.abs(s) * np.exp(-1j * NEAREST))
         return np.asarray(~(np.abs(value.imag) <= REAL * np.abs(value)))
+
+
+def begin_of_cut(transfer: LoopTransfer, scale: float) -> float:
+    """Return how far from s = 0 the cut on the negative real axis begins, to a tenth; 0 if at rest, ``inf`` without."""
+    radius = scale * np.geomspace(1e-12, 1e3, 400)
+    with np.errstate(all="ignore"):
+        value = transfer(-radius * np.exp(-1j * CLOSEST))
+        cut = np.isfinite(value) & (np.abs(value.imag) > IMAGINARY * np.abs(value))
+    if not cut.any():
+        return float("inf")
+    first = int(np.argmax(cut))
+    return float(radius[first - 1]) if first else 0.0
 
 
 def _starts_on_axis(transfer: LoopTransfer, radius: Array) -> ComplexArray:

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
+from pathlib import Path
 
 import mpmath as mp
 import pytest
@@ -41,6 +44,16 @@ def test_the_file_holds_its_closed_forms() -> None:
     integrator = GOLDENS["integrator-p"].record
     assert integrator["responses"]["step"][0] == 0.25
     assert integrator["responses"]["load_step"][0] == 0.5
+
+
+def test_the_generator_makes_the_file_again() -> None:
+    # a few that take seconds; `make goldens ARGS=--check` tries all
+    made = subprocess.run(
+        [sys.executable, "tools/goldens/make.py", "--check", "integrator-p", "foptd-p", "lag-2-critical"],
+        cwd=Path(__file__).parents[2], capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert made.stdout.count("as in the file") == 3, made.stdout + made.stderr
+    assert made.returncode == 0
 
 
 def test_every_loop_says_what_it_is_and_where_it_comes_from() -> None:

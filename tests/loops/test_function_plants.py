@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -167,3 +168,81 @@ def test_what_cannot_be_inverted_is_refused_with_the_right_reason(function: Func
     loop = Loop(Plant.from_function(function), PI(0.0, 1e-7))
     with pytest.raises(LoopError, match=reason):
         loop.step(until=30.0)
+
+
+# ---- integrals over all time -----------------------------------------------------------------------------------------
+
+
+def absolute_error(error: Function, whole: float, guesses: list[float]) -> float:
+    """Integrate |e| from the transform of e: between its sign changes, and what is left of its whole integral."""
+    with mp.workdps(40):
+
+        def inverse(transform: Function, t: mp.mpf) -> mp.mpf:
+            return mp.invertlaplace(transform, t, method="talbot", degree=60)
+
+        zeros = [mp.findroot(lambda t: inverse(error, t), (0.98 * g, 1.02 * g), tol=1e-20) for g in guesses]
+        running = [mp.mpf(0), *(inverse(lambda s: error(s) / s, t) for t in zeros), mp.mpf(whole)]
+        return float(sum(abs(b - a) for a, b in itertools.pairwise(running)))
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e6])
+def test_absolute_error_of_a_response_that_ends_like_a_power_of_time(unit: float) -> None:
+    k, ki = 0.9, 5.0
+    plant = Plant.from_function(lambda s: np.exp(-np.sqrt(s * unit)))
+    y = Loop(plant, PI(k, ki / unit)).step()
+
+    def error(s: mp.mpc) -> mp.mpc:
+        return 1 / (s + (k * s + ki) * mp.exp(-mp.sqrt(s)))
+
+    crossings = [float(t) / unit for t in y.crossings(1.0) if t < 1e4 * unit]
+    assert crossings
+    assert y.ie() / unit == pytest.approx(1.0 / ki, rel=1e-11)
+    assert y.iae() / unit == pytest.approx(absolute_error(error, 1.0 / ki, crossings), rel=1e-10)
+    assert (2.0 * y).iae() == pytest.approx(2.0 * y.iae(), rel=1e-13)
+    for refused in (y.itae, y.itse, (y + y).iae):
+        with pytest.raises(LoopError, match=r"like a power of time: its \w+ cannot be computed"):
+            refused()
+    d = Loop(plant, PI(k, ki / unit)).load_step()
+    assert d.ie() / unit == pytest.approx(1.0 / ki, rel=1e-11)
+    later = Loop(plant, PI(k, ki / unit)).respond(load=1.0, load_at=unit)
+    with pytest.raises(LoopError, match="cannot be computed"):
+        later.output.iae()
+
+
+def test_absolute_error_of_a_response_that_decays() -> None:
+    # tanh(sqrt s)/sqrt s has poles, but no cut
+    k, ki = 0.5, 0.3
+    y = Loop(Plant.from_function(lambda s: np.tanh(np.sqrt(s)) / np.sqrt(s)), PI(k, ki)).step()
+    assert y.horizon < 1e4
+    assert y.iae() == pytest.approx(1.0 / ki, rel=1e-11)  # it never exceeds its final value
+    with mp.workdps(40):
+        slope = mp.diff(lambda s: 1 / (s + (k * s + ki) * mp.tanh(mp.sqrt(s)) / mp.sqrt(s)), mp.mpf("1e-3"), h=1e-15)
+    assert y.itae() > 0.0
+    assert abs(y.itae() / float(-slope) - 1.0) < 0.1
+
+
+def test_integrals_that_do_not_converge() -> None:
+    # k/(1 + k + sqrt s): the error falls like 1/sqrt(t)
+    y = Loop(Plant.from_function(lambda s: 1.0 / (1.0 + np.sqrt(s))), PI(1.0)).step()
+    assert y.ie() == np.inf
+    assert y.iae() == np.inf
+    with pytest.raises(LoopError, match="ISE cannot be computed"):
+        y.ise()
+
+
+@pytest.mark.parametrize(("unit", "gain"), [(1e-12, 1e-9), (1e12, 1e9), (1e-3, 1e6), (1e6, 1e-9)])
+@pytest.mark.parametrize("name", ["diffusion", "fractional lag", "tanh"])
+def test_a_function_in_other_units_is_the_same_function(name: str, unit: float, gain: float) -> None:
+    function, _, dead_time = FUNCTIONS[name]
+
+    def metrics(unit: float, gain: float) -> np.ndarray:
+        plant = Plant.from_function(lambda s: gain * function(s * unit), dead_time * unit)
+        loop = Loop(plant, PI(0.5 / gain, 0.6 / gain / unit))
+        y, d, m = loop.step(), loop.load_step(), loop.margins()
+        return np.array([
+            1.0 + y.overshoot(), y.settling_time() / unit, y.rise_time() / unit, y.iae() / unit,
+            d.iae() / unit / gain, float(d.peak()) / gain, float(loop.sensitivity_peak()),
+            m.gain, m.phase, m.delay / unit, (loop.rightmost_pole() * unit).real,
+        ])  # fmt: skip
+
+    assert metrics(unit, gain) == pytest.approx(metrics(1.0, 1.0), rel=1e-10)
