@@ -135,6 +135,12 @@ def _message(name: str, value: object, allowed: str) -> str:
     return f"{name} must be {allowed}, not {shown(value)}"
 
 
+def exact(value: float) -> str:
+    """Return a number in the shortest form that reads back as itself, without a needless decimal point."""
+    short = f"{value:g}"
+    return short if float(short) == value else repr(float(value))
+
+
 def shown(value: object) -> str:
     """Return a value as a message shows it: on one line, and not at length."""
     text = " ".join((str(value) if isinstance(value, float | int) else repr(value)).split())

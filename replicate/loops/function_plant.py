@@ -190,7 +190,7 @@ class FunctionPlant(Plant):
 
     def __repr__(self) -> str:
         name = getattr(self.function, "__name__", "function")
-        return f"Plant.from_function({name}, dead_time={self.dead_time:g})"
+        return f"Plant.from_function({name}, dead_time={checks.exact(self.dead_time)})"
 
 
 def difference(g: Callable[[ComplexArray], ComplexArray], s: ComplexArray) -> ComplexArray:

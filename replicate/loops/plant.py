@@ -316,7 +316,7 @@ class Plant(PlantViews):
         return self + (-other)
 
     def __repr__(self) -> str:
-        return f"Plant({self.num.tolist()}, {self.den.tolist()}, dead_time={self.dead_time:g})"
+        return f"Plant({self.num.tolist()}, {self.den.tolist()}, dead_time={checks.exact(self.dead_time)})"
 
 
 def _no_plant() -> Plant:

@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
 
@@ -187,7 +188,7 @@ class SumPlant(Plant):
         return a, b, np.eye(1, order)[0] if order else np.zeros(0), d
 
     def __repr__(self) -> str:
-        terms = ", ".join(f"({p.num.tolist()}, {p.den.tolist()}, {p.dead_time:g})" for p in self.parts)
+        terms = ", ".join(f"({p.num.tolist()}, {p.den.tolist()}, {checks.exact(p.dead_time)})" for p in self.parts)
         return f"Plant.from_terms([{terms}])"
 
 

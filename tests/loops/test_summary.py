@@ -86,6 +86,28 @@ def test_the_summary_of_a_loop() -> None:
     assert "<th>stable</th><td>yes</td>" in found._repr_html_()
 
 
+def test_the_summary_of_a_static_loop_has_no_mode_and_no_response() -> None:
+    summary = Loop(Plant([1.0], [1.0], 0.01), PI(0.0)).summary()
+    assert summary.stable
+    assert np.isnan(summary.rightmost_pole)
+    assert (summary.ms, summary.mp, summary.gain_margin) == (1.0, 0.0, float("inf"))
+    assert summary.step is None
+    assert summary.load is None
+
+
+def test_the_summary_of_a_loop_with_a_pole_at_rest_has_it() -> None:
+    assert Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(0.0)).summary().rightmost_pole == 0.0
+
+
+@pytest.mark.parametrize("dead_time", [1.0, 1.0 / 3.0, 1e-9, 12345.678901])
+def test_what_a_plant_is_shown_as_makes_it_again(dead_time: float) -> None:
+    for plant in (
+        Plant([1.0], [3.0, 1.0], dead_time),
+        Plant.from_terms([([1.0], [1.0, 1.0], 0.0), ([1.0], [2.0, 1.0], dead_time)]),
+    ):
+        assert eval(repr(plant), {"Plant": Plant}) == plant  # noqa: S307
+
+
 def test_the_summary_of_an_unstable_loop_says_so() -> None:
     found = summarize_loop(Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(2.0)))
     assert not found.stable
