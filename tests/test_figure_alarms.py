@@ -398,7 +398,7 @@ PAIRS: list[tuple[str, Callable[[Any, Any], object], tuple[Any, Any], str]] = [
     ("missing value", lambda ax, v: ax.imshow([[1.0, 2.0], [3.0, v]], vmin=0, vmax=4), (4.0, np.nan), "image 1 now leaves out 1 value "),
     ("shape of a clip", lambda ax, v: ax.plot([0, 1])[0].set_clip_path(Circle((0, 0), v, transform=ax.transData)), (0.5, 0.6), "the shape to which curve 'line 1' is clipped changed"),
     ("dashes below zero", lambda ax, v: ax.contour(X, Y, Z - 0.2, [-0.1, 0.1], colors="k", negative_linestyles=v), ("dashed", "dotted"), "dashes of contours changed"),
-    ("coordinates of a text", lambda ax, v: (ax.set_xlim(0, 2), ax.text(0.5, 0.5, "w", transform=getattr(ax, v))), ("transData", "transAxes"), "text 'w' moved from .0.5, 0.5. to .0.5, 0.5. of the axes"),
+    ("coordinates of a text", lambda ax, v: (ax.set_xlim(0, 2), ax.text(0.5, 0.5, "w", transform=getattr(ax, v))), ("transData", "transAxes"), "text 'w' moved from .0.5, 0.5. of the data to .0.5, 0.5. of the axes"),
     ("twin on top", lambda ax, v: (ax.twinx().plot([1, 0]), ax.plot([0, 1]), ax.set_zorder(v)), (0, 1), "panel 'panel 1' is drawn over panel 'panel 2' now"),
     ("inset below", lambda ax, v: (ax.plot([0, 1], label="a"), ax.inset_axes((0.3, 0.3, 0.4, 0.4), zorder=v)), (5, 1), "curve 'a' is drawn over panel 'panel 2' now"),
     ("shape on top", lambda ax, v: ax.figure.add_artist(Circle((0.5, 0.5), 0.2, zorder=v)), (-1, 9), "shape 1 is drawn over panel 'panel 1' now"),

@@ -226,7 +226,9 @@ def _texts(one: Sequence[Text], other: Sequence[Text], axes: Axes) -> Iterator[s
                     left.remove(old)
                     right.remove(new)
                     if not place_counts:
-                        yield f"text {_shown(old['text'])} moved from {_place(old)} to {_place(new)}"
+                        changed = old.get("in") != new.get("in")  # other coordinates
+                        places = [_place(text) + (_coordinates(text) if changed else "") for text in (old, new)]
+                        yield f"text {_shown(old['text'])} moved from {places[0]} to {places[1]}"
                     elif not words_count:
                         yield f"text {_shown(old['text'])} now reads {_shown(new['text'])}"
                     break
@@ -247,7 +249,11 @@ def _near(one: Text, other: Text, axes: Axes) -> bool:
 
 
 def _place(text: Text) -> str:
-    return f"({_shown(text.get('x'))}, {_shown(text.get('y'))})" + (" of the axes" if text.get("in") else "")
+    return f"({_shown(text.get('x'))}, {_shown(text.get('y'))})"
+
+
+def _coordinates(text: Text) -> str:
+    return " of the axes" if text.get("in") else " of the data"
 
 
 def _same(one: Any, other: Any) -> bool:
