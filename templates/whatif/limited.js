@@ -4,7 +4,7 @@ import { dot, NODES, nodes } from "./chebyshev.js";
 import { prepare } from "./loop.js";
 import { closedRate, pieceMap, spaceOf } from "./response.js";
 
-const STEPS = 12000; // of a limited response, at least
+const STEPS = 12000; // at least
 
 // A loop whose control signal is limited, in small steps, between which signals are lines. Nothing where it is too fast.
 export function limited(plant, controller, limit, antiWindup, end) {
@@ -14,7 +14,7 @@ export function limited(plant, controller, limit, antiWindup, end) {
   // from (state, input before, input after) to the state after a step
   const stepped = (map, size) => map.slice(NODES * size).map((row) => [...row.slice(0, size), ...[-1, 1].map((side) => nodes.reduce((sum, node, j) => sum + row[size + j] * (1 + side * node) / 2, 0))]);
   const plantStep = stepped(pieceMap(A, B, dt), n), lag = filter || dt, [lagStep] = stepped(pieceMap([[-1 / lag]], [1 / lag], dt), 1);
-  const time = kd && ki ? Math.sqrt(Math.abs(kd / ki)) : Math.abs(k / ki), pull = antiWindup && ki ? dt / 2 / Math.max(time, dt) : 0; // tracking, as replicate.loops has it
+  const time = kd && ki ? Math.sqrt(Math.abs(kd / ki)) : Math.abs(k / ki), pull = antiWindup && ki ? dt / 2 / Math.max(time, dt) : 0; // as in replicate.loops
   const clamped = (v) => Math.min(limit, Math.max(-limit, v)), used = [], output = [], control = [];
   let x = new Float64Array(n), y = 0, integral = 0, before = { error: 0, lagged: 0, acted: 0, off: 0 };
   for (let i = 0; i <= count; i++) {

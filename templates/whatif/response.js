@@ -72,7 +72,7 @@ const returns = (node, length, ticks) => !ticks || ahead(node, length, ticks) > 
 // A row of a map applied to the states at the start of a piece and the input at its nodes.
 const applied = (row, state, input) => dot(row, state) + dot(row, input, COUNT, state.length);
 
-// The fastest pole of a loop without dead time.
+// Of a loop without dead time.
 export function closedRate(plant, controller) {
   const { free, delayed } = characteristic(plant, controller);
   return fastest(roots(add(free, delayed)));
@@ -83,7 +83,7 @@ export function closedRate(plant, controller) {
 export function responder(plant, controller) {
   const { k, ki, kd, b, c, prefilter } = controller, lag = kd ? controller.filter : 0, delay = plant.deadTime;
   const slow = Math.max(fastest(plant.poles), lag && 1 / lag, prefilter && 1 / prefilter, 1e-12);
-  const rate = delay ? slow : Math.max(2 * closedRate(plant, controller), slow / 2);
+  const rate = delay ? slow : 2 ** Math.ceil(Math.log2(Math.max(2 * closedRate(plant, controller), slow / 2))); // few lengths, known maps
   const ticks = delay ? 2 ** Math.max(0, Math.ceil(Math.log2(delay * rate / CONSTANTS.decayPerPiece))) : 0; // of a dead time
   const unit = delay ? delay / ticks : CONSTANTS.decayPerPiece / rate;
   const growth = Math.max(0, ...plant.poles.map(([re]) => re)) * unit; // of the plant in a tick: its maps must not
