@@ -239,6 +239,16 @@ def test_dense_grid_is_what_the_quality_tables_say() -> None:
     assert loops.ph[higher].min() >= 2.5
 
 
+def test_a_later_peak_that_is_hardly_higher_is_the_highest() -> None:
+    # Signal's extrema one by one; at ph = 5 the peaks change places at 0.9550 of the stability limit
+    for share, later in ((0.9549, False), (0.9551, True)):
+        gain = share * sweep.stability_limit(5.0)
+        first, *others = map(float, Loop(Plant([1.0], [1.0, 5.0], dead_time=1.0), PI(gain)).step(until=30.0).extrema())
+        assert (max(others) > first) is later
+        found = sweep.sweep(5.0, np.linspace(0.5, 1.0, 5) * gain)
+        assert bool(found.overshoot[-1] > found.first_peak[-1] + 1e-9) is later
+
+
 def test_unstable_gains_are_refused_by_name() -> None:
     with pytest.raises(ValueError, match=r"ph = 1: stable gains are 0 < Kh < 2\.26183, not 1 to 3"):
         sweep.sweep(1.0, np.array([1.0, 3.0]))
