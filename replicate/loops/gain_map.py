@@ -136,7 +136,7 @@ def _gaps(jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Ar
 
 def _forbidden(
     jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float
-) -> tuple[Array, Array]:
+) -> tuple[Array, Array, NDArray[np.intp]]:
     """Return lower and upper ends of the forbidden intervals of ki > 0, shape (len(k), len(kd), intervals)."""
     low, high = [], []
     for kind, jet in jets:
@@ -155,7 +155,8 @@ def _forbidden(
         if not up.all():  # a < 0: below the lower and above the upper one, or everywhere
             low += [np.where(up, np.inf, 0.0) + np.zeros_like(b), np.where(real & ~up, np.maximum(right, 0.0), np.inf)]
             high += [np.where(up, -np.inf, np.where(real, left, np.inf)), np.where(real & ~up, np.inf, -np.inf)]
-    return np.concatenate(low, axis=-1), np.concatenate(high, axis=-1)
+    ends = np.concatenate(low, axis=-1), np.concatenate(high, axis=-1)
+    return *ends, np.arange(ends[0].shape[-1])
 
 
 def _quadratics(

@@ -39,25 +39,27 @@ class Gaps:
     uppermost: Array
 
     @classmethod
-    def between(cls, parts: Iterable[tuple[Array, Array]], *, rounding: float) -> Gaps:
+    def between(cls, parts: Iterable[tuple[Array, Array, Places]], *, rounding: float) -> Gaps:
         """Return the gaps above zero that the intervals (low, high) leave; intervals run along the last axis.
 
         The parts follow each other along the first axis of the grid: what is small stays close to the processor.
+        Each says which intervals it holds; those that it lacks forbid nothing there.
         ``rounding`` is the relative width below which a gap is none. An interval that forbids nothing starts at inf.
         """
         at: dict[Index, list[Gap]] = {}
         uppermost: list[Array] = []
         first = 0
-        for low, high in parts:
+        for low, high, names in parts:
             shape = low.shape[:-1]
             rows = low.reshape(-1, low.shape[-1]), high.reshape(-1, low.shape[-1])
-            points, *ends = _gaps(*rows, rounding)
+            points, floors, tops, bounds = _gaps(*rows, rounding)
+            ends = floors, tops, names[bounds]
             places = zip(*(index.tolist() for index in np.unravel_index(points, shape)), strict=True)
             for point, floor, top, bound in zip(places, *(part.tolist() for part in ends), strict=True):
                 gaps = at.setdefault((first + point[0], *point[1:]), [])
                 if not gaps or gaps[-1].top < top:
                     gaps.append(Gap(floor, top, bound))
-            uppermost.append(np.maximum(high.max(axis=-1), 0.0))
+            uppermost.append(high.max(axis=-1, initial=0.0))
             first += shape[0]
         return cls(at, np.concatenate(uppermost))
 
@@ -74,6 +76,8 @@ class Gaps:
 
 def _gaps(low: Array, high: Array, rounding: float) -> tuple[Places, Array, Array, Places]:
     """Return row, bottom, top and bounding interval of each gap that intervals, in rows, leave; ascending."""
+    if low.size == 0:
+        return (none := np.zeros(0, dtype=np.intp)), np.zeros(0), np.zeros(0), none
     points, bounds = np.nonzero(_may_bound_a_gap(low, high, rounding))
     tops = low[points, bounds]
     floors = np.empty(tops.size)

@@ -41,10 +41,14 @@ def local_maxima(plant: Plant, circle: Circle, w: Array) -> list[Maximum]:
     c, s = circle.center * np.cos(phase), circle.center * np.sin(phase)
     gains = _gain_grid(np.concatenate([-c / r, (-c - circle.radius) / r, (-c + circle.radius) / r]), r)
     # the forbidden interval of ki at each (k, w): (r ki / w + C sin phi)^2 < R^2 - (r k + C cos phi)^2
-    parts = (
-        _forbidden(gains[i : i + TOGETHER, None] * r + c, s, w / r, circle.radius)
-        for i in range(0, gains.size, TOGETHER)
-    )
+    first, last = (-c - circle.radius) / r, (-c + circle.radius) / r  # gains that the ellipse of a frequency spans
+
+    def forbidden(some: Array) -> tuple[Array, Array, NDArray[np.intp]]:
+        seen = np.nonzero((first < some[-1]) & (last > some[0]))[0]
+        across = some[:, None] * r[seen] + c[seen]
+        return *_forbidden(across, s[seen], w[seen] / r[seen], circle.radius), seen
+
+    parts = (forbidden(gains[i : i + TOGETHER]) for i in range(0, gains.size, TOGETHER))
     gaps = Gaps.between(parts, rounding=NO_GAP)
     found = []
     for (i,), gap, connected in gaps.maxima():

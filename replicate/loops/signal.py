@@ -164,7 +164,7 @@ class Signal(SignalViews, Piecewise):
         A mode that cancels in the response makes its horizon long: rounding errors would add up over it.
         """
         error = np.max(np.abs(self._samples - self.final), axis=1)
-        return ~(error <= AT_REST * float(np.max(np.abs(self._samples))))
+        return np.asarray(~(error <= AT_REST * float(np.max(np.abs(self._samples)))))
 
     def ie(self) -> float:
         """Return the integrated error over [0, horizon].

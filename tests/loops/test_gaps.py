@@ -18,7 +18,8 @@ def test_a_point_is_in_a_gap_exactly_where_no_interval_covers_it(seed: int, widt
     high = low + random.exponential(width, low.shape)
     none = random.uniform(size=low.shape) < missing
     low, high = np.where(none, np.inf, low), np.where(none, -np.inf, high)
-    gaps = Gaps.between([(low[:3], high[:3]), (low[3:], high[3:])], rounding=1e-12)
+    names = np.arange(INTERVALS)
+    gaps = Gaps.between([(low[:3], high[:3], names), (low[3:], high[3:], names)], rounding=1e-12)
     for row in range(ROWS):
         found = gaps.at.get((row,), [])
         assert found == sorted(found)
