@@ -180,8 +180,9 @@ def test_the_python_lines_print_what_the_table_shows(page: Any, capsys: pytest.C
 
 
 def test_an_ideal_derivative_is_that_of_the_core(page: Any, address: str) -> None:
+    page.evaluate("whatif.state.last = null")  # so that what is read is of the new loop
     page.goto(f"{address}#plant=1%2F(s%2B1)%5E4&controller=k%3D1%2Cki%3D0.98%2Ckd%3D3")
-    until(page, "whatif.state.plantText === '1/(s+1)^4' && whatif.state.last.stable")
+    until(page, "whatif.state.plantText === '1/(s+1)^4' && whatif.state.last?.stable")
     loop = Loop(Plant([1.0], np.poly([-1.0] * 4)), PID(1.0, 0.98, 3.0))
     found = page.evaluate(
         "(({ overshoot, loadIae, variation, ms }) => [overshoot, loadIae, variation, ms])(whatif.state.last)"
