@@ -16,19 +16,19 @@ ROOT = Path(replicate.__file__).parent
 #: What a room may import, besides itself and the errors.
 ALLOWED = {
     "loops": set(),
-    "exhibits": {"errors"},
+    "exhibits": {"errors", "plain_text"},
     "figures": {"errors"},
     "baselines": {"display", "errors", "figures", "resources", "staging"},
     "teaching": {"errors", "exhibits", "loops"},
     "papers": {"errors", "exhibits", "figures", "loops", "teaching"},
-    "verdicts": {"errors", "exhibits"},
-    "run": {"errors", "exhibits", "figures", "verdicts"},
-    "display": {"errors", "exhibits", "figures", "resources", "run", "verdicts"},
-    "report": {"display", "errors", "exhibits", "figures", "resources", "run", "verdicts"},
-    "handout": {"display", "errors", "exhibits", "figures", "resources", "run", "verdicts"},
-    "sweeps": {"errors", "exhibits", "loops", "run", "staging"},
+    "verdicts": {"errors", "exhibits", "plain_text"},
+    "run": {"errors", "exhibits", "figures", "plain_text", "verdicts"},
+    "display": {"errors", "exhibits", "figures", "plain_text", "resources", "run", "verdicts"},
+    "report": {"display", "errors", "exhibits", "figures", "plain_text", "resources", "run", "verdicts"},
+    "handout": {"display", "errors", "exhibits", "figures", "plain_text", "resources", "run", "verdicts"},
+    "sweeps": {"errors", "loops", "plain_text", "run", "staging"},
     "whatif": {"display", "errors", "exhibits", "figures", "loops", "resources"},
-    "diff": {"display", "errors", "exhibits", "figures", "resources", "run", "staging", "verdicts"},
+    "diff": {"display", "errors", "exhibits", "figures", "plain_text", "resources", "run", "staging", "verdicts"},
 }
 
 

@@ -11,12 +11,12 @@ from pathlib import Path
 import pytest
 import synthetic
 
+from replicate import plain_text
 from replicate.display import markdown, pandoc
 from replicate.display.markdown import MarkdownBatch
 from replicate.errors import LedgerError, PrintedFileError, ReplicateError, UnreadableTextError
-from replicate.exhibits import plain_text
-from replicate.exhibits.plain_text import parse_toml, read_text
 from replicate.handout.roster import read_roster
+from replicate.plain_text import parse_toml, read_text
 from replicate.verdicts.ledger import Ledger
 
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from replicate.errors import TemplateError
-from replicate.exhibits.plain_text import read_text, steering, visible
+from replicate.plain_text import read_text, steering, visible
 from replicate.terminal.console import console
 
 Run = Callable[..., tuple[int, str, str]]

@@ -9,7 +9,7 @@ from pathlib import Path
 from replicate.diff.accepted import files_of, state_files
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import OutputError, ReplicateError
-from replicate.exhibits.plain_text import steering
+from replicate.plain_text import steering
 from replicate.run.outcome import Outcome
 from replicate.staging import replace_files
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from replicate.exhibits.plain_text import visible
 from replicate.exhibits.results import Results, errors_of
+from replicate.plain_text import visible
 from replicate.verdicts.rows import Judgement, VerdictRow
 
 

@@ -19,8 +19,8 @@ from replicate.display.distance import off
 from replicate.display.labels import cited
 from replicate.display.markdown import MarkdownBatch, without_marks
 from replicate.display.safe_html import policy
-from replicate.exhibits.plain_text import visible
 from replicate.figures.style import dark_curves
+from replicate.plain_text import visible
 from replicate.resources import templates_dir
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NoReturn
 
 from replicate.errors import PaperDefinitionError
-from replicate.exhibits.plain_text import steering
+from replicate.plain_text import steering
 
 _ID = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,98}[A-Za-z0-9_-])?", re.ASCII)
 _ALLOWED = "letters and digits first, then also '-', '_' and '.', at most 100 and no '.' at the end"

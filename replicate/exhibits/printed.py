@@ -23,8 +23,8 @@ from replicate.errors import PrintedFileError
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.notation import PLAIN, Notation, Statement
 from replicate.exhibits.numerals import LOST, last_place
-from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.statements import scaled
+from replicate.plain_text import read_text
 
 if TYPE_CHECKING:
     from replicate.exhibits.vocabulary import Table

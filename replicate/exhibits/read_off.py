@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING
 from replicate.errors import PaperDefinitionError, PrintedFileError
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import parse_number
-from replicate.exhibits.plain_text import read_text
+from replicate.plain_text import read_text
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,7 +12,6 @@ from typing import Any
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
 from replicate.handout.exercise_heads import selected, with_heads
 from replicate.handout.form import Form
@@ -23,6 +22,7 @@ from replicate.handout.programs import run_programs
 from replicate.handout.reading import Lines, read
 from replicate.handout.sheet import Language, Sheet, language
 from replicate.handout.tree import Blocks, Element, attribute, classes, div, elements, plain, string, text_of, transform
+from replicate.plain_text import read_text
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import VerdictRow
 

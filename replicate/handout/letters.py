@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from replicate.errors import TemplateError
-from replicate.exhibits.plain_text import read_text
+from replicate.plain_text import read_text
 
 if TYPE_CHECKING:
     from replicate.handout.edition import Document

@@ -20,8 +20,8 @@ from typing import Any
 
 from replicate.errors import PaperDefinitionError, ReplicateError
 from replicate.exhibits.exercises import Exercises
-from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.variants import Answer, Answers, Inputs, Variation
+from replicate.plain_text import read_text
 
 TEXT, PROGRAM = "exercise.md", "exercise.py"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")

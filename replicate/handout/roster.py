@@ -10,7 +10,7 @@ from pathlib import Path
 from unicodedata import category
 
 from replicate.errors import ReplicateError
-from replicate.exhibits.plain_text import read_text
+from replicate.plain_text import read_text
 
 _UNSAFE = re.compile(r'[<>:"/\\|?*]')  # in a file's name, on some system
 _LONGEST = 150  # bytes of a name, so that its file's name fits any system

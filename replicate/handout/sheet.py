@@ -9,8 +9,8 @@ from functools import cache
 from pathlib import Path
 
 from replicate.errors import ReplicateError
-from replicate.exhibits.plain_text import parse_toml, read_text
 from replicate.handout.own_exercises import OwnExercise
+from replicate.plain_text import parse_toml, read_text
 from replicate.resources import templates_dir
 
 FOLDER = "languages"

@@ -10,11 +10,11 @@ import replicate
 from replicate.display.inline_svg import inline_svg
 from replicate.display.rendering import html_environment
 from replicate.display.source_code import highlight
-from replicate.exhibits.plain_text import visible
 from replicate.figures.style import dark_curves
 from replicate.handout.edition import Document
 from replicate.handout.pandoc import written
 from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, string, transform
+from replicate.plain_text import visible
 
 TEMPLATE = "handout.html"
 

@@ -18,8 +18,8 @@ from replicate.display.rendering import render
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.results import Results
+from replicate.plain_text import read_text
 from replicate.report.advice import advice
 from replicate.report.errata_sheet import Erratum, Sheet, sheets
 from replicate.report.notes import Piece, pieces, place

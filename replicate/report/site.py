@@ -9,7 +9,7 @@ from importlib.resources import files
 from types import MappingProxyType
 
 from replicate.errors import TemplateError
-from replicate.exhibits.plain_text import read_text
+from replicate.plain_text import read_text
 from replicate.run.project import Project
 
 _TITLE = "Papers, replicated"

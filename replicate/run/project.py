@@ -24,7 +24,7 @@ from pathlib import Path
 from typing import Any
 
 from replicate.errors import ProjectError
-from replicate.exhibits.plain_text import parse_toml, read_text
+from replicate.plain_text import parse_toml, read_text
 
 FILE = "replicate.toml"
 PYPROJECT = "pyproject.toml"

@@ -25,11 +25,11 @@ from typing import Any, NoReturn
 import numpy as np
 
 from replicate.errors import SweepFileError
-from replicate.exhibits.plain_text import parse_toml, read_text
 from replicate.loops.errors import LoopError
 from replicate.loops.sweep.axes import CONTROLLER_COLUMNS, PLANT_COLUMNS, controller_axis, plant_axis
 from replicate.loops.sweep.metric_names import checked_metrics
 from replicate.loops.sweep.sweep_result import GRID, PAIRWISE
+from replicate.plain_text import parse_toml, read_text
 from replicate.sweeps.sides import Refuse, Side, side_of
 
 PLANT = PLANT_COLUMNS[0]

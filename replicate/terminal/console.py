@@ -12,7 +12,7 @@ from rich.console import Console, ConsoleOptions, ConsoleRenderable, RenderHook,
 from rich.segment import Segment
 from rich.table import Table as Grid
 
-from replicate.exhibits.plain_text import visible
+from replicate.plain_text import visible
 
 WIDTH = 100
 

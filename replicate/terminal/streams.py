@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TextIO
 
 import typer
 
-from replicate.exhibits.plain_text import visible
+from replicate.plain_text import visible
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer

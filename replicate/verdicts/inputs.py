@@ -14,9 +14,9 @@ from pathlib import PurePosixPath
 from replicate.errors import TemplateError
 from replicate.exhibits import Exhibit, Paper, Table
 from replicate.exhibits.file_names import display_name
-from replicate.exhibits.plain_text import read_text
 from replicate.exhibits.printed import Key, PrintedValue, read_printed
 from replicate.exhibits.read_off import COLUMN
+from replicate.plain_text import read_text
 from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.prose import check_syntax
 

@@ -35,7 +35,7 @@ from replicate.errors import LedgerError
 from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import ALLOWED, parse_number
-from replicate.exhibits.plain_text import parse_toml, read_text, steering
+from replicate.plain_text import parse_toml, read_text, steering
 
 Cause = Literal[
     "misprint",
