@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy.special import lambertw
@@ -28,8 +30,8 @@ def test_the_rightmost_pole_of_a_lag_under_proportional_control_is_a_value_of_la
 @pytest.mark.parametrize(
     "loop",
     [
-        Loop(Plant.foptd(1.0, 1.0, 1.0), PI(1.0 / np.e, 1.0 / np.e)),  # a double pole
-        Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(1.0 / np.e * (1.0 - 1e-6))),  # two that are about to meet
+        Loop(Plant.foptd(1.0, 1.0, 1.0), PI(1.0 / math.e, 1.0 / math.e)),  # a double pole
+        Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(1.0 / math.e * (1.0 - 1e-6))),  # two that are about to meet
         Loop(Plant([1.0], [1.0], 1.0), PI(0.6)),  # infinitely many poles with one real part
         Loop(Plant([1.0], [1.0, 0.0], 0.0), PI(0.6)),  # no dead time
         Loop(Plant.foptd(1.0, 1.0, 1.0) + Plant.foptd(1.0, 2.0, 0.3), PI(0.1)),  # two dead times
