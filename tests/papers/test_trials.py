@@ -40,9 +40,13 @@ def test_the_page_can_read_each_loop(id: str) -> None:
             plant, controller = parse_plant(plant_text), parse_controller(controller_text)
             assert plant.is_rational, where
             assert len(plant.parts) == 1, where
-            assert plant.num.size < plant.den.size <= MOST_POLES + 1, where
-            read = (controller.k, controller.ki, controller.kd)
-            plain = PID(*read, b=controller.b, derivative_filter=controller.derivative_filter)
+            assert plant.num.size <= plant.den.size <= MOST_POLES + 1, where
+            assert plant.num.size < plant.den.size or plant.dead_time > 0, where  # a pure dead time is drawn
+            assert isinstance(controller.setpoint_filter, float | int), where
+            plain = PID(
+                *(controller.k, controller.ki, controller.kd), b=controller.b, c=controller.c,
+                derivative_filter=controller.derivative_filter, setpoint_filter=controller.setpoint_filter,
+            )  # fmt: skip
             assert controller.notation() in {plain.notation(), plain.notation().replace(",kd=0", "")}, where
 
 
@@ -88,10 +92,14 @@ def test_gains_are_those_printed_in_the_row(table: str) -> None:
 
 
 @pytest.mark.parametrize("table", ["II-table-1", "IIs-table-2"])
-def test_rows_with_a_setpoint_filter_are_left_out(table: str) -> None:
-    without = [row for row, cells in printed("panagopoulos", table).items() if float(cells["Tsp"]) == 0.0]
-    assert without
-    assert list(controllers("panagopoulos", table)) == without
+def test_rows_with_a_setpoint_filter_are_tried_with_it(table: str) -> None:
+    texts = printed("panagopoulos", table)
+    found = controllers("panagopoulos", table)
+    assert list(found) == list(texts)
+    assert {row: one.setpoint_filter for row, one in found.items()} == {
+        row: float(cells["Tsp"]) for row, cells in texts.items()
+    }
+    assert any(one.setpoint_filter for one in found.values())
 
 
 def test_the_series_form_keeps_its_transfer_function() -> None:
