@@ -138,7 +138,7 @@ def test_another_plant_is_the_only_one_that_is_computed(tmp_path: Path) -> None:
     said = Said()
     more = [*ROWS, Row("two", "e^{-s}/(2s+1)", "k=0.6,ki=0.5")]
     whatif_page(more, keep=KeptTexts(tmp_path, ROOMS, DISTRIBUTIONS, said))
-    assert [name for name, _ in said.why] == ["what if: tuning rules for e^{-s}/(2s+1)"]
+    assert [name for name, _ in said.why] == ["what if: optimal controllers for e^{-s}/(2s+1)"]
 
 
 def test_the_page_names_all_rooms_whose_code_it_loads() -> None:

@@ -54,7 +54,7 @@ print(f"Ms {loop.sensitivity_peak().value:.4g}, margins: gain {m.gain:.4g}, phas
 """
 
 #: Rooms of the framework whose code computes what stands on the page, and what they use.
-ROOMS = ("display", "errors", "exhibits", "figures", "loops", "resources", "whatif")
+ROOMS = ("display", "errors", "exhibits", "figures", "loops", "plain_text", "resources", "whatif")
 DISTRIBUTIONS = ("matplotlib", "numpy", "scipy")
 
 Keep = Callable[[str, Callable[[], str]], str]
