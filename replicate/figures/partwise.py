@@ -8,8 +8,8 @@ from typing import Any
 
 from replicate.figures.differences import Difference, FigureChange, Layer
 from replicate.figures.fieldwise import field_words
+from replicate.figures.legend_words import HANDLES, LEGEND_SIZES
 from replicate.figures.looks import Frame, Mark, mark_words
-from replicate.figures.uncommon import HANDLES, LEGEND_SIZES
 
 Part = Mapping[str, Any]
 

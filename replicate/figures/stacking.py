@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from replicate.figures.differences import Difference
-from replicate.figures.recorder import DPI, Array, Drawn
+
+if TYPE_CHECKING:
+    from replicate.figures.recorder import Array, Drawn
 
 #: Names of what belongs to the axes as such; an inset covers it or not, but nobody asks which.
 _OF_AXES = ("background", "frame", " spine", " axis")
@@ -45,6 +47,8 @@ class Stack:
 
 def extent(drawn: Drawn) -> Extent | None:
     """Return left, bottom, right and top of what was drawn, in pixels; ``None`` if nothing can be seen of it."""
+    from replicate.figures.recorder import DPI  # comparing two records needs no renderer
+
     if drawn.kind == "text":  # wherever it is anchored
         x, y = drawn.extra["place"]
         size = drawn.extra["font"].get_size_in_points() * DPI / 72.0

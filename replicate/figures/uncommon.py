@@ -12,20 +12,12 @@ from matplotlib.lines import Line2D
 from matplotlib.offsetbox import TextArea
 from matplotlib.text import Annotation, Text
 
+from replicate.figures.legend_words import HANDLES, LEGEND_SIZES
+
 #: matplotlib's own, so that records hold only what differs from them.
 _LINE_SPACINGS = (1.2, "normal")  # until 3.10, and since
 _LABEL_SPACING = 0.5
 _FRAME = "Round"
-#: What a legend always says, since another default may be set: sizes in units of its letters.
-LEGEND_SIZES = {
-    "handlelength": "length of the handles",
-    "handleheight": "height of the handles",
-    "handletextpad": "distance between handles and words",
-    "borderpad": "distance between frame and entries",
-    "borderaxespad": "distance to the axes",
-    "columnspacing": "distance between columns",
-}
-HANDLES = "place of the handles"
 _NO_MARKERS = {"None", "none", " ", "", None}
 _LONGEST = 40
 

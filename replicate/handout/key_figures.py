@@ -10,7 +10,6 @@ from replicate.exhibits import Figure
 from replicate.exhibits.variants import Variation, VariedFigure
 from replicate.handout.form import Form
 from replicate.handout.letters import can_be_set
-from replicate.run import drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as MatplotlibFigure
@@ -61,4 +60,6 @@ def _page(
 
     alt = f"{figure.alt} One for each of: {', '.join(names)}."
     page = Figure(id, "figure", heading, draw, alt=alt, size=_PAGE)
+    from replicate.run import drawing  # loads matplotlib
+
     return KeyPage(heading, drawing.picture(f"{paper}-key", page, "svg"), alt)

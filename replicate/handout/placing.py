@@ -46,7 +46,6 @@ from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.tree import Element
-from replicate.run import drawing
 from replicate.verdicts.rows import VerdictRow
 
 TEXT_WIDTH = 6.3  # inches between the margins of the printed page
@@ -83,6 +82,8 @@ class DrawnLater(Drawing):
 
     def _drawn(self, kind: Literal["svg", "png"]) -> bytes:
         with _said_by(f"figure('{self.name}')"):
+            from replicate.run import drawing  # loads matplotlib
+
             return drawing.picture(self.__dict__["_paper"], self.__dict__["_figure"], kind)
 
 
@@ -249,6 +250,8 @@ class Placing:
                 msg = f"dots('{exhibit}'): {error}"
                 raise TemplateError(msg) from error
             with _said_by(f"dots('{exhibit}')"):
+                from replicate.run import drawing  # loads matplotlib
+
                 self.shared[key] = drawing.capture(f"{self.paper.id}-handout", drawn), drawn.alt
         result, alt = self.shared[key]
         return self._mark(Drawing(name, result.svg, result.png, alt, min(1.0, size[0] / TEXT_WIDTH)))
@@ -282,6 +285,8 @@ class Placing:
             drawing_key = f"figure {name} {size}"
             if drawing_key not in self.shared:
                 with _said_by(f"figure('{name}')"):
+                    from replicate.run import drawing  # loads matplotlib
+
                     self.shared[drawing_key] = drawing.capture(f"{self.paper.id}-handout", drawn)
             result = self.shared[drawing_key]
             return self._mark(Drawing(name, result.svg, result.png, description(drawn.alt, result.axes), width))
