@@ -6,18 +6,13 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs
-from replicate.loops import PI, Loop, Plant
-from replicate.teaching.drawing_numbers import number, two_digits
+from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
+from replicate.teaching.lag_loop import lag_loop
 
 if TYPE_CHECKING:
     from random import Random
 
 CLEAR = 0.1  # so far apart, relative, that one answer is not taken for another
-
-
-def _loop(inputs: Inputs) -> Loop:
-    K, T, L = (number(inputs, name) for name in ("K", "T", "L"))
-    return Loop(Plant.foptd(gain=K, time_constant=T, dead_time=L), PI(number(inputs, "k"), number(inputs, "ki")))
 
 
 def control_effort(exercises: Exercises, name: str, original: Inputs) -> None:
@@ -33,9 +28,9 @@ def control_effort(exercises: Exercises, name: str, original: Inputs) -> None:
         original=original,
         variant=_variant,
         requires={
-            "no common value among the numbers": lambda x: len({number(x, key) for key in x}) == len(x),
+            "no common value among the numbers": no_common_value,
             "dead time and gains are not near one": lambda x: all(abs(number(x, name) - 1.0) > CLEAR for name in "KLk"),
-            "the loop is stable": lambda x: _loop(x).is_stable(),
+            "the loop is stable": lambda x: lag_loop(x).is_stable(),
             "the signal is largest at the start": _largest_at_the_start,
             "first and last value differ": lambda x: abs(number(x, "k") * number(x, "K") - 1.0) > CLEAR,
         },
@@ -58,9 +53,9 @@ def _variant(rng: Random) -> Inputs:
 def _largest_at_the_start(inputs: Inputs) -> bool:
     """Whether no later value is larger: neither the one just before the output moves nor the last."""
     k, ki, K, L = (number(inputs, name) for name in ("k", "ki", "K", "L"))
-    if k < 1.0 / K or not _loop(inputs).is_stable():
+    if k < 1.0 / K or not lag_loop(inputs).is_stable():
         return False
-    return ki * L < 0.5 * k and _loop(inputs).respond().control.peak().value <= (k + ki * L) * (1 + 1e-9)
+    return ki * L < 0.5 * k and lag_loop(inputs).respond().control.peak().value <= (k + ki * L) * (1 + 1e-9)
 
 
 def _answers(inputs: Inputs) -> Answers:
@@ -85,4 +80,4 @@ def _answers(inputs: Inputs) -> Answers:
 
 
 def _shown(inputs: Inputs) -> Values:
-    return {"peak": _loop(inputs).respond().control.peak().value}
+    return {"peak": lag_loop(inputs).respond().control.peak().value}

@@ -17,11 +17,17 @@ def two_digits(rng: Random, lower: float, upper: float) -> float:
 
     Examples
     --------
-    >>> two_digits(Random(1), 0.5, 0.9) in (0.5, 0.6, 0.7, 0.8, 0.9) or True
-    True
+    >>> number = two_digits(Random(1), 0.5, 0.9)
+    >>> 0.5 <= number <= 0.9, float(f"{number:.2g}") == number
+    (True, True)
     """
     unit = 0.1 if upper >= 1.0 else 0.01
     return round(rng.randint(round(lower / unit), round(upper / unit)) * unit, 2)
+
+
+def no_common_value(inputs: Inputs) -> bool:
+    """Return whether all inputs differ, so that no answer can be right with the wrong one of two."""
+    return len({number(inputs, key) for key in inputs}) == len(inputs)
 
 
 def number(inputs: Inputs, name: str) -> float:

@@ -12,7 +12,7 @@ from scipy import optimize
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure
-from replicate.teaching.drawing_numbers import number, two_digits
+from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
 
 if TYPE_CHECKING:
     from random import Random
@@ -40,7 +40,7 @@ def step_test(exercises: Exercises, name: str, original: Inputs) -> None:
         original=original,
         variant=_variant,
         requires={
-            "no common value among the numbers": lambda x: len({number(x, key) for key in x}) == len(x),
+            "no common value among the numbers": no_common_value,
             "dead time and time constant can be told apart": lambda x: 0.3 < number(x, "L") / number(x, "T") < 1.2,
         },
         shown=_shown,

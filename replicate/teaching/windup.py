@@ -20,9 +20,9 @@ import numpy as np
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure, rounded
-from replicate.loops import PI, Loop, Plant
 from replicate.loops.limited_response import LimitedResponse
-from replicate.teaching.drawing_numbers import number, two_digits
+from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
+from replicate.teaching.lag_loop import lag_loop
 
 if TYPE_CHECKING:
     from random import Random
@@ -43,13 +43,13 @@ def windup(exercises: Exercises, name: str, original: Inputs) -> None:
         original=original,
         variant=_variant,
         requires={
-            "no common value among the numbers": lambda x: len({number(x, key) for key in x}) == len(x),
+            "no common value among the numbers": no_common_value,
             "the process can reach the set point, but not quickly": lambda x: 1.2 < _strength(x) < 2.2,
             "gain and limit are not near one": lambda x: all(abs(number(x, key) - 1.0) > 0.1 for key in "KU"),
             "at the limit from the start": lambda x: number(x, "k") > 1.3 * number(x, "U"),
             "the integral part alone keeps the actuator at its limit": lambda x: _wound(x) > 1.15 * number(x, "U"),
             "at the limit until the set point is reached": lambda x: _least_command(x) > 1.02 * number(x, "U"),
-            "the loop is stable": lambda x: _loop(x).is_stable(),
+            "the loop is stable": lambda x: lag_loop(x).is_stable(),
         },
         shown=_shown,
         figures={f"{name}-responses": VariedFigure("Windup and how to avoid it", _ALT, _draw, (6.2, 2.3))},
@@ -66,11 +66,6 @@ def _variant(rng: Random) -> Inputs:
         "ki": two_digits(rng, 0.5, 1.9),
         "U": two_digits(rng, 0.6, 0.9) if rng.random() < 0.5 else two_digits(rng, 1.1, 3.5),
     }
-
-
-def _loop(inputs: Inputs) -> Loop:
-    K, T, L = (number(inputs, name) for name in ("K", "T", "L"))
-    return Loop(Plant.foptd(gain=K, time_constant=T, dead_time=L), PI(number(inputs, "k"), number(inputs, "ki")))
 
 
 def _strength(inputs: Inputs) -> float:
@@ -101,7 +96,7 @@ def _left(inputs: Inputs) -> float:
 def _limited(inputs: Inputs, anti_windup: str) -> LimitedResponse:
     limit = number(inputs, "U")
     until = 12.0 * number(inputs, "T")
-    return _loop(inputs).saturated((-limit, limit), anti_windup, until=until)  # type: ignore[arg-type]
+    return lag_loop(inputs).saturated((-limit, limit), anti_windup, until=until)  # type: ignore[arg-type]
 
 
 def _least_command(inputs: Inputs) -> float:
