@@ -17,7 +17,7 @@ from replicate.figures.pair import Pair
 from replicate.figures.partwise import come_and_gone_by_name, compare_parts
 from replicate.figures.record import Record
 from replicate.figures.scaling import in_units
-from replicate.figures.stacking import stacking_changes
+from replicate.figures.stacking_changes import stacking_changes
 
 # Where the layout follows the size of texts, places on the axes move with it.
 _FITTED = 20.0

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from replicate.figures.differences import Difference
-
-if TYPE_CHECKING:
-    from replicate.figures.recorder import Array, Drawn
+from replicate.figures.recorder import DPI, Array, Drawn
 
 #: Names of what belongs to the axes as such; an inset covers it or not, but nobody asks which.
 _OF_AXES = ("background", "frame", " spine", " axis")
@@ -47,8 +43,6 @@ class Stack:
 
 def extent(drawn: Drawn) -> Extent | None:
     """Return left, bottom, right and top of what was drawn, in pixels; ``None`` if nothing can be seen of it."""
-    from replicate.figures.recorder import DPI  # comparing two records needs no renderer
-
     if drawn.kind == "text":  # wherever it is anchored
         x, y = drawn.extra["place"]
         size = drawn.extra["font"].get_size_in_points() * DPI / 72.0
@@ -84,25 +78,6 @@ def _joined(boxes: Sequence[Extent]) -> Extent:
 def _largest(scales: Array | None) -> float:
     """Return how much larger than the first one the largest marker is."""
     return float(scales.max() / (scales[0] or 1.0)) if scales is not None and len(scales) else 1.0
-
-
-def stacking_changes(
-    one: Mapping[str, Any], other: Mapping[str, Any], where: str, curves: Collection[str] = ()
-) -> Iterator[Difference]:
-    """Yield what lies over what now, of the pairs that overlap in both states.
-
-    Parameters
-    ----------
-    one, other
-        Descriptions of the figure or of a panel, with pairs of names under ``over``.
-    curves
-        Names that are those of curves.
-    """
-    new = {tuple(pair) for pair in other.get("over", [])}
-    for upper, lower in one.get("over", []):
-        if (lower, upper) in new:
-            above, below = (f"curve '{name}'" if name in curves else name for name in (lower, upper))
-            yield Difference("look", f"{above} is drawn over {below} now", f"{where} / {lower}")
 
 
 def _is_panel(name: str) -> bool:

@@ -1,0 +1,27 @@
+"""Compare what lies over what in two states; apart from what records it, so that it loads no renderer."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any
+
+from replicate.figures.differences import Difference
+
+
+def stacking_changes(
+    one: Mapping[str, Any], other: Mapping[str, Any], where: str, curves: Collection[str] = ()
+) -> Iterator[Difference]:
+    """Yield what lies over what now, of the pairs that overlap in both states.
+
+    Parameters
+    ----------
+    one, other
+        Descriptions of the figure or of a panel, with pairs of names under ``over``.
+    curves
+        Names that are those of curves.
+    """
+    new = {tuple(pair) for pair in other.get("over", [])}
+    for upper, lower in one.get("over", []):
+        if (lower, upper) in new:
+            above, below = (f"curve '{name}'" if name in curves else name for name in (lower, upper))
+            yield Difference("look", f"{above} is drawn over {below} now", f"{where} / {lower}")
