@@ -13,11 +13,12 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import Results
+from replicate.handout.drawings import Drawing
 from replicate.handout.exercise_heads import selected, with_heads
 from replicate.handout.form import Form
 from replicate.handout.formulas import Converted, Formula, FormulaError, convert, formulas_in, located
 from replicate.handout.own_exercises import OwnExercise
-from replicate.handout.placing import CLOSE, OPEN, Drawing, Placed, Placing
+from replicate.handout.placing import CLOSE, OPEN, Placed, Placing
 from replicate.handout.programs import run_programs
 from replicate.handout.reading import Lines, read
 from replicate.handout.sheet import Language, Sheet, language

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits import Figure
 from replicate.exhibits.variants import Variation, VariedFigure
+from replicate.handout.drawings import picture
 from replicate.handout.form import Form
 from replicate.handout.letters import can_be_set
 
@@ -60,6 +61,4 @@ def _page(
 
     alt = f"{figure.alt} One for each of: {', '.join(names)}."
     page = Figure(id, "figure", heading, draw, alt=alt, size=_PAGE)
-    from replicate.run import drawing  # loads matplotlib
-
-    return KeyPage(heading, drawing.picture(f"{paper}-key", page, "svg"), alt)
+    return KeyPage(heading, picture(f"{paper}-key", page, "svg"), alt)

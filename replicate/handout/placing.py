@@ -31,7 +31,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any, Literal
+from typing import Any
 
 from replicate.display.addresses import TRIALS, trial_address, trial_label
 from replicate.display.inline_svg import description
@@ -42,6 +42,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
+from replicate.handout.drawings import Drawing, DrawnLater, captured, said_by
 from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_exercises import OwnExercise, with_own
@@ -51,40 +52,6 @@ from replicate.verdicts.rows import VerdictRow
 TEXT_WIDTH = 6.3  # inches between the margins of the printed page
 
 OPEN, CLOSE = "\ue002", "\ue003"
-
-
-@dataclass(frozen=True)
-class Drawing:
-    """A figure to be placed: its SVG and PNG, its words and its width as a fraction of the text's."""
-
-    name: str
-    svg: str
-    png: bytes
-    alt: str
-    width: float
-
-
-class DrawnLater(Drawing):
-    """A figure of the numbers of one form, drawn when it is needed: a sheet without solutions needs fewer."""
-
-    def __init__(self, paper: str, figure: Figure, width: float) -> None:
-        self.__dict__.update(name=figure.id, alt=figure.alt, width=width, _paper=paper, _figure=figure)
-
-    @cached_property
-    def svg(self) -> str:
-        """The vector drawing."""
-        return self._drawn("svg").decode()
-
-    @cached_property
-    def png(self) -> bytes:
-        """The picture."""
-        return self._drawn("png")
-
-    def _drawn(self, kind: Literal["svg", "png"]) -> bytes:
-        with _said_by(f"figure('{self.name}')"):
-            from replicate.run import drawing  # loads matplotlib
-
-            return drawing.picture(self.__dict__["_paper"], self.__dict__["_figure"], kind)
 
 
 @dataclass(frozen=True)
@@ -150,7 +117,7 @@ class Placing:
 
     def functions_of(self, own: OwnExercise) -> dict[str, Any]:
         """Return the fields that the text of a lecturer's own exercise has; what is its own needs no name."""
-        with _said_by("answers(inputs)"):
+        with said_by("answers(inputs)"):
             fields = {"inputs": self.inputs(own.name), "answer": self.answer(own.name), "stated": self.stated(own.name)}
         return {**fields, "figure": self.figure, "tex": tex, "fixed": fixed, "percent": percent}
 
@@ -163,7 +130,7 @@ class Placing:
             raise TemplateError(msg)
         kept = self.shared if variation is None else self._answers
         if name not in kept:
-            with _said_by(f"answer('{name}')"):
+            with said_by(f"answer('{name}')"):
                 if variation is None:
                     kept[name] = self.exercises.answers[name]()
                 else:
@@ -218,11 +185,8 @@ class Placing:
 
     def _table(self, exhibit: str, choice: Choice) -> Placed:
         view = self._view("table", exhibit)
-        try:
+        with _refused_by(f"table('{exhibit}')"):
             placed = key_table(view, choice)
-        except TemplateError as error:
-            msg = f"table('{exhibit}'): {error}"
-            raise TemplateError(msg) from error
         return Placed(placed, legend(view, choice) if choice.printed else [])
 
     def dots(
@@ -244,15 +208,9 @@ class Placing:
         if key not in self.shared:
             view = self._view("dots", exhibit)
             view = transposed_view(view) if transposed else view
-            try:
+            with _refused_by(f"dots('{exhibit}')"):
                 drawn = dot_figure(view, choice, name, size)
-            except TemplateError as error:
-                msg = f"dots('{exhibit}'): {error}"
-                raise TemplateError(msg) from error
-            with _said_by(f"dots('{exhibit}')"):
-                from replicate.run import drawing  # loads matplotlib
-
-                self.shared[key] = drawing.capture(f"{self.paper.id}-handout", drawn), drawn.alt
+            self.shared[key] = captured(f"dots('{exhibit}')", self.paper.id, drawn), drawn.alt
         result, alt = self.shared[key]
         return self._mark(Drawing(name, result.svg, result.png, alt, min(1.0, size[0] / TEXT_WIDTH)))
 
@@ -276,7 +234,7 @@ class Placing:
         if varied is not None:
             if size is not None:
                 varied, width = replace(varied, size=size), min(1.0, size[0] / TEXT_WIDTH)
-            return self._mark(DrawnLater(f"{self.paper.id}-handout", varied, width))
+            return self._mark(DrawnLater(self.paper.id, varied, width))
         if own is not None or (size is not None and isinstance(found, Figure)):
             drawn = own or found
             assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker
@@ -284,10 +242,7 @@ class Placing:
                 drawn, width = replace(drawn, size=size), min(1.0, size[0] / TEXT_WIDTH)
             drawing_key = f"figure {name} {size}"
             if drawing_key not in self.shared:
-                with _said_by(f"figure('{name}')"):
-                    from replicate.run import drawing  # loads matplotlib
-
-                    self.shared[drawing_key] = drawing.capture(f"{self.paper.id}-handout", drawn)
+                self.shared[drawing_key] = captured(f"figure('{name}')", self.paper.id, drawn)
             result = self.shared[drawing_key]
             return self._mark(Drawing(name, result.svg, result.png, description(drawn.alt, result.axes), width))
         known = self.results.get((self.paper.id, name))
@@ -334,12 +289,12 @@ def exercises_of(paper: Paper) -> Exercises:
 
 
 @contextmanager
-def _said_by(call: str) -> Iterator[None]:
-    """Turn whatever a paper's own function raises into a message that the text's line is added to."""
+def _refused_by(call: str) -> Iterator[None]:
+    """Say which call of a text asks for what there is not."""
     try:
         yield
-    except Exception as error:
-        msg = f"{call} failed: {type(error).__name__}: {error}"
+    except TemplateError as error:
+        msg = f"{call}: {error}"
         raise TemplateError(msg) from error
 
 

@@ -7,8 +7,8 @@ import html
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from replicate.handout.drawings import Drawing
 from replicate.handout.pandoc import written
-from replicate.handout.placing import Drawing
 from replicate.handout.questions import Question
 from replicate.handout.tree import Blocks, Element, attribute, classes, inlines, plain, raw_block, transform
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answers
+from replicate.handout.drawings import Drawing
 from replicate.handout.edition import Document
 from replicate.handout.form import Form
-from replicate.handout.placing import Drawing
 from replicate.handout.tree import Blocks, attribute, classes, elements
 
 
