@@ -32,19 +32,6 @@ def delay_series(s: ComplexArray, dead_time: float, order: int) -> ComplexArray:
     return np.array([delay * (-dead_time) ** n / factorial(n) for n in range(order + 1)])
 
 
-def controller_basis_jets(w: Array, order: int) -> ComplexArray:
-    """Return the Taylor coefficients in w of 1, 1/(i w) and i w; shape (3, order + 1, len(w))."""
-    w = np.asarray(w, dtype=float)
-    basis = np.zeros((3, order + 1, w.size), dtype=complex)
-    basis[0, 0] = 1.0
-    for n in range(order + 1):
-        basis[1, n] = -1j * (-1.0) ** n / w ** (n + 1)
-    basis[2, 0] = 1j * w
-    if order:
-        basis[2, 1] = 1j
-    return basis
-
-
 def series_product(a: ComplexArray, b: ComplexArray) -> ComplexArray:
     """Return the truncated product of two Taylor series, coefficients along the first axis."""
     return np.array([sum(a[i] * b[n - i] for i in range(n + 1)) for n in range(a.shape[0])])

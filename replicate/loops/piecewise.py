@@ -191,14 +191,6 @@ class Piecewise:
     def _time(self, piece: int, x: float) -> float:
         return float(self.breaks[piece] + 0.5 * (x + 1.0) * self._lengths[piece])
 
-    def _piece_extrema(self, piece: int) -> list[tuple[float, float]]:
-        """Return (value, time) at the ends and at all stationary points of a piece."""
-        series = self.coefficients[piece]
-        candidates = np.concatenate([[-1.0], chebyshev.real_roots(cheb.chebder(series)), [1.0]])
-        return [
-            (float(v), self._time(piece, x)) for x, v in zip(candidates, cheb.chebval(candidates, series), strict=True)
-        ]
-
     def _extreme(self, sign: float) -> Peak:
         samples = sign * self._samples
         highest = samples.max(axis=1)
