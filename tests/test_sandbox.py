@@ -37,6 +37,35 @@ REFUSED = {
         "{% set n = namespace(a='x' * 10**5) %}{% for i in range(99) %}{% set n.a = n.a ~ n.a %}{% endfor %}",
         "too large",
     ),
+    "doubled lists": ("{% set a = [1] %}" + "{% set a = [a, a] %}" * 40 + "{{ a }}", "steps"),
+    "doubled dictionaries": ("{% set a = {} %}" + "{% set a = {1: a, 2: a} %}" * 40 + "{{ a == 1 }}", "steps"),
+    "doubled namespaces": (
+        "{% set a = namespace() %}" + "{% set a = namespace(x=a, y=a) %}" * 40 + "{{ a | string }}",
+        "steps",
+    ),
+    "doubled arguments": ("{% macro m() %}{{ m(varargs, varargs) }}{% endmacro %}{{ m(1) }}", "steps|recursion"),
+    "circle": ("{% set n = namespace() %}{% set n.a = n %}{{ n.a | string | length }}", "steps"),
+    "searched": (
+        "{% set l = range(99999) | list %}{% for a in l %}{% if -1 in l %}{% endif %}{% endfor %}",
+        "steps",
+    ),
+    "searched by a filter": ("{% set l = range(99999) | list %}{{ l | select('in', l) | list | length }}", "steps"),
+    "summed": ("{% set l = range(99999) | list %}{% for a in l %}{{ l | sum }}{% endfor %}", "steps"),
+    "filtered loops": (
+        "{% set l = range(9999) %}{% for a in l %}{% for b in l if not b %}{% endfor %}{% endfor %}",
+        "steps",
+    ),
+    "rounded": ("{{ 1.5 | round(10**9, 'ceil') }}", "number of decimals"),
+    "long number": ("{{ ('f' * 10**5) | int(0, 16) }}", "too large"),
+    "replaced lazily": (
+        "{{ range(9999) | map('string') | map('replace', '1', 'y' * 10**5) | list | length }}",
+        "too large|steps",
+    ),
+    "loop in a macro": (
+        "{% macro m() %}{% for a in range(99999) %}{{ 'long ' * 1000 }}{% endfor %}{% endmacro %}{{ m() | length }}",
+        "too large",
+    ),
+    "plain text in a loop": ("{% for a in range(99999) %}" + "long " * 1000 + "{% endfor %}", "too large"),
     "include": ("{% include '/etc/passwd' %}", "'include' is not available"),
     "import": ("{% import '/etc/passwd' as p %}", "'import' is not available"),
     "from import": ("{% from '/etc/passwd' import p %}", "'import' is not available"),
@@ -60,9 +89,9 @@ def prose(tmp_path: Path) -> Prose:
 def test_a_text_that_reaches_too_far_is_refused_by_file_and_line_and_at_once(tmp_path: Path, name: str) -> None:
     text, said = REFUSED[name]
     begun = time.process_time()
-    with pytest.raises(TemplateError, match=rf"^toy/notes\.md:2: .*{said}"):
+    with pytest.raises(TemplateError, match=rf"^toy/notes\.md:2: .*({said})"):
         prose(tmp_path).render(f"First.\n{text}\nLast.\n", "toy/notes.md")
-    assert time.process_time() - begun < 20
+    assert time.process_time() - begun < 5
 
 
 @pytest.mark.parametrize(

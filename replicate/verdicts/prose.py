@@ -106,7 +106,7 @@ class Prose:
         """
         import jinja2
 
-        from replicate.verdicts.sandbox import LimitError
+        from replicate.verdicts.template_budget import LimitError
 
         try:
             return self._environment.fill(text, **self._functions, **variables)
@@ -127,7 +127,7 @@ class Prose:
             RecursionError,
             MemoryError,
         ) as error:
-            line = first_line + (getattr(error, "line", 0) or _template_line(error)) - 1
+            line = first_line + _template_line(error) - 1
             msg = f"{source}:{line}: {str(error) or type(error).__name__}"
             if msg.endswith(" is undefined"):
                 msg += f"; known: {', '.join(sorted({*self._functions, *variables}))}"

@@ -1,29 +1,35 @@
 """Templates that are safe to take from a stranger: they can compute with results and nothing else, and they end.
 
 Jinja's own sandbox keeps a text from reaching what lies behind the objects that it is given. Here it is also kept from
-running for ever and from filling the memory: steps, output and every text on the way have a limit, and what builds
-large things in one step (powers, padding, multiplied texts) is limited or missing.
+running for ever and from filling the memory: steps, output and every text on the way are counted and limited, and what
+builds large things in one step (powers, padding, multiplied texts) is looked at before or missing.
 """
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Iterator
 from functools import lru_cache
-from types import FrameType
 from typing import Any
 
 import jinja2
 from jinja2 import Template, nodes
+from jinja2.filters import do_round
 from jinja2.runtime import Context
 from jinja2.sandbox import ImmutableSandboxedEnvironment
-from jinja2.utils import Namespace
 
-from replicate.errors import ReplicateError
+from replicate.verdicts.template_budget import (
+    MOST_BITS,
+    MOST_TEXT,
+    CountedTree,
+    LimitError,
+    counted,
+    counted_output,
+    counted_pass,
+    counting,
+    demand_size,
+    fresh_budget,
+)
 
-MOST_STEPS = 100_000  # lines of a template that are carried out; ours take a few hundred
-MOST_TEXT = 1_000_000  # characters
-_MOST_BITS = 4096
+_MOST_DECIMALS = 17  # a floating-point number has no more digits
 
 _FILTERS = (
     "abs attr capitalize count d default dictsort e escape first float int items join last length list lower map max "
@@ -36,21 +42,20 @@ _TEXT_METHODS = {"capitalize", "count", "endswith", "find", "isalpha", "isdigit"
 _FORBIDDEN = (nodes.Include, nodes.Import, nodes.FromImport, nodes.Extends)
 
 
-class LimitError(ReplicateError):
-    """A template takes more than it may; the message says of what, `line` where it was (0: see the traceback)."""
-
-    line = 0
-
-
 class SafeEnvironment(ImmutableSandboxedEnvironment):
     """Jinja's sandbox with limits on everything that grows."""
 
     intercepted_binops = frozenset({"*", "**", "%", "+"})
+    counted = staticmethod(counted)
+    counted_pass = staticmethod(counted_pass)
 
     def __init__(self, **options: Any) -> None:
-        super().__init__(**options)
+        super().__init__(finalize=_written, **options)
         self.globals = {name: self.globals[name] for name in _GLOBALS}
-        self.filters = {name: self.filters[name] for name in _FILTERS.split()} | {"join": _join, "replace": _replace}
+        filters = {name: self.filters[name] for name in _FILTERS.split()}
+        filters |= {"join": _join, "replace": _replace, "round": _round}
+        self.filters = {name: counting(function) for name, function in filters.items()}
+        self.tests = {name: counting(function) for name, function in self.tests.items()}
 
     def is_safe_attribute(self, obj: Any, attr: str, value: Any) -> bool:
         """Allow what the sandbox does, of texts only methods that make none that is larger."""
@@ -69,13 +74,20 @@ class SafeEnvironment(ImmutableSandboxedEnvironment):
             raise LimitError(msg)
         if operator == "*" and sized:
             times = right if sized[0] is left else left
-            _demand(not isinstance(times, int) or len(sized[0]) * times <= MOST_TEXT)
+            demand_size(not isinstance(times, int) or len(sized[0]) * times <= MOST_TEXT)
         elif operator == "+" and len(sized) > 1:
-            _demand(len(left) + len(right) <= MOST_TEXT)
+            demand_size(len(left) + len(right) <= MOST_TEXT)
         elif operator in {"*", "**"} and isinstance(left, int) and isinstance(right, int):
             bits = left.bit_length() * max(right, 0) if operator == "**" else left.bit_length() + right.bit_length()
-            _demand(bits <= _MOST_BITS)
-        return super().call_binop(context, operator, left, right)
+            demand_size(bits <= MOST_BITS)
+        return counted(super().call_binop(context, operator, left, right))
+
+    def call(self, context: Context, function: Any, /, *arguments: Any, **named: Any) -> Any:
+        """Call a function or macro, and count what it is given and what it makes."""
+        if function in {counted, counted_pass}:
+            return function(*arguments)
+        counted((arguments, named))
+        return counted(super().call(context, function, *arguments, **named))
 
     def parsed(self, text: str) -> nodes.Template:
         """Return the tree of a template.
@@ -110,79 +122,37 @@ class SafeEnvironment(ImmutableSandboxedEnvironment):
             If it takes too many steps, or becomes too long.
         """
         template = _compiled(self, text)
-        pieces, size = [], 0
-        watched = _Watched()
-        try:
-            with watched:
-                for piece in template.generate(**variables):
-                    size += len(piece)
-                    _demand(size <= MOST_TEXT)
-                    pieces.append(piece)
-        except LimitError as error:
-            error.line = template.get_corresponding_lineno(watched.line)
-            raise
-        return "".join(pieces)
+        with fresh_budget():
+            return "".join(template.generate(**variables))
 
 
 @lru_cache(maxsize=16)
 def _compiled(environment: SafeEnvironment, text: str) -> Template:
     """Return a template; the sheets of a class fill in the same one again and again."""
-    return environment.from_string(environment.parsed(text))
+    return environment.from_string(CountedTree().visit(environment.parsed(text)))
 
 
-def _demand(holds: bool) -> None:
-    if not holds:
-        msg = f"the text becomes too large; allowed: {MOST_TEXT:,} characters, numbers of {_MOST_BITS} bits"
-        raise LimitError(msg)
+@jinja2.pass_context  # or Jinja would write constants, uncounted, when it compiles
+def _written(_context: Context, value: object) -> str:
+    return counted_output(value)
 
 
 def _join(texts: Any, separator: str = "", attribute: Any = None) -> str:
     from operator import attrgetter
 
     parts = [str(attrgetter(attribute)(text) if attribute else text) for text in texts]
-    _demand(sum(map(len, parts)) + len(separator) * len(parts) <= MOST_TEXT)
+    demand_size(sum(map(len, parts)) + len(separator) * len(parts) <= MOST_TEXT)
     return separator.join(parts)
 
 
 def _replace(text: object, old: str, new: str, count: int = -1) -> str:
     whole = str(text)
-    _demand(len(whole) + (len(whole) + 1) * len(new) <= MOST_TEXT or whole.count(old) * len(new) <= MOST_TEXT)
+    demand_size(len(whole) + (len(whole) + 1) * len(new) <= MOST_TEXT or whole.count(old) * len(new) <= MOST_TEXT)
     return whole.replace(old, new, count)
 
 
-class _Watched:
-    """Count the steps that templates take inside a ``with`` block, and look at the texts that they hold."""
-
-    def __enter__(self) -> None:
-        self._steps = self.line = 0
-        self._before = sys.gettrace()
-        sys.settrace(self._called)
-
-    def __exit__(self, *_: object) -> None:
-        sys.settrace(self._before)
-
-    def _called(self, frame: FrameType, event: Any, argument: object) -> Any:
-        if frame.f_code.co_filename == "<template>":
-            # Jinja rewrites the traceback of an error with frames of its own.
-            return None if "__jinja_exception__" in frame.f_globals else self._stepped
-        return self._before(frame, event, argument) if self._before is not None else None
-
-    def _stepped(self, frame: FrameType, event: str, _argument: object) -> Any:
-        if event != "line":
-            return self._stepped
-        self._steps += 1
-        self.line = frame.f_lineno
-        if self._steps > MOST_STEPS:
-            msg = f"the text takes more than {MOST_STEPS:,} steps; is there a loop that does not end?"
-            raise LimitError(msg)
-        for value in _texts(frame):
-            _demand(len(value) <= MOST_TEXT)
-        return self._stepped
-
-
-def _texts(frame: FrameType) -> Iterator[str]:
-    """Yield every text that a template holds in a variable of its own."""
-    held = [value for name, value in frame.f_locals.items() if name.startswith("l_")]
-    for namespace in [value for value in held if isinstance(value, Namespace)]:
-        held += object.__getattribute__(namespace, "__dict__")["_Namespace__attrs"].values()
-    return (value for value in held if isinstance(value, str))
+def _round(number: float, decimals: int = 0, method: Any = "common") -> float:
+    if abs(decimals) > _MOST_DECIMALS:
+        msg = f"the number of decimals must be at most {_MOST_DECIMALS}, not {decimals}"
+        raise ValueError(msg)
+    return do_round(number, decimals, method)
