@@ -19,7 +19,8 @@ from replicate.display.environment import versions
 from replicate.exhibits import Paper
 from replicate.report.site import Site
 from replicate.resources import templates_dir
-from replicate.run.cache import Cache, write_whole
+from replicate.run.cache import Cache
+from replicate.run.entries import write_whole
 from replicate.run.modules import distributions_used
 from replicate.run.units import units_of
 

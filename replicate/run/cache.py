@@ -1,9 +1,8 @@
 """Results kept between runs, each with what it depends on.
 
-An entry is a text file of three lines: what it is (form, unit, digest of the rest), what the result depends on, and the
-result. Nothing in it is ever run. An entry is used only if it is whole, is of this form, is that of the unit asked for
-and everything it depends on is as it was; otherwise the unit is computed again. A few entries of one unit stand beside
-each other, so that going back to an earlier state finds its results.
+An entry is used only if it is whole, is that of the unit asked for and everything it depends on is as it was; otherwise
+the unit is computed again. A few entries of one unit stand beside each other, so that going back to an earlier state
+finds its results.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ import contextlib
 import hashlib
 import json
 import os
-import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,17 +19,13 @@ from typing import Any
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Result
 from replicate.run.dependencies import Dependencies, Looked
+from replicate.run.entries import DAMAGED, NEVER, OTHER, SUFFIX, UselessError, read_entry, write_entry
 from replicate.run.limits import MOST_KEPT
 from replicate.run.storage import SCHEMA, from_text, to_text
 from replicate.run.units import Unit, fits
 
 FORM = "replicate result"
-SUFFIX = ".result"
-
-_LONGEST_HEAD = 2**16
 _MOST_STATES = 4  # entries of one unit
-
-NEVER = "it has not been computed before"
 
 
 @dataclass
@@ -64,7 +58,7 @@ class Cache:
     def state(self, paper: Paper, unit: Unit) -> str:
         """Return the digest of the result of a unit that holds, without reading it; empty if there is none."""
         for path in self._entries(unit) if self.folder is not None else ():
-            with contextlib.suppress(_UselessError, OSError, ValueError, TypeError, LookupError):
+            with contextlib.suppress(UselessError, OSError, ValueError, TypeError, LookupError):
                 text = self._text(path, paper, unit)
                 os.utime(path)  # used just now: the last to be removed
                 return hashlib.sha256(text).hexdigest()
@@ -74,14 +68,9 @@ class Cache:
         """Keep a result. A full disk or a read-only folder costs the next run time, nothing else."""
         if self.folder is None or not dependencies:
             return
-        rest = f"{json.dumps(dependencies)}\n{to_text(result)}\n".encode()
-        digest = hashlib.sha256(rest).hexdigest()
         state = hashlib.sha256(json.dumps(dependencies).encode()).hexdigest()[:16]
-        head = json.dumps({"form": FORM, "schema": SCHEMA, "unit": _named(unit), "digest": digest})
-        folder = self._folder(unit)
         with contextlib.suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            write_whole(folder / f"{state}{SUFFIX}", f"{head}\n".encode() + rest)
+            write_entry(self._folder(unit) / f"{state}{SUFFIX}", _identity(unit), dependencies, to_text(result))
             for old in self._entries(unit)[_MOST_STATES:]:
                 old.unlink(missing_ok=True)
 
@@ -122,37 +111,24 @@ class Cache:
     def _read(self, path: Path, paper: Paper, unit: Unit) -> tuple[Result | None, str]:
         try:
             return self._whole(path, paper, unit), ""
-        except _UselessError as error:
+        except UselessError as error:
             return None, str(error)
         except Exception:  # noqa: BLE001  -- whatever is wrong with it, the result is computed again
-            return None, "its entry in the cache is damaged"
+            return None, DAMAGED
 
     def _whole(self, path: Path, paper: Paper, unit: Unit) -> Result:
         result = from_text(self._text(path, paper, unit))
-        _demand(fits(result, unit, paper.exhibits[unit.exhibit]), "its entry in the cache is that of another unit")
+        if not fits(result, unit, paper.exhibits[unit.exhibit]):
+            raise UselessError(OTHER)
         return result
 
     def _text(self, path: Path, paper: Paper, unit: Unit) -> bytes:
         """Return the result of an entry as it was written, if all that it depends on is as it was."""
-        with path.open("rb") as file:
-            head = json.loads(file.readline(_LONGEST_HEAD))
-            _demand(head["form"] == FORM and head["schema"] == SCHEMA, "its entry in the cache has another form")
-            _demand(head["unit"] == _named(unit), "its entry in the cache is that of another unit")
-            rest = file.read()
-        _demand(hashlib.sha256(rest).hexdigest() == head["digest"], "its entry in the cache is damaged")
-        said, text = rest.split(b"\n", 1)
-        difference = self._looked.difference(paper, _checked(json.loads(said)))
-        _demand(not difference, difference)
+        recorded, text = read_entry(path, _identity(unit))
+        difference = self._looked.difference(paper, _checked(recorded))
+        if difference:
+            raise UselessError(difference)
         return text
-
-
-class _UselessError(Exception):
-    """An entry cannot be used; the message says why."""
-
-
-def _demand(holds: bool, otherwise: str) -> None:
-    if not holds:
-        raise _UselessError(otherwise)
 
 
 @dataclass(frozen=True)
@@ -175,6 +151,10 @@ def stored(folder: Path | None) -> Iterator[Entry]:
                     yield Entry(Path(place, name), stat.st_size, stat.st_mtime_ns)
 
 
+def _identity(unit: Unit) -> dict[str, object]:
+    return {"form": FORM, "schema": SCHEMA, "unit": _named(unit)}
+
+
 def _named(unit: Unit) -> dict[str, str]:
     return {"paper": unit.paper, "package": unit.package, "exhibit": unit.exhibit, "reading": unit.reading}
 
@@ -189,15 +169,3 @@ def _checked(value: Any) -> Dependencies:
             msg = "the dependencies are not names and digests"
             raise TypeError(msg)
     return value
-
-
-def write_whole(path: Path, content: bytes) -> None:
-    """Write a file aside and rename it: a reader, also one in another run, sees the whole file or none."""
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=".aside-")
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        Path(name).replace(path)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise

@@ -1,7 +1,6 @@
 """Texts that take long to compute and belong to no paper, kept between runs beside the results.
 
-An entry is a text file of three lines, as those of `replicate.run.cache`: what it is, what it depends on, and the text
-as JSON. Nothing in it is ever run, and one that is not whole, or whose code has changed since, is made again.
+One whose entry is not whole, or whose code has changed since, is made again.
 """
 
 from __future__ import annotations
@@ -13,8 +12,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from replicate.run.cache import NEVER, SUFFIX, write_whole
 from replicate.run.dependencies import Looked, first_difference
+from replicate.run.entries import DAMAGED, SUFFIX, UselessError, read_entry, write_entry
 
 FORM = "replicate text"
 FOLDER = "texts"
@@ -53,27 +52,24 @@ class KeptTexts:
         if text is None:
             self.report(name, why)
             text = make()
-            rest = f"{json.dumps(now)}\n{json.dumps(text)}\n".encode()
-            head = json.dumps({"form": FORM, "name": name, "digest": hashlib.sha256(rest).hexdigest()})
             with contextlib.suppress(OSError):  # a full disk costs the next run time, nothing else
-                path.parent.mkdir(parents=True, exist_ok=True)
-                write_whole(path, f"{head}\n".encode() + rest)
+                write_entry(path, _identity(name), now, json.dumps(text))
         return text
 
 
 def _read(path: Path, name: str, now: dict[str, dict[str, str]]) -> tuple[str | None, str]:
     """Return the text of an entry, or why it is of no use."""
     try:
-        first, rest = path.read_bytes().split(b"\n", 1)
-        head = json.loads(first)
-        if head != {"form": FORM, "name": name, "digest": hashlib.sha256(rest).hexdigest()}:
-            return None, "its entry in the cache is damaged"
-        recorded, text = (json.loads(line) for line in rest.splitlines())
-        difference = first_difference(recorded, now)
-    except FileNotFoundError:
-        return None, NEVER
-    except (OSError, ValueError, TypeError, AttributeError, RecursionError):
-        return None, "its entry in the cache is damaged"
+        recorded, content = read_entry(path, _identity(name))
+        difference, text = first_difference(recorded, now), json.loads(content)
+    except UselessError as error:
+        return None, str(error)
+    except (ValueError, TypeError, AttributeError, RecursionError):
+        return None, DAMAGED
     if difference or not isinstance(text, str):
-        return None, difference or "its entry in the cache is damaged"
+        return None, difference or DAMAGED
     return text, ""
+
+
+def _identity(name: str) -> dict[str, object]:
+    return {"form": FORM, "name": name}
