@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 Filter = float | tuple[tuple[float, ...], tuple[float, ...]]  # a time constant, or (num, den)
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class PID(ControllerViews):
     """A PID controller in parallel form with two degrees of freedom.
 

@@ -1,4 +1,4 @@
-"""What one asks a controller to be shown as."""
+"""What one asks a controller to be shown as, and when two are equal."""
 
 from __future__ import annotations
 
@@ -35,6 +35,16 @@ class ControllerViews:
         found = [(field, getattr(self, field.name)) for field in fields(self._pid)]
         named = {"k", "ki"}
         return [(field.name, value) for field, value in found if field.name in named or value != field.default]
+
+    def _identity(self) -> tuple[object, ...]:
+        return tuple(getattr(self, field.name) for field in fields(self._pid))
+
+    def __eq__(self, other: object) -> bool:
+        """Compare the parameters: a PI controller is a PID controller without derivative part."""
+        return self._identity() == other._identity() if isinstance(other, ControllerViews) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._identity())
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._parameters())})"

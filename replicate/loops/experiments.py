@@ -8,7 +8,7 @@ loop whose set-point takes the way of the measurement: b = c = 1, the measuremen
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import reduce
 
 import numpy as np
@@ -72,8 +72,7 @@ def respond_to(
     given = {name: _inputs(name, value) for name, value in
              (("setpoint", setpoint), ("load", load), ("output", output), ("noise", noise))}  # fmt: skip
     end = _end(loop, [item for items in given.values() for item in items], until)
-    rest = _constant(0.0, end)
-    rest.stable = loop.is_stable
+    rest = _constant(0.0, end, loop.is_stable)
     y, u = [rest], [rest]
     for name, items in given.items():
         if not items:
@@ -162,8 +161,8 @@ def _cut(signal: Signal, end: float, final: float) -> Signal:
     return type(cut)(cut.breaks, cut.coefficients, final=final, stable=signal.stable)
 
 
-def _constant(value: float, end: float) -> Signal:
-    return Signal(np.array([0.0, end]), np.array([[value, 0.0]]), final=value)
+def _constant(value: float, end: float, stable: Callable[[], bool] | None = None) -> Signal:
+    return Signal(np.array([0.0, end]), np.array([[value, 0.0]]), final=value, stable=stable)
 
 
 def _to_sine(step: Signal, sine: Sine) -> Signal:

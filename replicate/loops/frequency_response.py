@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
+from replicate.loops.records import Record
 
 if TYPE_CHECKING:
     from replicate.loops.loop import Loop
@@ -28,8 +29,8 @@ LARGEST_TURN = 0.7  # rad between neighbouring points, with which the branch of 
 DEEPEST = 40
 
 
-@dataclass(frozen=True)
-class Bode:
+@dataclass(frozen=True, eq=False)
+class Bode(Record):
     """Magnitude and phase of L(i w).
 
     Attributes

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
+from replicate.loops.function_algebra import Rescaled
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -33,10 +34,11 @@ LAG = 4.0 * np.pi  # phase beyond which nothing of a frequency response matters 
 class FunctionPlant(Plant):
     r"""A plant :math:`f(s) e^{-sL}`; made by `Plant.from_function`."""
 
+    function: Callable[[Any], Any]
+
     def __init__(self, function: Callable[[Any], Any], dead_time: float = 0.0) -> None:
         checks.function("the plant's function", function)
-        self.num = self.den = np.ones(1)
-        self.dead_time = checks.non_negative("the dead time", dead_time)
+        self._set(np.ones(1), np.ones(1), checks.non_negative("the dead time", dead_time))
         self.function = function
 
     @property
@@ -50,7 +52,6 @@ class FunctionPlant(Plant):
         return ()
 
     def _values(self, s: ArrayLike) -> ComplexArray:
-        assert self.function is not None  # noqa: S101  -- set above
         s = np.asarray(s, dtype=complex)
         with np.errstate(all="ignore"):  # values that are not finite are looked for where they matter
             values = np.array(np.asarray(self.function(s), dtype=complex) + np.zeros_like(s))
@@ -61,7 +62,6 @@ class FunctionPlant(Plant):
 
     def _vanished(self, s: ComplexArray, values: ComplexArray) -> ComplexArray:
         """Return 0 for values without a number where the function is tiny on the way there, as 1/cosh(1e3) is."""
-        assert self.function is not None  # noqa: S101  -- set above
         near = s
         for _ in range(HIGHEST):
             near = near / 2.0
@@ -88,13 +88,14 @@ class FunctionPlant(Plant):
         powers = np.exp(-2j * np.pi * np.outer(np.arange(CIRCLE_POINTS), np.arange(order + 1)) / CIRCLE_POINTS)
         return np.asarray((around @ powers / CIRCLE_POINTS).T / radius ** np.arange(order + 1)[:, None])
 
-    def __neg__(self) -> Plant:
-        """Return the plant with its sign changed."""
-        return self.rescaled(1.0, -1.0)
-
     def rescaled(self, time: float, gain: float) -> FunctionPlant:
         """Return the plant in another unit of time, its gain divided by ``gain``."""
-        return FunctionPlant(lambda s: self._values(np.asarray(s) / time) / gain, self.dead_time / time)
+        plant: FunctionPlant = self
+        dead_time = self.dead_time / time
+        if isinstance(self.function, Rescaled):
+            plant, time, gain = self.function.plant, self.function.time * time, self.function.gain * gain
+        function = plant.function if time == gain == 1.0 else Rescaled(plant, time, gain)
+        return FunctionPlant(function, dead_time)
 
     @property
     def integrators(self) -> int:
@@ -189,7 +190,7 @@ class FunctionPlant(Plant):
         raise LoopError(msg)
 
     def __repr__(self) -> str:
-        name = getattr(self.function, "__name__", "function")
+        name = getattr(self.function, "__name__", None) or repr(self.function)
         return f"Plant.from_function({name}, dead_time={checks.exact(self.dead_time)})"
 
 

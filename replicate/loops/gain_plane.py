@@ -12,12 +12,13 @@ from replicate.loops.controller import PI
 from replicate.loops.errors import LoopError
 from replicate.loops.loop import Loop
 from replicate.loops.plant import Plant
+from replicate.loops.records import Record
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class GainPlane:
+@dataclass(frozen=True, eq=False)
+class GainPlane(Record):
     """Ms of a plant under PI control.
 
     Attributes

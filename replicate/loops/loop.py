@@ -20,6 +20,7 @@ from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
 from replicate.loops.proven_pole import proven_pole_with_others
 from replicate.loops.responses import responses
+from replicate.loops.set_once import SetOnce
 from replicate.loops.signal import Response, Signal
 from replicate.loops.slow_signal import SlowSignal
 from replicate.loops.smith_predictor import SmithPredictor
@@ -34,7 +35,7 @@ CLEAR = 1e-6  # distance of a pole from the imaginary axis, relative to its modu
 SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rounding, exp(-34) = 2e-15
 
 
-class Loop(LoopViews):
+class Loop(LoopViews, SetOnce):
     """A plant under feedback by a PI or PID controller or a Smith predictor, dead time exact.
 
     Parameters

@@ -10,12 +10,13 @@ from scipy.optimize import brentq
 
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.records import Record
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Margins:
+@dataclass(frozen=True, eq=False)
+class Margins(Record):
     """The stability margins of a stable loop.
 
     Attributes

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import chebyshev, checks, series_roots
 from replicate.loops.errors import LoopError, NotSettledError
 from replicate.loops.peaks import Peak
+from replicate.loops.set_once import SetOnce
 
 Array = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ NOISE = 1e-13  # of the largest value: a move or a jump that is rounding
 SAME = 1e-12  # relative distance of two times that are one
 
 
-class Piecewise:
+class Piecewise(SetOnce):
     """A function on [0, horizon] as a piecewise Chebyshev series.
 
     Parameters
@@ -53,10 +54,15 @@ class Piecewise:
         final: float = float("nan"),
         stable: Callable[[], bool] | None = None,
     ) -> None:
-        self.breaks = np.asarray(breaks, dtype=float)
-        self.coefficients = np.asarray(coefficients, dtype=float)
+        self.breaks = np.asarray(breaks, dtype=float).view()
+        self.coefficients = np.asarray(coefficients, dtype=float).view()
+        self.breaks.flags.writeable = self.coefficients.flags.writeable = False
         self.final = float(final)
         self.stable = stable
+
+    def __getstate__(self) -> dict[str, object]:
+        """Keep of the loop only whether it is stable."""
+        return {**super().__getstate__(), "stable": self.stable and partial(bool, self.stable())}
 
     # ---- a function -----------------------------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@ from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
 from replicate.loops.plant_views import PlantViews
 from replicate.loops.polynomials import horner, horner_with_slope, taylor
+from replicate.loops.set_once import SetOnce
 
 if TYPE_CHECKING:
     import control
@@ -26,7 +27,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 
-class Plant(PlantViews):
+class Plant(PlantViews, SetOnce):
     r"""A single-input, single-output plant :math:`G(s) = G_0(s) e^{-sL}`.
 
     Parameters
@@ -55,16 +56,19 @@ class Plant(PlantViews):
         if np.ndim(np.asarray(num, dtype=object)) > 1 or np.ndim(np.asarray(den, dtype=object)) > 1:
             msg = f"the plant's coefficients must be two lists of numbers, not {np.shape(num)} / {np.shape(den)} arrays"
             raise LoopError(msg)
-        self.num: Array = checks.coefficients("the plant's numerator", num)
-        self.den: Array = checks.coefficients("the plant's denominator", den)
-        self.dead_time = checks.non_negative("the dead time", dead_time)
-        if self.num.size > self.den.size:
-            msg = f"the plant must be proper: numerator degree {self.num.size - 1} exceeds denominator degree {self.den.size - 1}"  # noqa: E501
+        top = checks.coefficients("the plant's numerator", num)
+        bottom = checks.coefficients("the plant's denominator", den)
+        if top.size > bottom.size:
+            msg = f"the plant must be proper: numerator degree {top.size - 1} exceeds denominator degree {bottom.size - 1}"  # noqa: E501
             raise LoopError(msg)
-        self.num, self.den = self.num / self.den[0], self.den / self.den[0]
+        self._set(top / bottom[0], bottom / bottom[0], checks.non_negative("the dead time", dead_time))
         if not (np.isfinite(self.num).all() and np.isfinite(self.den).all() and self.num.any()):
             msg = "the plant's coefficients, divided by the leading one of the denominator, exceed the range of floats"
             raise LoopError(msg)
+
+    def _set(self, num: Array, den: Array, dead_time: float) -> None:
+        self.num, self.den, self.dead_time = num, den, dead_time
+        num.flags.writeable = den.flags.writeable = False
 
     @classmethod
     def foptd(cls, gain: float, time_constant: float, dead_time: float) -> Plant:
@@ -279,8 +283,7 @@ class Plant(PlantViews):
         shift = time ** np.arange(self.den.size, dtype=float)
         offset = self.den.size - self.num.size
         scaled = Plant.__new__(Plant)
-        scaled.num, scaled.den = self.num * shift[offset:] / gain, self.den * shift
-        scaled.dead_time = self.dead_time / time
+        scaled._set(self.num * shift[offset:] / gain, self.den * shift, self.dead_time / time)  # noqa: SLF001  -- its own
         return scaled
 
     def __neg__(self) -> Plant:

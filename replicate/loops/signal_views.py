@@ -1,4 +1,4 @@
-"""What one asks a response to be shown as."""
+"""What one asks a response to be shown as, and when two are equal."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, cast
 from numpy.typing import ArrayLike
 
 from replicate.loops.frames import signal_frame
+from replicate.loops.records import comparable
 from replicate.loops.summary import SignalSummary, summarize_signal
 from replicate.loops.total_variation import total_variation
 
@@ -46,6 +47,19 @@ class SignalViews:
             Times within the horizon; by default 501 equally spaced ones.
         """
         return signal_frame(self._signal, times)
+
+    @property
+    def _identity(self) -> tuple[object, ...]:
+        signal = self._signal
+        shape = signal.coefficients.shape
+        return signal.breaks.tobytes(), signal.coefficients.tobytes(), shape, comparable(signal.final)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare pieces and final value."""
+        return self._identity == other._identity if isinstance(other, SignalViews) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._identity)
 
     def __repr__(self) -> str:
         signal = self._signal

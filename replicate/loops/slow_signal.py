@@ -46,8 +46,10 @@ class SlowSignal(Signal):
     def __mul__(self, factor: float) -> SlowSignal:
         """Scale the response."""
         scaled = super().__mul__(factor)
-        scaled.total_error = self.total_error * float(factor)
-        return scaled
+        return SlowSignal(
+            scaled.breaks, scaled.coefficients, final=scaled.final, stable=self.stable,
+            total_error=self.total_error * float(factor),
+        )  # fmt: skip
 
     __rmul__ = __mul__
 

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
+from replicate.loops.function_algebra import Product, Sum
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -35,15 +36,14 @@ class SumPlant(Plant):
         roots: list[complex] = []
         for part in ordered:
             roots = _union(roots, _roots(part.den))
-        self.common_den: Array = _polynomial(roots)
+        shared = all(part.den.size == len(roots) + 1 for part in ordered)
+        self.common_den: Array = ordered[0].den if shared else _polynomial(roots)
         self.nums: list[Array] = [
             np.asarray(np.polymul(part.num, _polynomial(_difference(roots, _roots(part.den)))), dtype=float)
             if part.den.size < self.common_den.size
             else part.num
             for part in ordered
         ]
-        if all(part.den.size == self.common_den.size for part in ordered):
-            self.common_den = ordered[0].den
         self.dead_times: Array = np.array([part.dead_time for part in ordered])
 
     # the coefficients of a single rational part do not exist
@@ -207,14 +207,15 @@ def sum_of(plants: Sequence[Plant]) -> Plant:
         msg = "a plant must have at least one term (num, den, dead_time)"
         raise LoopError(msg)
     if any(not plant.parts for plant in plants):
-        return _function_sum(plants)
+        total = Sum(tuple(plants))
+        return Plant.from_function(total, total.dead_time)
     merged: list[Plant] = []
     for plant in sorted((part for whole in plants for part in whole.parts), key=lambda p: p.dead_time):
         last = merged[-1] if merged else None
         if last is not None and plant.dead_time - last.dead_time <= SAME * plant.dead_time:
             merged.pop()
-            total = _rational_sum(last, plant)
-            merged += [] if total is None else [total]
+            together = _rational_sum(last, plant)
+            merged += [] if together is None else [together]
         else:
             merged.append(plant)
     if not merged:
@@ -226,9 +227,7 @@ def sum_of(plants: Sequence[Plant]) -> Plant:
 def product_of(first: Plant, second: Plant) -> Plant:
     """Return the plants in series."""
     if not (first.parts and second.parts):
-        return Plant.from_function(
-            lambda s: first.delay_free(s) * second.delay_free(s), first.dead_time + second.dead_time
-        )
+        return Plant.from_function(Product(first, second), first.dead_time + second.dead_time)
     return sum_of(
         [
             Plant(np.polymul(p.num, q.num), np.polymul(p.den, q.den), p.dead_time + q.dead_time)
@@ -236,16 +235,6 @@ def product_of(first: Plant, second: Plant) -> Plant:
             for q in second.parts
         ]
     )
-
-
-def _function_sum(plants: Sequence[Plant]) -> Plant:
-    shortest = min(plant.dead_time for plant in plants)
-
-    def function(s: ComplexArray) -> ComplexArray:
-        parts = [plant.delay_free(s) * np.exp(-s * (plant.dead_time - shortest)) for plant in plants]
-        return np.asarray(sum(parts[1:], parts[0]))
-
-    return Plant.from_function(function, shortest)
 
 
 def _rational_sum(first: Plant, second: Plant) -> Plant | None:

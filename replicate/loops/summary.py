@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from replicate.loops.errors import LoopError
+from replicate.loops.records import Record
 from replicate.loops.total_variation import total_variation
 
 if TYPE_CHECKING:
@@ -21,8 +22,8 @@ NAN = float("nan")
 ROUNDING = 5e-14  # a fraction of the final value that only rounding errors have
 
 
-@dataclass(frozen=True)
-class SignalSummary:
+@dataclass(frozen=True, eq=False)
+class SignalSummary(Record):
     """The metrics of a response; ``nan`` where one does not exist (no final value, not settled, unstable).
 
     Attributes
@@ -74,8 +75,8 @@ class SignalSummary:
         return html_table(_items(self))
 
 
-@dataclass(frozen=True)
-class LoopSummary:
+@dataclass(frozen=True, eq=False)
+class LoopSummary(Record):
     """A loop at a glance; ``nan`` where an unstable loop has no such thing.
 
     Attributes

@@ -57,7 +57,6 @@ class LoopColumns:
         """Return the columns of a rational plant with dead time."""
         time, gain = plant.dead_time, Units.of(plant).gain
         scaled = plant.rescaled(time, gain)
-        scaled.dead_time = 1.0
         return cls(
             scaled, Units(time, gain).controller(form), k * gain, ki * (gain * time), kd * (gain / time), b, time, gain
         )  # fmt: skip

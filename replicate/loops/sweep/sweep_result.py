@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
+from replicate.loops.records import Record
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,8 +19,8 @@ if TYPE_CHECKING:
 GRID, PAIRWISE = "grid", "pairwise"
 
 
-@dataclass(frozen=True)
-class SweepResult:
+@dataclass(frozen=True, eq=False)
+class SweepResult(Record):
     """The metrics of all loops of a sweep.
 
     ``result["overshoot"]`` is the array of a metric; ``result["stable"]`` is always there.
