@@ -16,20 +16,41 @@ from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.matches import reading_matches
-from replicate.verdicts.strength import LEVEL, Strength, at_least, choices_of, strengths
+from replicate.verdicts.strength import LEVEL, PARTS, Strength, as_many_digits, choices_of, strengths
 from replicate.verdicts.tables import TableJudge
 
 ROWS, COLUMNS = tuple("ABCDEFGH"), ("x", "y", "z")
 
 
-@given(odds=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=8), count=st.integers(0, 8))
-def test_the_number_of_accidents_against_all_outcomes(odds: list[float], count: int) -> None:
+@given(parts=st.lists(st.tuples(st.integers(0, 4 * PARTS), st.booleans()), min_size=1, max_size=8))
+def test_the_digits_of_accidents_against_all_outcomes(parts: list[tuple[int, bool]]) -> None:
+    goal = sum(part for part, met in parts if met)
+    odds = [10.0 ** (-part / PARTS) for part, _ in parts]
     expected = sum(
         prod(p if happens else 1.0 - p for p, happens in zip(odds, outcome, strict=True))
-        for outcome in product((False, True), repeat=len(odds))
-        if sum(outcome) >= count
+        for outcome in product((False, True), repeat=len(parts))
+        if sum(part for (part, _), happens in zip(parts, outcome, strict=True) if happens) >= goal
     )
-    assert at_least(count, odds) == pytest.approx(expected, abs=1e-12)
+    found = as_many_digits([part / PARTS for part, met in parts if met], [part / PARTS for part, _ in parts])
+    assert found == pytest.approx(expected, rel=1e-9, abs=1e-15)
+
+
+def test_a_long_number_explains_more_than_a_short_one() -> None:
+    table = Table("table-1", "table", "T", rows=("A", "B"), columns=("x",))
+    printed = {("A", "x"): PrintedValue("6.9684", "A", "x"), ("B", "x"): PrintedValue("6.9", "B", "x")}
+    for id in (AS_WRITTEN, "long", "short"):
+        table.reading(id, "R")(lambda: None)
+    off = {(row, "x"): 7.9 for row in "AB"}
+    given_: dict[str, dict[Key, float | str | None]] = {
+        AS_WRITTEN: dict(off),
+        "long": {**off, ("A", "x"): 6.9684, ("B", "x"): 8.0},
+        "short": {**off, ("A", "x"): 8.0, ("B", "x"): 6.9},
+    }
+    found = strengths(table, {id: reading_matches(table, id, printed, cells) for id, cells in given_.items()})
+    assert (found["long"].met, found["short"].met) == (1, 1)
+    assert found["long"].digits > found["short"].digits + 2.9
+    assert found["long"].strong
+    assert not found["short"].strong
 
 
 def judged(prints: np.ndarray, readings: list[np.ndarray], tried: int = 1) -> dict[str, Strength]:

@@ -1,4 +1,4 @@
-r"""How strong a match is: the chance that a reading that explains nothing would meet as many printed values.
+r"""How strong a match is: the chance that a reading that explains nothing would explain as many printed digits.
 
 A value that comes about by accident is taken to lie, with equal probability, as far from the print on either side as
 the farthest of the readings of the exhibit that give another number, but at most as far as the print is from zero. It
@@ -9,10 +9,11 @@ meets the print with the probability
     p = \frac{u + r}{2 w},
 
 with the unit :math:`u` of the last printed digit, the length :math:`r` of the value's range over printed inputs, and
-that distance :math:`w`. The number of values met by accident is then a sum of independent events, and the chance of at
-least as many as were met follows by convolution. A reading that was chosen among :math:`k` alternatives had :math:`k`
-chances, :math:`1 - (1 - P)^k` together. A reading other than as written is judged by the values in which it differs
-from that one.
+that distance :math:`w`, and a value that is met explains :math:`-\log_{10} p` digits: a long number says more than a
+short one. The digits met by accident are then a sum of independent events, and the chance :math:`P` of at least as many
+as were met follows by convolution. A reading that was chosen among :math:`k` alternatives had :math:`k` chances,
+:math:`1 - (1 - P)^k` together. A reading other than as written is judged by the values in which it differs from that
+one.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+
+import numpy as np
 
 from replicate.exhibits import AS_WRITTEN, Table
 from replicate.exhibits.printed import Key
@@ -29,6 +32,7 @@ LEVEL = 0.01  # a reading whose matches are less likely than this to be accident
 _FEWEST_NEIGHBOURS = 3  # cells of one quantity, which can tell of it
 _SAME = 1e-9  # relative: readings that give the same number
 _MEETS = frozenset({"equal", "consistent"})
+PARTS = 100  # of a digit: how finely digits are counted
 
 
 @dataclass(frozen=True)
@@ -44,7 +48,7 @@ class Strength:
     choices
         How many alternatives were tried.
     chance
-        The chance that as good a match arises by accident.
+        The chance that one of them explains as many digits by accident.
     lines
         By quantity: values compared, and values met.
     """
@@ -110,6 +114,7 @@ def _strength(table: Table, reading: str, computed: Mapping[str, Mapping[Key, Co
     cells = {key: one for key, one in computed[reading].items() if _judged(one, computed.get(AS_WRITTEN, {}).get(key))}
     odds = {key: _odds(key, reading, computed) for key in cells}
     met = {key for key, one in cells.items() if one.match.kind in _MEETS}
+    digits = {key: -math.log10(p) for key, p in odds.items()}
     choices = choices_of(table, reading)
     lines: dict[str, list[Key]] = {}
     for key in cells:
@@ -117,9 +122,9 @@ def _strength(table: Table, reading: str, computed: Mapping[str, Mapping[Key, Co
     return Strength(
         len(cells),
         len(met),
-        sum(-math.log10(odds[key]) for key in met),
+        sum(digits[key] for key in met),
         choices,
-        _repeated(at_least(len(met), list(odds.values())), choices),
+        _repeated(as_many_digits([digits[key] for key in met], list(digits.values())), choices),
         {quantity: (len(keys), len(met.intersection(keys))) for quantity, keys in lines.items()},
     )
 
@@ -163,20 +168,36 @@ def _odds(key: Key, reading: str, computed: Mapping[str, Mapping[Key, Computed]]
     return min(window / (2 * width), 1.0) if width else 1.0
 
 
-def at_least(count: int, odds: Sequence[float]) -> float:
-    """Return the probability that at least `count` of independent events happen.
+def as_many_digits(met: Sequence[float], possible: Sequence[float]) -> float:
+    """Return the probability that independent accidents explain at least as many digits as were explained.
+
+    Parameters
+    ----------
+    met
+        The digits of each value that was met.
+    possible
+        The digits d of every value; an accident meets it with the probability 10^-d.
 
     Examples
     --------
-    >>> at_least(2, [0.5, 0.5, 0.5]), at_least(0, [0.1])
-    (0.5, 1.0)
+    One of two numbers of two digits was met; then a number of four digits beside one of one digit.
+
+    >>> round(as_many_digits([2.0], [2.0, 2.0]), 6), round(as_many_digits([4.0], [4.0, 1.0]), 6)
+    (0.0199, 0.0001)
     """
-    happened = [1.0] + [0.0] * len(odds)  # by number of events
-    for place, p in enumerate(odds, 1):
-        for number in range(place, 0, -1):
-            happened[number] = happened[number] * (1.0 - p) + happened[number - 1] * p
-        happened[0] *= 1.0 - p
-    return min(math.fsum(happened[count:]), 1.0)
+    goal = sum(_parts(digits) for digits in met)
+    places = np.arange(goal + 1)
+    reached = np.zeros(goal + 1)  # the probability of so many parts of digits, in the last place of at least so many
+    reached[0] = 1.0
+    for digits in possible:
+        chance = 10.0**-digits
+        moved = np.minimum(places + _parts(digits), goal)
+        reached = (1.0 - chance) * reached + np.bincount(moved, chance * reached, goal + 1)
+    return min(float(reached[goal]), 1.0)
+
+
+def _parts(digits: float) -> int:
+    return round(PARTS * digits)
 
 
 def _repeated(chance: float, choices: int) -> float:

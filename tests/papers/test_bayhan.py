@@ -18,8 +18,11 @@ from scipy import linalg, optimize
 from replicate.exhibits import Claim, Claims
 from replicate.papers.bayhan import paper, pole_assignment
 from replicate.papers.bayhan.claims_examples import UNSTABLE
+from replicate.papers.bayhan.grids_tried import counts
 from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process, competing_rules, controllers
 from replicate.papers.bayhan.readings import AUTHORS, GAINS, TEXT, Assumption
+from replicate.papers.bayhan.table_2 import table_2
+from replicate.papers.bayhan.toolchain import GRIDS_TRIED
 
 K, L, TAU, A, S = sp.symbols("K L tau a s", positive=True)
 
@@ -365,3 +368,12 @@ def test_cohen_coons_integral_time_scales_with_time_only_when_corrected(claims: 
     assert finding.verdict == "undecided"
     assert finding.value == pytest.approx(1.0)  # L/tau and K are the same
     assert claims["residue-hurwitz"].check().verdict == "holds"
+
+
+def test_of_all_sample_grids_that_were_tried_one_meets_most_of_the_tables() -> None:
+    met = counts().drop(columns="of")
+    assert met.size == math.prod(map(len, GRIDS_TRIED.values()))
+    assert met.loc["1000 steps, 2 decays", "again 1.1"] == met.to_numpy().max()
+    assert sorted(met.to_numpy().ravel())[-2] < 0.7 * met.to_numpy().max()  # and none of the others nearly as many
+    tried = table_2.readings["authors"].tried
+    assert all(tried[choice] == len(values) for choice, values in GRIDS_TRIED.items())

@@ -24,6 +24,7 @@ paper = Paper(
         "fig_4",
         "fig_5",
         "evidence",
+        "grids_tried",
         "claims",
         "claims_formulas",
         "claims_choice_of_a",

@@ -121,13 +121,14 @@ def matches() -> pd.DataFrame:
             computed = assumption.rows(process, table.rows)
             printed = paper.printed_cells(table.id)
             pairs = [(text, computed[row][column]) for (row, column), text in printed.items()]
-            equal.append(sum(_equal(text, value) for text, value in pairs))
-            near += sum(_equal(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs)
+            equal.append(sum(agree(text, value) for text, value in pairs))
+            near += sum(agree(text, value) or abs(value - float(text)) <= 0.01 * float(text) for text, value in pairs)
             cells += len(pairs)
         rows[assumption.id] = [*equal, sum(equal), near, cells]
     return match_count.frame(rows)
 
 
-def _equal(printed: str, computed: float) -> bool:
+def agree(printed: str, computed: float) -> bool:
+    """Whether a computed value agrees with a printed one in all six digits."""
     # A printed 0 is an overshoot, a fraction: it is taken as zero to six decimals.
     return six_digits(printed) == six_digits(computed) if float(printed) else abs(computed) < 0.5e-6

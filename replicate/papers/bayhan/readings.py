@@ -10,7 +10,7 @@ from replicate.exhibits import AS_WRITTEN, Table
 from replicate.loops import PI
 from replicate.loops.tune import PRINTED
 from replicate.papers.bayhan.processes import Convention, Process, controllers, specifications
-from replicate.papers.bayhan.toolchain import sampled_specifications
+from replicate.papers.bayhan.toolchain import GRIDS_TRIED, sampled_specifications
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,7 +81,9 @@ def add_readings(table: Table, process: Process) -> None:
         def compute(assumption: Assumption = assumption) -> pd.DataFrame:
             return table.frame(assumption.rows(process, table.rows))
 
-        tried = {} if assumption is TEXT else {"integral gain": 2, "method and grid": 2, "Cohen–Coon rule": 2}
+        tried = {} if assumption is TEXT else {"integral gain": 2, "exact or sampled": 2, "Cohen–Coon rule": 2}
+        if assumption is AUTHORS:
+            tried |= {choice: len(values) for choice, values in GRIDS_TRIED.items()}
         table.reading(assumption.id, assumption.title, assumption.note, tried=tried)(compute)
 
 

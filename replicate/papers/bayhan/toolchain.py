@@ -9,31 +9,63 @@ settling time just read. The metrics are samples; nothing is interpolated.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cache
 
 from replicate.loops import PI
-from replicate.loops.emulation import SampledResponse, dominant_pole, pade_loop, sampled_step
+from replicate.loops.emulation import SampledResponse, StateSpace, dominant_pole, pade_loop, sampled_step
 from replicate.papers.bayhan.processes import SPECIFICATIONS, Process
 
-STEPS = 1000
+
+@dataclass(frozen=True)
+class SampleGrid:
+    """On which instants a response is sampled.
+
+    Attributes
+    ----------
+    steps
+        The number of intervals.
+    decays
+        The horizon, in times that the dominant mode takes to decay to 2 %.
+    again
+        The horizon of a second look at a response that settles in the first half, in settling times; 0: none is taken.
+    """
+
+    steps: int = 1000
+    decays: float = 2.0
+    again: float = 1.1
+
+
+AUTHORS_GRID = SampleGrid()
+GRIDS_TRIED: dict[str, tuple[float, ...]] = {
+    "samples": (500, 1000, 2000),
+    "horizon": (1.5, 2.0, 2.5, 3.0),
+    "second look": (0.0, 1.0, 1.1, 1.2),
+}
 
 
 @cache
-def sampled_response(process: Process, k: float, ki: float) -> SampledResponse | None:
-    """Return the unit step response on the authors' grid; ``None`` if the Padé loop is unstable."""
+def _pade_loop(process: Process, k: float, ki: float) -> tuple[StateSpace, float]:
+    """Return the loop with the Padé dead time (7), and how fast its dominant mode decays."""
     loop = pade_loop(process.plant, PI(k=k, ki=ki), order=2)
-    decay = -dominant_pole(loop).real
+    return loop, -dominant_pole(loop).real
+
+
+@cache
+def sampled_response(process: Process, k: float, ki: float, grid: SampleGrid = AUTHORS_GRID) -> SampledResponse | None:
+    """Return the unit step response on the samples of a grid; ``None`` if the Padé loop is unstable."""
+    loop, decay = _pade_loop(process, k, ki)
     if decay <= 0.0:
         return None
-    response = sampled_step(loop, 2.0 * math.log(50.0) / decay, STEPS)
-    if response.settling_index() < STEPS // 2:
-        response = sampled_step(loop, 1.1 * response.settling_time(), STEPS)
+    response = sampled_step(loop, grid.decays * math.log(50.0) / decay, grid.steps)
+    if grid.again and response.settling_index() < grid.steps // 2:
+        response = sampled_step(loop, grid.again * response.settling_time(), grid.steps)
     return response
 
 
-def sampled_specifications(process: Process, controller: PI) -> dict[str, float]:
-    """Return overshoot (a fraction) and times as samples of the authors' grid; ``nan`` if unstable."""
-    response = sampled_response(process, controller.k, controller.ki)
+def sampled_specifications(process: Process, controller: PI, grid: SampleGrid = AUTHORS_GRID) -> dict[str, float]:
+    """Return overshoot (a fraction) and times as samples of a grid; ``nan`` if unstable."""
+    response = sampled_response(process, controller.k, controller.ki, grid)
     if response is None:
         return dict.fromkeys(SPECIFICATIONS, math.nan)
     return {
