@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from replicate.loops import checks
 from replicate.loops.controller import PID
 from replicate.loops.loop import Loop
+from replicate.loops.one_thread import one_thread
 from replicate.loops.plant import Plant
 from replicate.loops.responses import responses
 from replicate.loops.signal import Signal
@@ -40,10 +41,11 @@ def step_responses(
         return []
     until = checks.positive("the horizon until", until, allowed="a finite time > 0")
     units = Units.of(plant, controllers[0])
-    found = responses(
-        units.plant(plant), [units.controller(c) for c in controllers], until / units.time,
-        setpoint=setpoint, load=load * units.gain,
-    )  # fmt: skip
+    with one_thread():
+        found = responses(
+            units.plant(plant), [units.controller(c) for c in controllers], until / units.time,
+            setpoint=setpoint, load=load * units.gain,
+        )  # fmt: skip
     signals = []
     for controller, (breaks, y, _) in zip(controllers, found, strict=True):
         loop = Loop(plant, controller)

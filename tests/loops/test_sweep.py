@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from replicate.loops import PI, PID, Loop, LoopError, Plant, Signal, SweepResult, sweep
+from replicate.loops.sweep import running
 from replicate.loops.sweep.metric_names import ALLOWED
 from replicate.loops.total_variation import total_variation
 
@@ -273,3 +275,22 @@ def test_what_is_not_a_sweep_says_so_in_one_line(wrong: str) -> None:
 def test_the_names_promised_are_allowed() -> None:
     assert {*NAMES, "stable"} <= set(ALLOWED)
     assert isinstance(sweep(FOPTD, PI(0.5), metrics="stable"), SweepResult)
+
+
+def test_a_sweep_uses_one_thread_and_leaves_their_number_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    def threads() -> set[int]:
+        return {library["num_threads"] for library in threadpool_info() if library["user_api"] == "blas"}
+
+    seen: list[set[int]] = []
+    compute = running._compute
+
+    def watched(*given: Any) -> None:
+        seen.append(threads())
+        compute(*given)
+
+    monkeypatch.setattr(running, "_compute", watched)
+    with threadpool_limits(2, user_api="blas"):
+        before = threads()
+        sweep(FOPTD, np.array([[0.5, 0.4], [0.6, 0.4]]), metrics="overshoot")
+        assert seen == [{1}]
+        assert threads() == before

@@ -1,4 +1,4 @@
-"""A sweep in blocks: loops of one plant and one form of controller, few enough to fit into the cache of a processor."""
+"""A sweep in blocks: loops of one plant and one form of controller, few enough to be kept in memory at once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from replicate.loops.sweep.controller_table import ControllerTable
 
 Places = NDArray[np.intp]
 
-MOST = 2048  # loops of a block: enough to make the price of a call small, few enough for the cache
+MOST = 4096  # loops of a block: enough to make the price of a call small, few enough for memory
 
 
 @dataclass(frozen=True)

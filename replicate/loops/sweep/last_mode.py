@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 Flags = NDArray[np.bool_]
 
-SUSPECTED = 4e-12  # residual of the recurrence, of the largest deviation, with which a pole is looked for
+SUSPECTED = 2e-11  # residual of the recurrence, of the largest deviation, with which a pole is looked for
 PROVEN = 1e-12  # residual of the fit with which it is the last one
 
 
@@ -139,28 +139,21 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
     band, high
         What an oscillation must not exceed any more: the settling band, and the highest deviation so far.
     """
-    count, found = len(loops), LastModes.none(len(loops))
-    splits = len(recent) // 3
-    if count == 0:
+    found, splits = LastModes.none(len(loops)), len(recent) // 3
+    if splits == 0 or len(loops) == 0:
         return found
-    if len(recent) < 3:
-        return found
-    oldest, middle, newest = (
-        recent[i] if splits == 1 else np.concatenate(recent[i * splits : (i + 1) * splits]) for i in range(3)
-    )
-    chosen = _in_sight(oldest, middle, newest, size)
-    # every second node is plenty: what is left of other modes is smooth
-    oldest, middle, newest = (values[::2, chosen] for values in (oldest, middle, newest))
-    start, oscillates = _starts(oldest, middle, newest, size[chosen])
+    start, oscillates = _starts(recent, splits, size)
     # an oscillation that is still outside the band will be looked at again
-    kept = np.nonzero(np.isfinite(start) & ~(oscillates & (np.abs(newest[-1]) > band[chosen])))[0]
-    chosen, start, oscillates, middle, newest = (
-        chosen[kept], start[kept], oscillates[kept], middle[:, kept], newest[:, kept],
-    )  # fmt: skip
+    chosen = np.nonzero(np.isfinite(start) & ~(oscillates & (np.abs(recent[-1][-1]) > band)))[0]
     if chosen.size == 0:
         return found
-    s, part = start, loops.take(chosen)
-    nodes = np.concatenate([(i + 0.5 * (chebyshev.nodes(DEGREE) + 1.0)) / splits for i in range(splits)])[::2]
+    # every second node is plenty: what is left of other modes is smooth
+    middle, newest = (
+        np.concatenate([values[::2, chosen] for values in recent[i * splits : (i + 1) * splits]]) for i in (1, 2)
+    )
+    inside = 0.5 * (chebyshev.nodes(DEGREE)[::2] + 1.0)
+    nodes = np.concatenate([(i + inside) / splits for i in range(splits)])
+    s, oscillates, part = start[chosen], oscillates[chosen], loops.take(chosen)
     with np.errstate(all="ignore"):
         for _ in range(3):
             s = s - part.newton_step(s)
@@ -175,28 +168,31 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
     return found
 
 
-def _in_sight(oldest: Array, middle: Array, newest: Array, size: Array) -> Places:
-    """Return the columns in which the recurrence holds at a few nodes: all the others have more modes."""
-    rows = np.linspace(0, oldest.shape[0] - 1, 4).astype(int)
-    start, _ = _starts(oldest[rows], middle[rows], newest[rows], size)
-    return np.asarray(np.nonzero(np.isfinite(start))[0])
+def _starts(recent: Sequence[Array], splits: int, size: Array) -> tuple[ComplexArray, Flags]:
+    """Return approximate poles, ``nan`` where no last mode is in sight, and whether each is one of a pair.
 
-
-def _starts(oldest: Array, middle: Array, newest: Array, size: Array) -> tuple[ComplexArray, Flags]:
-    """Return approximate poles, ``nan`` where no last mode is in sight, and whether each is one of a pair."""
+    The recurrence is solved at two nodes of a dead time and must hold at two others; the fit will look at more.
+    """
+    one, two, *others = (
+        [recent[i * splits + piece][node] for i in range(3)]
+        for piece, node in (divmod(row, DEGREE + 1) for row in np.linspace(0, splits * (DEGREE + 1) - 1, 4).astype(int))
+    )
     limit = SUSPECTED * size
-    aa, ac = _dot(middle, middle), _dot(middle, newest)
     with np.errstate(all="ignore"):
-        ratio = ac / aa
-        lone = (np.max(np.abs(newest - ratio * middle), axis=0) <= limit) & (ratio > 0.0) & (ratio < 1.0)
-        bb, ab, bc = _dot(oldest, oldest), _dot(middle, oldest), _dot(oldest, newest)
-        determinant = aa * bb - ab**2
-        p, q = (bb * ac - ab * bc) / determinant, (aa * bc - ab * ac) / determinant
-        pair = ~lone & (np.max(np.abs(newest - p * middle - q * oldest), axis=0) <= limit)
-        discriminant = p**2 + 4.0 * q
-        pair &= discriminant < 0.0
-        factor = np.where(lone, ratio, 0.5 * (p + 1j * np.sqrt(np.maximum(-discriminant, 0.0))))
-        start = np.where(lone | pair, np.log(factor), np.nan)
+        ratio = one[2] / one[1]
+        lone = (ratio > 0.0) & (ratio < 1.0)
+        for _, middle, newest in (two, *others):
+            lone &= np.abs(newest - ratio * middle) <= limit
+        determinant = one[1] * two[0] - two[1] * one[0]
+        half = 0.5 * (one[2] * two[0] - two[2] * one[0]) / determinant
+        q = (one[1] * two[2] - two[1] * one[2]) / determinant
+        turned = -q - half * half
+        pair = ~lone & (turned > 0.0)
+        for oldest, middle, newest in others:
+            pair &= np.abs(newest - 2.0 * half * middle - q * oldest) <= limit
+        start = np.full(size.size, complex(np.nan))
+        start[lone] = np.log(ratio[lone])
+        start[pair] = np.log(half[pair] + 1j * np.sqrt(turned[pair]))
     return start, pair
 
 

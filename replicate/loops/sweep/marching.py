@@ -15,22 +15,21 @@ from numpy.typing import NDArray
 
 from replicate.loops import chebyshev
 from replicate.loops.chain import Chain, build_chain
-from replicate.loops.method_of_steps import piece_map
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.last_mode import LastModes, last_modes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
+from replicate.loops.sweep.piece_law import POINTS, WEIGHTS, PieceLaw
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-POINTS = DEGREE + 1
-WEIGHTS = chebyshev.integration(DEGREE)[-1]
-LAST_ROWS = chebyshev.values_to_coefficients(DEGREE)[-2:]
+SPARSE = 7  # every so many nodes show how large a signal is
 AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
-RESOLVED = 1e-12  # size of the last coefficients of a control signal, relative to its largest value
+RESOLVED = 1e-12  # size of the last coefficients of the plant's input, relative to its largest value
 STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
 FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
+AT_ONCE = 64  # pieces for which there is memory at once: many small pieces of it would be asked for again and again
 WORTH = 0.1  # share of loops that must have left before the others move together
 
 
@@ -57,10 +56,12 @@ class Piece:
     area: Array
     control: Array | None = None
 
-    @classmethod
-    def of(cls, columns: Places, values: Array, control: Array | None = None) -> Piece:
-        """Return the record of a piece."""
-        return cls(columns, values, values.min(axis=0), values.max(axis=0), WEIGHTS @ values, control)
+    def cut(self, share: float) -> Piece:
+        """Return the record of the first part of the piece."""
+        first = _restriction(share)
+        values = first @ self.values
+        control = None if self.control is None else first @ self.control
+        return Piece(self.columns, values, values.min(axis=0), values.max(axis=0), WEIGHTS @ values, control)
 
 
 @dataclass
@@ -185,10 +186,7 @@ class _March:
             state.left[:] = True
         state.keep(np.zeros(0, dtype=np.intp), found)
         if share < 1.0 and found.pieces:
-            last = found.pieces[-1]
-            cut = _restriction(share)
-            control = None if last.control is None else cut @ last.control
-            found.pieces[-1] = Piece.of(last.columns, cut @ last.values, control)
+            found.pieces[-1] = found.pieces[-1].cut(share)
         if self.control:
             with np.errstate(all="ignore"):
                 found.control_modes = found.modes.times(-self.loops.feedback(found.modes.pole))
@@ -196,53 +194,68 @@ class _March:
 
 
 class _Moving:
-    """The loops that still move: all that the next piece needs, each array with a column for each loop."""
+    """The loops that still move: all that the next piece needs, each array with a column for each loop.
+
+    What enters a piece is one array: the plant's input one dead time ago at the nodes, the state, the set-point. Those
+    of the pieces of a dead time wait in ``entering``; as soon as one has been used, its rows of the plant's input are
+    overwritten with those that leave.
+    """
 
     def __init__(self, march: _March, splits: int, columns: Places) -> None:
         chain = march.chain
         self.march, self.splits, self.columns = march, splits, columns
         self.loops = march.loops.take(columns)
-        self.law = _Law.of(self.loops, chain, 1.0 / splits, march.setpoint)
+        self.law = PieceLaw.of(self.loops, chain, 1.0 / splits, march.setpoint, march.load)
         self.final, self.band = march.final[columns], march.band[columns]
-        self.history = deque(np.zeros((POINTS, columns.size)) for _ in range(splits))
+        self.state = np.repeat(chain.start[:, None] * march.setpoint, columns.size, axis=1)
+        self.entering = deque(np.zeros((POINTS + chain.e.size + 1, columns.size)) for _ in range(splits))
+        for inputs in self.entering:
+            inputs[-1] = march.setpoint
         self.recent: deque[Array] = deque(maxlen=3 * splits)
-        self.inputs = np.zeros((POINTS + chain.e.size + 1, columns.size))
-        self.inputs[POINTS:-1], self.inputs[-1] = chain.start[:, None] * march.setpoint, march.setpoint
         self.impulse = self.law.gains[3] * chain.setpoint_impulse * march.setpoint
-        self.size, self.high, self.control_size, self.tail = (np.zeros(columns.size) for _ in range(4))
+        self.size, self.high, self.input_size, self.tail = (np.zeros(columns.size) for _ in range(4))
         self.left = np.zeros(columns.size, dtype=bool)
+        self.room: list[Array] = []
 
     def advance(self, index: int) -> Piece:
         """Compute the next piece."""
-        march, chain, inputs = self.march, self.march.chain, self.inputs
-        inputs[:POINTS] = self.history.popleft()
-        if index >= self.splits:
-            if march.load:
-                inputs[:POINTS] += march.load
-            if index % self.splits == 0 and self.impulse.any():
-                inputs[POINTS:-1] += chain.b * self.impulse
-                self.impulse = self.impulse * self.law.gains[3] * chain.wv[3, 0]
-        y, u, inputs[POINTS:-1] = self.law.apply(inputs)
-        piece = Piece.of(self.columns, y - self.final, u if march.control else None)
-        self.history.append(u)
-        self.recent.append(piece.values)
+        march, chain, inputs = self.march, self.march.chain, self.entering.popleft()
+        if index >= self.splits and index % self.splits == 0 and self.impulse.any():
+            self.state += chain.b * self.impulse
+            self.impulse = self.impulse * self.law.gains[3] * chain.wv[3, 0]
+        inputs[POINTS:-1] = self.state
+        v = inputs[:POINTS]
+        y, self.state, area, tail = self.law.apply(inputs, v)
+        self.entering.append(inputs)
+        values = np.subtract(y, self.final, out=self._room())
+        piece = Piece(
+            self.columns, values, values.min(axis=0), values.max(axis=0), area - 2.0 * self.final,
+            v - march.load if march.control else None,
+        )  # fmt: skip
+        self.recent.append(values)
         np.maximum(self.high, piece.high, out=self.high)
         np.maximum(self.size, np.maximum(piece.high, -piece.low), out=self.size)
-        np.maximum(self.control_size, np.maximum(u.max(axis=0), -u.min(axis=0)), out=self.control_size)
-        np.maximum(self.tail, np.abs(LAST_ROWS @ u).max(axis=0), out=self.tail)
+        np.maximum(self.input_size, np.abs(v[::SPARSE]).max(axis=0), out=self.input_size)
+        np.maximum(self.tail, np.abs(tail).max(axis=0), out=self.tail)
         return piece
 
+    def _room(self) -> Array:
+        """Return room for the values of a piece."""
+        if not self.room:
+            self.room = list(np.empty((AT_ONCE, POINTS, self.columns.size)))
+        return self.room.pop()
+
     def at_rest(self) -> Flags:
-        """Return which loops deviate no more, as seen over the last dead time, in output and in control signal."""
+        """Return which loops deviate no more, as seen over the last dead time, in output and in the plant's input."""
         resting = np.abs(self.recent[-1][-1]) <= AT_REST * self.size
         places = np.nonzero(resting)[0]
         if places.size:
-            final = self.march.final_control[self.columns[places]]
+            final = self.march.final_control[self.columns[places]] + self.march.load
             quiet = np.ones(places.size, dtype=bool)
             for values in list(self.recent)[-self.splits :]:
                 quiet &= np.abs(values[:, places]).max(axis=0) <= AT_REST * self.size[places]
-            for u in self.history:
-                quiet &= np.abs(u[:, places] - final).max(axis=0) <= AT_REST * self.control_size[places]
+            for inputs in self.entering:
+                quiet &= np.abs(inputs[:POINTS, places] - final).max(axis=0) <= AT_REST * self.input_size[places]
             resting[places] = quiet
         return np.asarray(resting)
 
@@ -259,52 +272,17 @@ class _Moving:
     def keep(self, stay: Places, found: Responses) -> None:
         """Drop all loops but some; those dropped that never left, or are not resolved, have failed."""
         with np.errstate(invalid="ignore"):
-            unresolved = ~(self.tail <= RESOLVED * self.control_size)
+            unresolved = ~(self.tail <= RESOLVED * self.input_size)
         unusable = ~self.left | unresolved
         unusable[stay] = unresolved[stay] = False
         found.unresolved[self.columns[unresolved]] = True
         found.failed[self.columns[unusable]] = True
         self.columns, self.loops, self.law = self.columns[stay], self.loops.take(stay), self.law.take(stay)
-        for name in ("final", "band", "impulse", "size", "high", "control_size", "tail", "left"):
+        for name in ("final", "band", "impulse", "size", "high", "input_size", "tail", "left"):
             setattr(self, name, getattr(self, name)[stay])
-        self.inputs = self.inputs.take(stay, axis=1)
-        self.history = deque(u.take(stay, axis=1) for u in self.history)
+        self.state, self.room = self.state.take(stay, axis=1), []
+        self.entering = deque(inputs.take(stay, axis=1) for inputs in self.entering)
         self.recent = deque((values.take(stay, axis=1) for values in self.recent), maxlen=3 * self.splits)
-
-
-@dataclass
-class _Law:
-    """The fixed map of a piece and the control law of each column."""
-
-    blocks: Array  # rows: output, the building blocks of the control signal that are not the output, end state
-    rows: tuple[int, ...]  # which building blocks these are
-    measures_output: bool  # whether the filtered output is the output itself
-    gains: Array  # shape (4, n)
-    constant: Array  # what the set-point adds to the control signal by itself
-
-    @classmethod
-    def of(cls, loops: LoopColumns, chain: Chain, length: float, setpoint: float) -> _Law:
-        fixed = piece_map(chain, length, DEGREE)
-        gains = loops.gains
-        plain = bool(np.array_equal(chain.wx[1], chain.c) and np.array_equal(chain.wv[1], chain.d))
-        direct = not chain.wx[0].any()  # no set-point filter: the filtered set-point is the set-point
-        used = (loops.form.k, loops.form.k, loops.form.ki, loops.form.kd)
-        rows = [w for w in range(4) if used[w] and not (w == 1 and plain) and not (w == 0 and direct)]
-        blocks = np.concatenate([fixed.output, *(fixed.basis[w] for w in rows), fixed.state])
-        constant = gains[0] * (setpoint * chain.wr[0]) if direct else np.zeros(len(loops))
-        return cls(blocks, tuple(rows), plain, gains, constant)
-
-    def take(self, columns: Places) -> _Law:
-        return _Law(self.blocks, self.rows, self.measures_output, self.gains[:, columns], self.constant[columns])
-
-    def apply(self, inputs: Array) -> tuple[Array, Array, Array]:
-        result = self.blocks @ inputs
-        y = result[:POINTS]
-        control = np.multiply(y, self.gains[1]) if self.measures_output else np.zeros_like(y)
-        control += self.constant
-        for place, row in enumerate(self.rows):
-            control += result[(place + 1) * POINTS : (place + 2) * POINTS] * self.gains[row]
-        return y, control, result[(len(self.rows) + 1) * POINTS :]
 
 
 def _restriction(share: float) -> Array:

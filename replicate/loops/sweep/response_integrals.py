@@ -18,6 +18,7 @@ Flags = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
 NEGLIGIBLE = 3e-11  # share of an integral that all pieces together may have which are looked at no further
+NEAR_ENOUGH = 1e-5  # last step of Newton's method: the next is of its square, and an integral errs by a square again
 FLAT = 1e-13  # of a control signal's size: a slope that is rounding
 
 
@@ -64,21 +65,22 @@ class ResponseIntegrals(ResponsePieces):
         total = np.abs(self._areas)
         piece, column = self._crossing(total, np.ones(len(self.pieces)))
         if piece.size:
-            area, _ = _absolute(self._gathered(piece, column))
+            (area,) = _absolute(self._gathered(piece, column), _area_up_to())
             total[piece, column] = area * (0.5 * self._lengths()[piece])
         return np.asarray(total.sum(axis=0) + self.responses.modes.absolute_integral())
 
     def itae(self) -> Array:
         """Return the integrated absolute error, weighted with the time from the step."""
         half, middle = 0.5 * self._lengths(), self._middles()
+        moment_weights = _moment_up_to().sum(axis=0) @ chebyshev.values_to_coefficients(DEGREE)
         total = np.zeros((len(self.pieces), self.count))
         for index, record in enumerate(self.pieces):
-            moment = middle[index] * record.area + half[index] * (_moment() @ record.values)
+            moment = middle[index] * record.area + half[index] * (moment_weights @ record.values)
             total[index, record.columns] = np.abs(moment) * half[index]
         total = np.where(self._exists, total, 0.0)
         piece, column = self._crossing(total, middle)
         if piece.size:
-            area, moment = _absolute(self._gathered(piece, column))
+            area, moment = _absolute(self._gathered(piece, column), _area_up_to(), _moment_up_to())
             total[piece, column] = half[piece] * (middle[piece] * area + half[piece] * moment)
         return np.asarray(total.sum(axis=0) + self.responses.modes.absolute_moment())
 
@@ -88,10 +90,10 @@ class ResponseIntegrals(ResponsePieces):
 
     def _crossing(self, total: Array, weight: Array) -> tuple[Places, Places]:
         """Return the pieces whose error may change its sign and which count in an integral with a weight."""
-        low, high = self._ranges
-        span = high - low
-        near = self._exists & (low - MARGIN * span < 0.0) & (high + MARGIN * span > 0.0) & (span > 0.0)
-        near &= span * (self._lengths() * weight)[:, None] > NEGLIGIBLE / len(self.pieces) * total.sum(axis=0)
+        (low, high), slack = self._ranges, self._slack
+        near = (low < slack) & (high > -slack) & self._exists
+        least = MARGIN * NEGLIGIBLE / len(self.pieces) * total.sum(axis=0)
+        near &= slack * (self._lengths() * weight)[:, None] > least
         piece, column = np.nonzero(near)
         return piece, column
 
@@ -108,15 +110,18 @@ class ResponseIntegrals(ResponsePieces):
             turning = (slopes.min(axis=0) - MARGIN * span < 0.0) & (slopes.max(axis=0) + MARGIN * span > 0.0)
             places = np.nonzero(turning & (span > FLAT * np.abs(control).max(axis=0)))[0]
             if places.size:
-                moved[places], _ = _absolute(slopes[:, places])
+                (moved[places],) = _absolute(slopes[:, places], _area_up_to())
             # a jump of the control signal, the first from zero, counts with its height
             total[columns] += np.abs(control[0] - end[columns]) + moved
             end[columns] = control[-1]
         return np.asarray(total + self.responses.control_modes.absolute_change())
 
 
-def _absolute(values: Array) -> tuple[Array, Array]:
-    """Return the integrals of |e| and of x |e| over [-1, 1] of polynomials in columns, given at the nodes."""
+def _absolute(values: Array, *antiderivatives: Array) -> list[Array]:
+    """Return integrals over [-1, 1] of polynomials in columns, given at the nodes, with every sign made positive.
+
+    Each antiderivative is the matrix from the coefficients of e to those of an integral from -1, of e or of x e.
+    """
     sign = np.sign(values)
     # two zeros may hide next to an extremum that nearly touches zero, away from other zeros
     touching = np.abs(values) < MARGIN * np.ptp(values, axis=0)
@@ -132,37 +137,37 @@ def _absolute(values: Array) -> tuple[Array, Array]:
     before, place = np.nonzero(negative[1:] != negative[:-1])
     x = series_roots.roots(
         series[:, place], nodes[before, place], nodes[before + 1, place],
-        values[before, place], values[before + 1, place],
+        values[before, place], values[before + 1, place], converged=NEAR_ENOUGH,
     )  # fmt: skip
     sides = np.where(negative[before, place], -2.0, 2.0)
     last = np.where(negative[-1], -1.0, 1.0)
     found = []
-    for antiderivative in _antiderivatives():
+    for antiderivative in antiderivatives:
         running = antiderivative @ series  # zero at -1
         at_root = series_roots.evaluate(running[:, place], x)
         jumps = np.bincount(place, weights=sides * at_root, minlength=last.size)
         found.append(np.asarray(last * running.sum(axis=0) + jumps))
-    return found[0], found[1]
+    return found
 
 
 @cache
-def _antiderivatives() -> tuple[Array, Array]:
-    """Return the matrices from the coefficients of e to those of the integrals from -1 of e and of x e."""
+def _area_up_to() -> Array:
+    """Return the matrix from the coefficients of e to those of its integral from -1."""
+    return _integrated(np.eye(DEGREE + 1))
+
+
+@cache
+def _moment_up_to() -> Array:
+    """Return the matrix from the coefficients of e to those of the integral of x e from -1."""
     unit, times_x = np.eye(DEGREE + 1), np.zeros((DEGREE + 2, DEGREE + 1))
     times_x[1:] += 0.5 * unit  # x T_k = (T_(k+1) + T_(k-1)) / 2, x T_0 = T_1
     times_x[:DEGREE, 1:] += 0.5 * np.eye(DEGREE)
     times_x[1, 0] = 1.0
-    return _integrated(unit), _integrated(times_x)
+    return _integrated(times_x)
 
 
 def _integrated(series: Array) -> Array:
     return np.asarray(chebyshev_series.chebint(series, lbnd=-1.0, axis=0))
-
-
-@cache
-def _moment() -> Array:
-    """Return the weights of node values in the integral of x e over [-1, 1]."""
-    return np.asarray(_antiderivatives()[1].sum(axis=0) @ chebyshev.values_to_coefficients(DEGREE))
 
 
 @cache

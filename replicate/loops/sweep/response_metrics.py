@@ -33,11 +33,10 @@ class ResponseMetrics(ResponseIntegrals):
     @cached_property
     def _summit(self) -> tuple[Array, Array]:
         """The largest deviation from the final value and its time."""
-        low, high = self._ranges
-        low, high = np.where(self._exists, low, -np.inf), np.where(self._exists, high, -np.inf)
+        high = np.where(self._exists, self._ranges[1], -np.inf)
         best = high.max(axis=0)
-        with np.errstate(invalid="ignore"):
-            piece, column = np.nonzero(self._exists & (high + MARGIN * (high - low) >= best))
+        high += self._slack
+        piece, column = np.nonzero(self._exists & (high >= best))
         values = self._gathered(piece, column)
         top = np.argmax(values, axis=0)
         nodes = chebyshev.nodes(DEGREE)
@@ -85,8 +84,9 @@ class ResponseMetrics(ResponseIntegrals):
         """Return the last times outside the band, and which responses are outside at their end."""
         width = band * np.where(self.final == 0.0, 1.0, np.abs(self.final))
         low, high = self._ranges
-        reach = np.maximum(-low, high) + MARGIN * (high - low)
-        outside = self._exists & (reach > width)
+        margin = width - self._slack
+        outside = (high > margin) | (-low > margin)
+        outside &= self._exists
         time = np.zeros(self.count)
         unsettled = np.zeros(self.count, dtype=bool)
         column = np.nonzero(outside.any(axis=0))[0]
@@ -128,8 +128,7 @@ class ResponseMetrics(ResponseIntegrals):
     def first_reach(self, fraction: float) -> tuple[Array, Flags]:
         """Return the first times at a fraction of the final value, and which responses do not reach it."""
         level = (fraction - 1.0) * self.final  # as a deviation
-        low, high = self._ranges
-        reaching = self._exists & (high + MARGIN * (high - low) >= level)
+        reaching = self._exists & (self._ranges[1] + self._slack >= level)
         time = np.full(self.count, np.nan)
         column = np.nonzero(reaching.any(axis=0))[0]
         while column.size:

@@ -46,6 +46,14 @@ class ResponsePieces:
         return low, high
 
     @cached_property
+    def _slack(self) -> Array:
+        """By how much an extremum may exceed the lowest and highest deviation at the nodes, shape (pieces, n)."""
+        low, high = self._ranges
+        slack = high - low
+        slack *= MARGIN
+        return slack
+
+    @cached_property
     def _exists(self) -> Flags:
         pieces = len(self.pieces)
         exists = np.arange(pieces)[:, None] < self.responses.ends

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from replicate.loops import checks
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
+from replicate.loops.one_thread import one_thread
 from replicate.loops.plant import Plant
 from replicate.loops.sweep.axes import Axis, controller_axis, plant_axis
 from replicate.loops.sweep.block_metrics import answered, block_metrics, is_batched
@@ -96,8 +97,9 @@ def sweep(
     table = ControllerTable.of(controller_side)
     blocks = grid_blocks(plant_side, table) if pairing == GRID else pair_blocks(plant_side, table, shape[0])
     flat = {name: array.reshape(-1) for name, array in values.items()}
-    for block in blocks:
-        _compute(block, controller_side, table, names, until, band, flat, reason.reshape(-1))
+    with one_thread():
+        for block in blocks:
+            _compute(block, controller_side, table, names, until, band, flat, reason.reshape(-1))
     return SweepResult(
         pairing, _labels(plant_side, pairing, shape), _labels(controller_side, pairing, shape), names, values, reason
     )
