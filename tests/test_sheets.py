@@ -11,7 +11,7 @@ import pytest
 import toy_class
 
 from replicate.errors import ReplicateError
-from replicate.handout import Form, Sheet, build_handouts, language
+from replicate.handout import Form, Sheet, handouts, language
 from replicate.handout.edition import edition
 from replicate.handout.printout import form_code, markup, pdf
 from replicate.handout.webpage import webpage
@@ -131,8 +131,8 @@ def test_each_page_of_a_sheet_has_the_form_and_the_shared_handout_none(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     toy = toy_class.class_set(tmp_path, monkeypatch)
-    (path,) = build_handouts([toy.paper], toy.results, (), tmp_path / "out", solutions=[False])
+    ((_, content),) = handouts([toy.paper], toy.results, (), solutions=[False])
     form = Form.of("toy", "1", "Ada")
     assert f'form: "{form}"' in markup(edition(toy.paper, toy.results, (), solutions=False, form=form))
     assert 'form: "' not in markup(edition(toy.paper, toy.results, (), solutions=False))
-    assert len(path.read_bytes()) < len(dict(toy.files(["Ada"], "1"))["toy-Ada.pdf"])
+    assert len(content) < len(dict(toy.files(["Ada"], "1"))["toy-Ada.pdf"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -62,22 +63,23 @@ def handout(
     """
     from replicate.handout import (
         BANKS,
+        LONGEST_RUN,
         SLIDES,
-        ClassSet,
         Form,
+        Order,
         Sheet,
-        build_handouts,
-        check_sheet,
+        Sheets,
+        check_order,
         checked_format,
-        own_exercises,
+        make,
         read_points,
         read_roster,
         read_selection,
-        stressed,
-        varying,
+        stress_test,
         with_handout,
     )
     from replicate.handout import language as language_of
+    from replicate.run.guarded import GuardedProcess
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.counted_progress import counted_progress_on
@@ -85,8 +87,7 @@ def handout(
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
-    own = tuple(one for folder in exercises or () for one in own_exercises(folder))
-    sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language), own)
+    sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language))
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
     file_format = checked_format(format)
     chosen = with_handout(run.within.papers(given), all_needed=bool(given), file_format=file_format)
@@ -97,49 +98,39 @@ def handout(
         _check_no_exercises([*kinds, *(name for name, value in about_exercises.items() if value)])
     if kinds:
         _check_class_options(kinds, len(chosen), again is not None and file_format in BANKS, papers)
-        varying(chosen[0], own)
-    for paper in chosen:
-        if file_format != SLIDES:
-            check_sheet(paper, sheet)
-    if stress is not None:
-        for variation in varying(chosen[0], own).variations.values():
-            for line in stressed(variation, stress):
-                echo(line)
-        return
     students = (
         read_roster(roster, roster_id) if roster else [f"{number:03}" for number in range(1, (variants or 0) + 1)]
     )
-    editions = (False, True) if solutions is None else (solutions,)
-    # Those of other papers, and other editions, stay.
-    with staged(run.folder, "handouts", renews=lambda _: False) as fresh:
-        outcome = run.recompute(chosen)
-        verdicts = outcome.judgement.verdicts
-        if kinds:
-            bank = file_format if file_format in BANKS else "moodle"  # what a platform can import is in every set
+    order = Order(
+        tuple(paper.package for paper in chosen),
+        sheet,
+        tuple(exercises or ()),
+        file_format,
+        (False, True) if solutions is None and not kinds else (bool(solutions),),
+        tuple(students),
+        seed,
+        again,
+    )
+    with GuardedProcess(min(LONGEST_RUN, run.unit_timeout)) as process:
+        if stress is not None:
+            for line in process.stream(stress_test, order, stress):
+                echo(line)
+            return
+        list(process.stream(check_order, order))
+        # Those of other papers, and other editions, stay.
+        with staged(run.folder, "handouts", renews=lambda _: False) as fresh:
+            outcome = run.recompute(chosen)
+            written = []
             with counted_progress_on(console(stderr=True), "sheets") as report:
-                class_set = ClassSet(
-                    outcome.papers[0],
-                    outcome.results,
-                    verdicts,
-                    bool(solutions),
-                    sheet,
-                    file_format,
-                    lambda done, total: report(done, total, 0),
-                )
-                made = class_set.again(again) if again else class_set.files(students, seed, bank)
-                written = [_written(fresh / "handouts" / name, content) for name, content in made]
-        else:
-            written = build_handouts(
-                outcome.papers,
-                outcome.results,
-                verdicts,
-                fresh / "handouts",
-                solutions=editions,
-                file_format=file_format,
-                sheet=sheet,
-            )
-        keep = run.kept_texts(ROOMS, DISTRIBUTIONS)
-        written += write_whatif(outcome.papers, fresh / "handouts", keep=keep)  # exercises link to it
+                order = replace(order, packages=tuple(paper.package for paper in outcome.papers))
+                for made in process.stream(make, order, outcome.results, outcome.judgement.verdicts):
+                    if isinstance(made, Sheets):
+                        report(made.done, made.total, 0)
+                    else:
+                        name, content = made
+                        written.append(_written(fresh / "handouts" / name, content))
+            keep = run.kept_texts(ROOMS, DISTRIBUTIONS)
+            written += write_whatif(outcome.papers, fresh / "handouts", keep=keep)  # exercises link to it
     for path in written:
         echo(f"handout: {run.folder / 'handouts' / path.name}")
     exit_with(run.within, outcome)

@@ -110,6 +110,7 @@ def check(
     from replicate.diff.check import problems as find_problems
     from replicate.diff.comparison import compare
     from replicate.handout.legibility import unreadable_handouts
+    from replicate.handout.own_code import LONGEST_RUN
     from replicate.report.texts import unreadable
 
     chosen = run.within.papers(papers or ())
@@ -123,7 +124,8 @@ def check(
     echo(f"problems: {len(problems)}; comparisons: {comparisons}; exhibits: {len(outcome.results)}")
     handouts = {}
     if outcome.complete and not outcome.failures:  # a text may ask for a result that failed or was not computed
-        handouts = unreadable_handouts(outcome.papers, outcome.results, outcome.judgement.verdicts)
+        seconds = min(LONGEST_RUN, run.unit_timeout)
+        handouts = unreadable_handouts(outcome.papers, outcome.results, outcome.judgement.verdicts, seconds)
     outcome = replace(outcome, broken=outcome.broken | handouts | unreadable(outcome))
     status = BROKEN if comparison.broken else DIFFERS if problems else 0
     exit_with(run.within, outcome, status, problems_shown=True)

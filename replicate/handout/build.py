@@ -1,9 +1,8 @@
-"""Write the handouts of papers: for each a plain edition and one with solutions, or a file of questions."""
+"""The handouts of papers: for each a plain edition and one with solutions, or a file of questions."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
 
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
@@ -17,17 +16,16 @@ from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
 
 
-def build_handouts(
+def handouts(
     papers: Sequence[Paper],
     results: Results,
     verdicts: Sequence[VerdictRow],
-    folder: Path,
     *,
     solutions: Sequence[bool] = (False, True),
     file_format: str = "pdf",
     sheet: Sheet | None = None,
-) -> list[Path]:
-    """Write handouts.
+) -> Iterator[tuple[str, bytes]]:
+    """Yield the name and content of the files of handouts: ``<paper>.pdf`` and so on, as the format has them.
 
     Parameters
     ----------
@@ -35,8 +33,6 @@ def build_handouts(
         Loaded papers, each with a ``handout.md``.
     results, verdicts
         Of all of them together.
-    folder
-        Where the files go; it is created if it does not exist.
     solutions
         The editions: without solutions, with them, or both.
     file_format
@@ -44,43 +40,32 @@ def build_handouts(
     sheet
         What a lecturer sets for all of them.
 
-    Returns
-    -------
-    list of Path
-        ``<paper>.pdf`` and ``<paper>-solutions.pdf``, or as the format has them. Nothing is written before
-        all of them are complete.
-
     Raises
     ------
     TemplateError
         If a text asks for something that does not exist, or cannot be converted or set.
     """
-    made: dict[str, bytes] = {}
-    own = sheet.own if sheet else ()
+    sheet = sheet or Sheet()
     for paper in papers:
         if file_format == SLIDES:
             from replicate.handout.slides import slides
 
-            made[f"{paper.id}-slides.pdf"] = slides(
-                edition(paper, results, verdicts, solutions=False, sheet=sheet, kind=SLIDES)
-            )
+            document = edition(paper, results, verdicts, solutions=False, sheet=sheet, kind=SLIDES)
+            yield f"{paper.id}-slides.pdf", slides(document)
             continue
-        for variation in with_own(exercises_of(paper), own).variations.values():
-            files = variation.files(variation.original)
-            made |= {f"{paper.id}-{name}": text.encode() for name, text in files.items()}
+        exercises = with_own(exercises_of(paper), sheet.own)
+        for variation in exercises.variations.values():
+            for name, text in variation.files(variation.original).items():
+                yield f"{paper.id}-{name}", text.encode()
         if file_format in BANKS:
             document = edition(paper, results, verdicts, solutions=True, sheet=sheet)
-            questions = list(questions_of(document, with_own(exercises_of(paper), own), None))
-            made |= named(BANKS[file_format](questions), paper.id)
+            questions = list(questions_of(document, exercises, None))
+            yield from named(BANKS[file_format](questions), paper.id).items()
             continue
         for with_solutions in solutions:
             document = edition(paper, results, verdicts, solutions=with_solutions, sheet=sheet)
             name = f"{paper.id}{'-solutions' if with_solutions else ''}"
-            made |= named(next(iter(EDITIONS[file_format]([document]))), name)
-    folder.mkdir(parents=True, exist_ok=True)
-    for name, content in made.items():
-        (folder / name).write_bytes(content)
-    return [folder / name for name in made]
+            yield from named(next(iter(EDITIONS[file_format]([document]))), name).items()
 
 
 def with_handout(papers: Sequence[Paper], *, all_needed: bool = False, file_format: str = "pdf") -> list[Paper]:

@@ -9,7 +9,7 @@ from functools import cached_property
 from types import ModuleType
 from typing import Literal
 
-from replicate.errors import TemplateError
+from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
 
@@ -64,6 +64,9 @@ def said_by(call: str) -> Iterator[None]:
     """Turn whatever a paper's own function raises into a message that the text's line is added to."""
     try:
         yield
+    except ReplicateError as error:
+        msg = f"{call} failed: {error}"
+        raise TemplateError(msg) from error
     except Exception as error:
         msg = f"{call} failed: {type(error).__name__}: {error}"
         raise TemplateError(msg) from error

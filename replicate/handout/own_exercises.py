@@ -8,19 +8,17 @@ several by name; it may define ``original``, ``requires``, ``shown(inputs)``, ``
 
 from __future__ import annotations
 
-import math
 import re
 import runpy
-import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from numbers import Real
 from pathlib import Path
 from typing import Any
 
 from replicate.errors import PaperDefinitionError, ReplicateError
 from replicate.exhibits.exercises import Exercises
-from replicate.exhibits.variants import Answer, Answers, Inputs, Variation
+from replicate.exhibits.variants import Variation
+from replicate.handout.own_code import OwnCode
 from replicate.plain_text import read_text
 
 TEXT, PROGRAM = "exercise.md", "exercise.py"
@@ -112,37 +110,35 @@ def _loaded(home: Path) -> OwnExercise:
             raise ReplicateError(msg)
     program = home / PROGRAM
     source = f"{name}/{PROGRAM}"
-    try:
+    code = OwnCode(str(program), source)
+    with code.running("the program"):
         defined = runpy.run_path(str(program), run_name=f"exercise {name}")
-    except (Exception, SystemExit) as error:
-        raise _failed(error, program, source, "the program fails") from error
     values = {field: defined.get(field, default) for field, (default, _, _) in _OPTIONAL.items()}
     for field, (_, holds, allowed) in _OPTIONAL.items():
         if not holds(values[field]):
-            msg = f"{source}:{_line(program, field)}: '{field}' is {values[field]!r}, allowed: {allowed}"
+            msg = f"{source}:{code.line_of(_defining(field))}: '{field}' is {values[field]!r}, allowed: {allowed}"
             raise ReplicateError(msg)
     for field in ("variant", "answers"):
         if not callable(defined.get(field)):
             msg = f"{source}: defines no function '{field}'"
             raise ReplicateError(msg)
-    guard = _Guard(program, source)
-    variation = Variation(
-        name,
-        values["original"] or {},
-        guard(defined["variant"], "variant(rng)", _checked_inputs),
-        guard(defined["answers"], "answers(inputs)", _checked_answers),
-        {words: guard(holds, f"requires['{words}']", bool) for words, holds in values["requires"].items()},
-        guard(values["shown"], "shown(inputs)", dict),
-        values["stated"],
-        values["figures"],
-        guard(values["files"], "files(inputs)", dict),
+    variation = code.variation(
+        Variation(
+            name,
+            values["original"] or {},
+            defined["variant"],
+            defined["answers"],
+            **{field: values[field] for field in ("requires", "shown", "stated", "figures", "files")},
+        ),
+        "",
+        lambda field: code.line_of(_defining(field)),
     )
     try:
         drawn = variation.drawn("original")  # also where it is not needed: errors are found now
     except PaperDefinitionError as error:
         if str(error).startswith(source):
             raise
-        msg = f"{source}:{_line(program, 'requires')}: {error}"
+        msg = f"{source}:{code.line_of(_defining('requires'))}: {error}"
         raise PaperDefinitionError(msg) from error
     if not variation.original:
         variation = replace(variation, original=drawn)
@@ -151,56 +147,6 @@ def _loaded(home: Path) -> OwnExercise:
     return OwnExercise(f"{name}/{TEXT}", read_text(home / TEXT, f"{name}/{TEXT}", ReplicateError), variation)
 
 
-@dataclass(frozen=True)
-class _Guard:
-    """Turns what a lecturer's function raises, or returns wrongly, into a line with file, line and field."""
-
-    program: Path
-    source: str
-
-    def __call__(self, function: Callable[..., Any], field: str, checked: Callable[[Any], Any]) -> Callable[..., Any]:
-        def guarded(argument: Any) -> Any:
-            try:
-                return checked(function(argument))
-            except Exception as error:
-                line = _line(self.program, field.partition("(")[0].partition("[")[0])
-                raise _failed(error, self.program, self.source, f"{field} fails", line) from error
-
-        return guarded
-
-
-def _failed(error: BaseException, program: Path, source: str, what: str, line: int = 1) -> ReplicateError:
-    inside = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(program)]
-    found = (inside[-1].lineno if inside else getattr(error, "lineno", None)) or line
-    return PaperDefinitionError(f"{source}:{found}: {what}: {type(error).__name__}: {' '.join(str(error).split())}")
-
-
-def _line(program: Path, field: str) -> int:
-    """Return the line in which a name is defined."""
-    for number, line in enumerate(program.read_text(encoding="utf-8").splitlines(), start=1):
-        if re.match(rf"(def\s+)?{field}\b", line):
-            return number
-    return 1
-
-
-def _checked_inputs(value: Any) -> Inputs:
-    if not isinstance(value, Mapping) or not value:
-        msg = f"returns {value!r}, allowed: a dictionary of numbers or texts"
-        raise TypeError(msg)
-    for key, one in value.items():
-        if not isinstance(one, str | Real) or (isinstance(one, Real) and not math.isfinite(one)):
-            msg = f"the field '{key}' is {one!r}, allowed: a finite number or a text"
-            raise TypeError(msg)
-    return value
-
-
-def _checked_answers(value: Any) -> Answers:
-    found = {"answer": value} if isinstance(value, Answer) else value
-    if not isinstance(found, Mapping) or not found:
-        msg = f"returns {value!r}, allowed: an Answer, or a dictionary of them"
-        raise TypeError(msg)
-    for key, one in found.items():
-        if not isinstance(one, Answer):
-            msg = f"the field '{key}' is {one!r}, allowed: an Answer"
-            raise TypeError(msg)
-    return found
+def _defining(field: str) -> str:
+    """Return the pattern of the line that defines a name."""
+    return rf"^(def\s+)?{field}\b"

@@ -30,7 +30,8 @@ import importlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
+from types import ModuleType
 from typing import Any
 
 from replicate.display.addresses import TRIALS, trial_address, trial_label
@@ -45,6 +46,7 @@ from replicate.handout.dots import DotChoice, dot_figure
 from replicate.handout.drawings import Drawing, DrawnLater, captured, said_by
 from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
+from replicate.handout.own_code import OwnCode
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.tree import Element
 from replicate.verdicts.rows import VerdictRow
@@ -277,15 +279,23 @@ def exercises_of(paper: Paper) -> Exercises:
     Raises
     ------
     PaperDefinitionError
-        If the module defines no `Exercises`.
+        If the module fails, or defines no `Exercises`.
     """
-    if not (paper.folder() / "handout.py").is_file():
+    file = paper.folder() / "handout.py"
+    if not file.is_file():
         return Exercises()
-    found = getattr(importlib.import_module(f"{paper.package}.handout"), "exercises", None)
+    with OwnCode(str(file), f"{paper.id}/handout.py").running("the module"):
+        module = importlib.import_module(f"{paper.package}.handout")
+    return _exercises_in(module, paper.id)
+
+
+@cache
+def _exercises_in(module: ModuleType, paper: str) -> Exercises:
+    found = getattr(module, "exercises", None)
     if not isinstance(found, Exercises):
-        msg = f"{paper.id}/handout.py: defines no 'exercises' that is a replicate.exhibits.exercises.Exercises"
+        msg = f"{paper}/handout.py: defines no 'exercises' that is a replicate.exhibits.exercises.Exercises"
         raise PaperDefinitionError(msg)
-    return found
+    return OwnCode(str(module.__file__), f"{paper}/handout.py").exercises(found)
 
 
 @contextmanager

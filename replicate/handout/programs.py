@@ -6,17 +6,21 @@ handout share their names, as the cells of a notebook do. What a program writes 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import io
+from collections.abc import Iterator, Sequence
+from contextlib import redirect_stdout
 from dataclasses import dataclass, field
 from typing import Any
 
-from replicate.errors import TemplateError
+from replicate.errors import ReplicateError, TemplateError
 from replicate.handout.formulas import line_of
-from replicate.handout.program_process import ProgramError, ProgramProcess
+from replicate.handout.own_code import LONGEST_RUN, OwnCode
 from replicate.handout.tree import Blocks, Element, classes, transform
+from replicate.run.guarded import GuardedProcess
 
 LONGEST_LINE = 88  # characters; what fits between the margins
-LONGEST_RUN = 60.0  # seconds
+
+_names: dict[str, Any] = {"__name__": "handout"}  # that the programs share, in the process where they run
 
 
 def run_programs(
@@ -56,7 +60,7 @@ def run_programs(
             return [program]
         return [program, {"t": "CodeBlock", "c": [["", ["output"], []], written.rstrip()]}]
 
-    with ProgramProcess() as process:
+    with GuardedProcess(LONGEST_RUN) as process:
         runs = Runs(process, known)
         result: Blocks = transform(document, changed)
     return result
@@ -69,12 +73,12 @@ class Runs:
     Attributes
     ----------
     process
-        In which they run.
+        In which they run, and which has their names.
     known
         What they wrote, by the text of a program and of all before it.
     """
 
-    process: ProgramProcess
+    process: GuardedProcess
     known: dict[str, Any]
     _before: list[tuple[str, str, int]] = field(default_factory=list)
     _done: int = 0
@@ -91,10 +95,17 @@ class Runs:
 
     def _run(self, code: str, source: str, first: int) -> str:
         try:
-            return self.process.run(code, LONGEST_RUN)
-        except ProgramError as error:
-            msg = f"{source}:{first + error.line - 1}: {' '.join(str(error).split())}"
-            raise TemplateError(msg) from error
+            return "".join(self.process.stream(_run, code, source, first))
+        except ReplicateError as error:
+            raise TemplateError(str(error)) from error
+
+
+def _run(code: str, source: str, first: int) -> Iterator[str]:
+    """Run a program, in whose frames the lines are those of the text, and yield what it writes."""
+    written = io.StringIO()
+    with OwnCode(source, source).running("the program", first), redirect_stdout(written):
+        exec(compile("\n" * (first - 1) + code, source, "exec"), _names)  # noqa: S102  -- the paper's own text
+    yield written.getvalue()
 
 
 def _check_width(line: str, place: str) -> None:

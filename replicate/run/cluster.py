@@ -5,7 +5,6 @@ So a unit that ends its process, never ends or changes what is around it does no
 
 from __future__ import annotations
 
-import importlib
 import multiprocessing
 import os
 import sys
@@ -19,7 +18,7 @@ from replicate.exhibits import Exhibit
 from replicate.run.backends import Backend
 from replicate.run.performance import Performance
 from replicate.run.pool import LocalPool
-from replicate.run.units import Unit
+from replicate.run.units import Unit, loaded
 
 
 @dataclass(frozen=True)
@@ -57,6 +56,6 @@ def _perform(unit: Unit, *, timeout: float, folder: str, path: tuple[str, ...]) 
         os.chdir(folder)
     # Dask's nanny marks its worker as one that has no children, which the standard library enforces.
     multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]  # noqa: SLF001
-    exhibit = importlib.import_module(unit.package).paper.load().exhibits[unit.exhibit]
+    exhibit = loaded(unit.package).exhibits[unit.exhibit]
     done = next(performance for _, performance in LocalPool(1, timeout).run({unit: exhibit}))
     return replace(done, output="").to_bytes(), done.output

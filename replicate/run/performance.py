@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import time
 from collections.abc import Callable, Collection
@@ -14,7 +13,7 @@ from replicate.run.ambience import Ambience
 from replicate.run.dependencies import Dependencies, Looked
 from replicate.run.modules import modules_of
 from replicate.run.storage import from_text, to_text
-from replicate.run.units import Unit, compute, failed, reason
+from replicate.run.units import Unit, compute, failed, loaded, reason
 
 
 @dataclass(frozen=True)
@@ -85,7 +84,7 @@ class Performer:
         changed = []
         if unit.package not in self._loaded:
             # Before anything is set: what a module changes when it is imported must not depend on which unit is first.
-            self._loaded[unit.package] = importlib.import_module(unit.package).paper.load()
+            self._loaded[unit.package] = loaded(unit.package)
             changed += [f"{name} (when {unit.paper} is imported)" for name in self.ambience.set()]
         paper = self._loaded[unit.package]
         self.ambience.set()

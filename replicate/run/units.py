@@ -57,6 +57,12 @@ def units_of(paper: Paper, exhibit: Exhibit) -> list[Unit]:
     return []
 
 
+def loaded(package: str) -> Paper:
+    """Return the paper of a package, with its exhibits, in whichever process this is."""
+    paper: Paper = importlib.import_module(package).paper
+    return paper.load()
+
+
 def compute(unit: Unit, without: Collection[str] = (), before: Callable[[str], object] = lambda _: None) -> Result:
     """Do the work of one unit; this is what runs in a worker process.
 
@@ -72,8 +78,8 @@ def compute(unit: Unit, without: Collection[str] = (), before: Callable[[str], o
     Result
         For a reading, a `TableResult` with that reading alone.
     """
-    paper: Paper = importlib.import_module(unit.package).paper
-    exhibit = paper.load().exhibits[unit.exhibit]
+    paper = loaded(unit.package)
+    exhibit = paper.exhibits[unit.exhibit]
     if isinstance(exhibit, Table):
         return _compute_reading(unit, paper, exhibit)
     if isinstance(exhibit, Figure):

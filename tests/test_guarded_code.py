@@ -1,0 +1,163 @@
+"""Code of exercises that does not end, ends its process or floods the disk: one line with file and line, status 2."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from conftest import Run
+
+from replicate.errors import ReplicateError
+from replicate.handout import Order, Sheet, check_order
+from replicate.run import guarded
+from replicate.run.guarded import GuardedProcess, Place, tell, watched
+
+EXERCISE = """from replicate.exhibits.variants import Answer
+
+{at_import}
+
+
+def variant(rng):
+    {in_variant}
+    return {{"x": rng.randint(20, 90)}}
+
+
+def answers(inputs):
+    {in_answers}
+    return Answer(inputs["x"] / 7, digits=3)
+
+
+requires = {{"small": lambda inputs: {in_requires}}}
+"""
+NOTHING = {"at_import": "", "in_variant": "pass", "in_answers": "pass", "in_requires": "True"}
+PYTHON, C, REGEX = "while True: pass", "sum(range(10**18))", "__import__('re').match('(a+)+$', 'a' * 64 + 'b')"
+STOPPED = r" did not end within 0\.7 s; it was stopped in this line"
+
+
+@pytest.mark.parametrize(
+    ("where", "code", "said"),
+    [
+        ("at_import", PYTHON, f":3: the program{STOPPED}"),
+        ("at_import", C, f":3: the program{STOPPED}"),
+        ("in_variant", PYTHON, rf":7: variant\(rng\){STOPPED}"),
+        ("in_answers", PYTHON, rf":12: answers\(inputs\){STOPPED}"),
+        ("in_answers", REGEX, rf":12: answers\(inputs\){STOPPED}"),
+        ("in_requires", C, rf":16: requires\['small'\]{STOPPED}"),
+        ("in_answers", "import time; time.sleep(1e6)", rf":12: answers\(inputs\){STOPPED}"),
+        ("in_answers", "import faulthandler; faulthandler.cancel_dump_traceback_later(); " + C, ":12: .* 0.7 s"),
+        ("in_answers", "import os; os._exit(0)", r":11: answers\(inputs\) fails: it has ended its process"),
+        ("in_answers", "import os; os.kill(os.getpid(), 11)", r":12: .*has ended its process \(SIGSEGV\)"),
+        ("in_answers", "raise SystemExit(0)", r":12: answers\(inputs\) fails: SystemExit: 0"),
+        ("in_answers", "while True: print('x' * 1000)", r":1[12]: answers\(inputs\) has written more than 1 MB"),
+    ],
+)
+def test_a_lecturers_code_is_stopped_and_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str, code: str, said: str
+) -> None:
+    monkeypatch.setattr(guarded, "MOST_OUTPUT", 2**20)
+    monkeypatch.setattr(guarded, "_PATIENCE", 1.0)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    (tmp_path / "temporary").mkdir()
+    home = tmp_path / "mine"
+    home.mkdir()
+    (home / "exercise.md").write_text("## Title\nWhat?\n", encoding="utf-8")
+    (home / "exercise.py").write_text(EXERCISE.format(**NOTHING | {where: code}), encoding="utf-8")
+    floods = "written" in said
+    with GuardedProcess(30.0 if floods else 0.7) as process, pytest.raises(ReplicateError) as raised:
+        list(process.stream(check_order, Order((), Sheet(), (home,))))
+    assert re.match(rf"mine/exercise\.py{said}", str(raised.value)), raised.value
+    assert not list((tmp_path / "temporary").glob("replicate-*"))  # whatever has ended it
+
+
+HANDOUT = """from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.variants import Answer, VariedFigure
+
+exercises = Exercises()
+
+
+def draw(fig, *, inputs):
+    {in_figure}
+    fig.subplots().plot([0, inputs["a"]])
+
+
+@exercises.vary(
+    "division",
+    original={{"a": 1}},
+    variant=lambda rng: {{"a": rng.randint(11, 99)}},
+    requires={{}},
+    files=lambda inputs: {{"{file}": "a"}},
+    figures={{"line": VariedFigure("A line", "It rises.", draw, in_key=True)}},
+)
+def division(inputs):
+    {in_answers}
+    return {{"half": Answer(inputs["a"] / 2, digits=3)}}
+"""
+SOUND = {"in_figure": "pass", "in_answers": "pass", "file": "data.csv"}
+TEXT = """# Roots
+
+::: exercise
+## Halve {vary="division"}
+Halve ${{ inputs('division')['a'] }}$.
+
+::: solution
+${{ fixed(answer('division')['half'], 3) }}$
+
+{{ figure('line') }}
+:::
+:::
+"""
+SET = ("handout", "lab", "--variants", "2", "--format", "html")
+
+
+@pytest.mark.parametrize(
+    ("where", "code", "command", "said"),
+    [
+        ("in_answers", C, SET, r"lab/handout\.py:21: exercise 'division': answers\(inputs\) did not end within 3 s"),
+        ("in_figure", C, SET, r"lab/handout\.py:8: exercise 'division': figures\['line'\] did not end within 3 s"),
+        ("in_answers", "1 / 0", SET, r"lab/handout\.py:21: exercise 'division': .* fails: ZeroDivisionError"),
+        ("file", "../../x.csv", SET, r"lab/handout\.py:13: .*files\(inputs\) fails: .*names a file '\.\./\.\./x\.csv'"),
+        ("in_answers", PYTHON, ("handout", "lab", "--stress", "3"), r"lab/handout\.py:21: .* did not end within 3 s"),
+        ("in_answers", PYTHON, ("check", "lab"), r"handout\.py:21: .* did not end within 3 s; it was stopped"),
+    ],
+)
+def test_a_papers_handout_is_stopped_and_named(
+    replicate: Run, folder: Path, where: str, code: str, command: tuple[str, ...], said: str
+) -> None:
+    (folder / "handout.py").write_text(HANDOUT.format(**SOUND | {where: code}), encoding="utf-8")
+    (folder / "handout.md").write_text(TEXT, encoding="utf-8")
+    accepted = ("--accepted", "accepted")
+    if command[0] == "check":
+        replicate("accept", "lab", *accepted, "--reason", "first", "-j1")
+        command += accepted
+    status, _, errors = replicate(*command, "-j1", "--unit-timeout", "3")
+    assert status == 2
+    assert re.search(said, errors), errors
+    assert "Traceback" not in errors
+    assert not list(Path.cwd().rglob("*.html"))
+
+
+def numbers(count: int) -> Iterator[int]:
+    """Yield numbers, as a function that is streamed does; the last one is told."""
+    yield from range(count - 1)
+    tell(count - 1)
+
+
+def ended_early() -> Iterator[int]:
+    with watched(Place(__file__, "here.py", "it")):
+        yield 1
+        import os
+
+        os._exit(3)
+
+
+def test_what_a_function_yields_arrives_in_order_and_the_process_serves_again() -> None:
+    with GuardedProcess(5.0) as process:
+        assert list(process.stream(numbers, 3)) == [0, 1, 2]
+        found = process.stream(ended_early)
+        assert next(found) == 1
+        with pytest.raises(ReplicateError, match=r"^here\.py:\d+: it fails: it has ended its process$"):
+            next(found)
+        assert list(process.stream(numbers, 1)) == [0]
