@@ -48,18 +48,18 @@ class Signal(SignalViews, Piecewise):
         """Return the largest value on [0, horizon]; its ``.time`` is where it is reached.
 
         The time is ``inf`` where the response only approaches its final value from below: rounding alone would say
-        when it is closest.
+        when it is closest. It is zero where the response begins at its final value and never exceeds it.
         """
         highest = super().peak()
-        if np.isfinite(self.final) and abs(highest - self.final) <= APPROACH * abs(self.final) and not self._arrives():
-            return Peak(highest.value, float("inf"))
-        return highest
-
-    def _arrives(self) -> bool:
-        """Whether the response reaches its final value at a certain time, and does not only approach it."""
+        scale = abs(self.final) or float(np.max(np.abs(self._samples)))
+        if not np.isfinite(self.final) or abs(highest - self.final) > APPROACH * scale:
+            return highest
         error = np.max(np.abs(self._samples - self.final), axis=1)
-        at_rest = np.nonzero(error <= APPROACH * abs(self.final))[0]
-        return bool(at_rest.size and (at_rest[0] == 0 or error[at_rest[0] - 1] > ARRIVAL * abs(self.final)))
+        at_rest = np.nonzero(error <= APPROACH * scale)[0]
+        if at_rest.size and at_rest[0] == 0:
+            return Peak(float(self._samples[0, 0]), 0.0)
+        arrives = at_rest.size and error[at_rest[0] - 1] > ARRIVAL * scale
+        return highest if arrives else Peak(highest.value, float("inf"))
 
     # ---- step metrics ---------------------------------------------------------------------------------------------
 

@@ -245,6 +245,26 @@ def test_what_does_not_exist_has_a_reason() -> None:
     assert improper.reason[0, 0]
 
 
+def test_a_block_of_loops_without_a_value_says_why() -> None:
+    # an ideal derivative of a pure dead time is improper; a gain above one at high frequency has no rightmost pole
+    improper = sweep(Plant([1.0], [1.0], 1.0), [PID(k, 0.2, kd=0.1) for k in (0.1, 0.2, 0.3, 0.4)], metrics="ms")
+    assert not improper["stable"].any()
+    assert np.char.find(improper.reason.astype(str), "grows without bound").min() >= 0
+    neutral = sweep(Plant([2.0, 1.0], [1.0, 1.0], 1.0), [PI(k, 0.1) for k in (1.0, 2.0, 3.0, 4.0)], "rightmost_pole")
+    assert np.isnan(neutral["rightmost_pole"]).all()
+    assert np.char.find(neutral.reason.astype(str), "rightmost_pole: the loop gain does not fall below").min() >= 0
+
+
+@pytest.mark.parametrize("until", [None, 3.0])
+def test_the_peak_of_a_load_that_only_lowers_the_output_is_at_the_start(until: float | None) -> None:
+    plant, gains = Plant.foptd(-2.0, 1.0, 0.5), np.array([[-0.3, -0.2], [-0.35, -0.01], [-0.2, -0.2], [-0.5, -0.4]])
+    result = sweep(plant, gains, metrics=["load_peak", "load_peak_time"], until=until)
+    for i, row in enumerate(gains):
+        peak = Loop(plant, PI(*row)).load_step(until=until).peak()
+        assert peak.time == result["load_peak_time"][0, i] == 0.0
+        np.testing.assert_allclose([peak.value, result["load_peak"][0, i]], 0.0, atol=1e-12)
+
+
 NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
     "no plants": (lambda: sweep([], [PI(1.0)]), "the sweep has no plants"),
     "no controllers": (lambda: sweep(FOPTD, np.empty((0, 2))), "the sweep has no controllers"),

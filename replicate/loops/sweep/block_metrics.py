@@ -94,7 +94,15 @@ def is_batched(plant: Plant, form: PID, count: int) -> bool:
         and plant.dead_time > 0.0
         and bool(plant.num[-1] != 0.0)
         and bool(form.k or form.ki or form.kd)
+        and _is_proper(plant, form)
     )
+
+
+def _is_proper(plant: Plant, form: PID) -> bool:
+    """Whether the loop gain stays finite at high frequency; of an ideal derivative of a jump it does not."""
+    num, den = form.measurement_filter_polynomials()
+    excess = plant.den.size - plant.num.size + den.size - num.size
+    return excess >= (1 if form.kd and not form.derivative_filter else 0)
 
 
 def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | None, band: float) -> BlockMetrics:

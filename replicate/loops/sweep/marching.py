@@ -59,7 +59,7 @@ class Piece:
     def cut(self, share: float) -> Piece:
         """Return the record of the first part of the piece."""
         first = _restriction(share)
-        values = first @ self.values
+        values = self.values[0] + first @ (self.values - self.values[0])  # a constant stays one
         control = None if self.control is None else first @ self.control
         return Piece(self.columns, values, values.min(axis=0), values.max(axis=0), WEIGHTS @ values, control)
 

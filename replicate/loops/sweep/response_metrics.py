@@ -43,8 +43,8 @@ class ResponseMetrics(ResponseIntegrals):
         series = block_series.series(values)
         x = series_roots.maxima(series, nodes[np.maximum(top - 1, 0)], nodes[np.minimum(top + 1, DEGREE)])
         reached, at_node = series_roots.evaluate(series, x), values[top, np.arange(top.size)]
-        # at rounding level the polynomial and its node differ by nothing
-        inner = reached > at_node
+        # at rounding level, and where nothing moves, the polynomial and its node differ by nothing
+        inner = (reached > at_node) & (np.ptp(values, axis=0) > 0.0)
         reached, x = np.where(inner, reached, at_node), np.where(inner, x, nodes[top])
         # a second summit in the same piece that may be the higher one
         moves = np.diff(values, axis=0)
@@ -63,14 +63,16 @@ class ResponseMetrics(ResponseIntegrals):
     def peak_time(self) -> Array:
         """Return when the peak is reached; ``inf`` where a response only approaches its final value from below."""
         value, time = self._summit
-        level = APPROACH * np.abs(self.final)
+        low, high = self._ranges
+        scale = np.where(self.final == 0.0, np.maximum(-low, high).max(axis=0), np.abs(self.final))
+        level = APPROACH * scale
         approaches = value <= level if self.responses.settles else np.abs(value) <= level
         some = np.nonzero(approaches & ~self.responses.modes.found)[0]
-        low, high = (part[:, some] for part in self._ranges)
-        error = np.where(self._exists[:, some], np.maximum(-low, high), 0.0)
-        arrives = (error[:-1] > ARRIVAL * np.abs(self.final[some])) & (error[1:] <= level[some])
+        error = np.where(self._exists[:, some], np.maximum(-low[:, some], high[:, some]), 0.0)
+        arrives = (error[:-1] > ARRIVAL * scale[some]) & (error[1:] <= level[some])
         self.doubtful[some] |= arrives.any(axis=0)
-        return np.where(approaches, np.inf, time)
+        begins_there = np.maximum(-low[0], high[0]) <= level
+        return np.where(approaches, np.where(begins_there, 0.0, np.inf), time)
 
     def overshoot(self) -> Array:
         """Return the largest excess over the final value, as a fraction of it."""

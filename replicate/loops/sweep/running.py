@@ -146,7 +146,7 @@ def _compute(
         alone = found.alone
         values[STABLE][places] = found.stable
         for name, array in found.values.items():
-            values[name][places] = array
+            values[name][places[~alone]] = array[~alone]
         for flags, why in found.reasons:
             for place in places[flags & ~alone]:
                 reason[place] = f"{reason[place]}; {why}" if reason[place] else why
