@@ -25,8 +25,10 @@ const text = (element) => (element ? element.textContent.trim().replace(/\s+/g, 
 const csvField = (value) => (/[",\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
 const csv = (rows) => rows.map((row) => row.map((cell) => csvField(cell.replaceAll("−", "-"))).join(",")).join("\n");
 
-const TEX = { "\\": "\\textbackslash{}", "−": "$-$", "→": "$\\to$", "≈": "$\\approx$", "≠": "$\\ne$", "∈": "$\\in$" };
-const tex = (value) => value.replace(/[\\−→≈≠∈]/g, (sign) => TEX[sign]).replace(/[&%#_{}]/g, "\\$&");
+const GREEK = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi mathrm{o} pi rho varsigma sigma tau upsilon phi chi psi omega";
+const TEX = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "−": "$-$", "→": "$\\to$", "≈": "$\\approx$", "≠": "$\\ne$", "∈": "$\\in$", "∞": "$\\infty$", "±": "$\\pm$", "×": "$\\times$" };
+GREEK.split(" ").forEach((name, place) => (TEX[String.fromCharCode(0x3b1 + place)] = `$\\${name}$`));
+const tex = (value) => value.replace(/(.)\u0305|[\\~^−→≈≠∈∞±×α-ω&%#_{}$]/gu, (sign, lined) => (lined ? `$\\overline{${lined}}$` : (TEX[sign] ?? `\\${sign}`)));
 const tabular = (rows) => {
   const lines = rows.map((row) => `  ${row.map(tex).join(" & ")} \\\\`);
   return [`\\begin{tabular}{l${"r".repeat(rows[0].length - 1)}}`, lines[0], "  \\hline", ...lines.slice(1), "\\end{tabular}"].join("\n");
@@ -38,13 +40,13 @@ function button(label, action) {
   return made;
 }
 
-// The rows of a card: where, and what is printed, computed and right.
+// The rows of a card: where, and what is printed, computed and right; below a value stands what is said of it.
 function cardRows(card) {
   const link = card.querySelector(".card-title");
   const rows = [["cell", "what", "value", "remark"]];
   for (const term of card.querySelectorAll("dt")) {
-    const value = term.nextElementSibling;
-    rows.push([text(link), text(term), text(value), text(value.nextElementSibling)]);
+    const [value, ...remarks] = term.nextElementSibling.textContent.trim().split("\n");
+    rows.push([text(link), text(term), value, remarks.join(" ")]);
   }
   rows.push([text(link), "verdict", text(card.querySelector(".badge")), ""]);
   return rows;
@@ -109,7 +111,8 @@ for (const exhibit of document.querySelectorAll(".exhibit")) {
   const tables = exhibit.querySelectorAll("table.values");
   const files = exhibit.querySelector(".files");
   if (!tables.length || !files) continue;
-  const rows = () => [...tables].flatMap((table, place) => tableRows(table).slice(place ? 1 : 0));
+  const banded = exhibit.querySelector(".bands"); // each band has columns, and so a head, of its own
+  const rows = () => [...tables].flatMap((table, place) => tableRows(table).slice(place && !banded ? 1 : 0));
   files.append(
     button("copy as CSV", (self) => copy(csv(rows()), self)),
     button("copy as TeX", (self) => copy(tabular(rows()), self)),
@@ -134,16 +137,14 @@ function sort(table, column, head) {
   table.append(...keyed.map((entry) => entry.body));
 }
 
-for (const table of document.querySelectorAll(".scroll:not(.stretches) > table.values")) {
+for (const table of document.querySelectorAll(".bleed:not(.bands) > .scroll:not(.stretches) > table.values")) {
   if (table.tBodies.length < 6) continue;
   table.tHead.querySelectorAll("[data-c]").forEach((head) => {
     const column = Number(head.dataset.c);
-    const label = head.querySelector(".label");
     const sorter = button("", () => sort(table, column, head));
     sorter.className = "sorter";
-    sorter.title = "sort by this column";
-    label.replaceWith(sorter);
-    sorter.append(label);
+    sorter.title = `sort by ${text(head.firstChild)}`;
+    head.append(sorter);
   });
 }
 
@@ -197,6 +198,12 @@ function nearest(lines, [x, y]) {
   return best;
 }
 
+// The names of curves as a page writes them, by what the drawing calls them.
+function namesOf(drawing) {
+  const names = drawing.parentElement.querySelectorAll(".names > li");
+  return new Map([...names].map((one) => [one.dataset.name, one]));
+}
+
 function readOut(drawing, svg) {
   const box = Object.assign(document.createElement("div"), { className: "read-out", hidden: true });
   const dot = document.createElementNS(svg.namespaceURI, "circle");
@@ -205,6 +212,7 @@ function readOut(drawing, svg) {
   svg.append(dot);
   drawing.append(box);
   const lines = new Map();
+  const names = namesOf(drawing);
   const away = () => {
     box.hidden = true;
     dot.setAttribute("visibility", "hidden");
@@ -227,7 +235,8 @@ function readOut(drawing, svg) {
     const [left, top, right, bottom] = best.edges;
     const x = valueAt(limits(best.axes, "x"), (best.point[0] - left) / (right - left));
     const y = valueAt(limits(best.axes, "y"), (bottom - best.point[1]) / (bottom - top));
-    box.textContent = `${best.name.replaceAll("$", "")}${best.name ? ": " : ""}${shown(y)} at ${shown(x)}`;
+    const name = names.get(best.name)?.cloneNode(true).childNodes ?? [best.name];
+    box.replaceChildren(...name, `${best.name ? ": " : ""}${shown(y)} at ${shown(x)}`);
     dot.setAttribute("cx", best.point[0]);
     dot.setAttribute("cy", best.point[1]);
     dot.setAttribute("visibility", "visible");
@@ -241,15 +250,15 @@ function readOut(drawing, svg) {
 
 function curveTools(drawing, svg) {
   const tools = Object.assign(document.createElement("div"), { className: "curves" });
-  const names = [...new Set([...svg.querySelectorAll("[data-legend]")].map((part) => part.dataset.legend))];
-  const drawn = names.filter((name) => svg.querySelector(`[data-curve="${CSS.escape(name)}"]`));
-  for (const name of drawn.length > 1 ? drawn : []) {
+  const drawn = [...namesOf(drawing)].filter(([name]) => svg.querySelector(`[data-curve="${CSS.escape(name)}"]`));
+  for (const [name, written] of drawn.length > 1 ? drawn : []) {
     const parts = svg.querySelectorAll(`[data-curve="${CSS.escape(name)}"], [data-legend="${CSS.escape(name)}"]`);
-    const toggle = button(name.replaceAll("$", "").replaceAll("\\", ""), () => {
+    const toggle = button("", () => {
       const on = toggle.getAttribute("aria-pressed") === "false";
       toggle.setAttribute("aria-pressed", String(on));
       for (const part of parts) part.classList.toggle("off", !on);
     });
+    toggle.append(...written.cloneNode(true).childNodes);
     toggle.setAttribute("aria-pressed", "true");
     for (const part of parts) if (part.dataset.legend) part.addEventListener("click", () => toggle.click());
     tools.append(toggle);

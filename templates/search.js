@@ -24,7 +24,13 @@ function search() {
 }
 
 function ask() {
-  if (location.hash.startsWith("#q=")) field.value = decodeURIComponent(location.hash.slice(3));
+  if (location.hash.startsWith("#q=")) {
+    try {
+      field.value = decodeURIComponent(location.hash.slice(3));
+    } catch {
+      field.value = location.hash.slice(3); // an address that was cut in the middle of a letter
+    }
+  }
   search();
 }
 

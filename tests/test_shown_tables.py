@@ -26,7 +26,7 @@ def view(*values: list[list[float]]) -> TableView:
 
 
 def test_columns_with_a_common_end_stand_under_one_head() -> None:
-    found = view([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]).spans
+    found = view([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]]).pieces[0].spans
     assert [span.label for span in found] == ["first loop", "$f(1, 2)$"]
     assert [[label for _, label in span.columns] for span in found] == [["$k$", "$T_i$"]] * 2
 
@@ -52,3 +52,23 @@ def test_what_the_line_above_says_is_marked() -> None:
     (_, first), (_, second) = shown.rows
     assert [line.repeats for line in shown.lines(first)] == [[False] * 4, [True, False, True, False]]
     assert [line.readings for line in shown.lines(second)] == [["as-written", "other"]]
+
+
+def test_very_many_columns_stand_below_each_other() -> None:
+    many = [f"c{place}" for place in range(60)]
+    table = Table("table-1", "table", "Wide", rows=("A",), columns=tuple(many), printed=False)
+    table.reading("as-written", "As written")(lambda: pd.DataFrame([range(60)], index=["A"], columns=many))
+    shown = table_view(table, TableResult("toy", "table-1", {"as-written": table.readings["as-written"].compute()}), [])
+    assert [len(piece.columns) for piece in shown.pieces] == [15] * 4
+    assert [column for piece in shown.pieces for column in piece.columns] == many
+    cells = [cell.column for piece in shown.pieces for _, _, row in piece.rows for cell in row]
+    assert cells == many
+    assert [piece.first for piece in shown.pieces] == [0, 15, 30, 45]
+
+
+def test_a_reading_that_computes_nothing_in_a_row_has_no_line_there() -> None:
+    nan = float("nan")
+    shown = view([[1.0, nan, 3.0, 4.0], [nan] * 4], [[nan] * 4, [nan] * 4])
+    (_, first), (_, second) = shown.rows
+    assert [line.readings for line in shown.lines(first)] == [["as-written"]]
+    assert len(shown.lines(second)) == 1  # of a row that nothing was printed for, one line remains

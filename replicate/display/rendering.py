@@ -127,13 +127,14 @@ def _math_font() -> str:
     return f'@font-face {{ font-family: "Replicate Math"; src: url(data:font/woff;base64,{font}); }}\n'
 
 
+_PICTURE = '<img src="data/'  # of the project's own; images in texts do not pass
 _COLOURS = {"accent": "link", "paper": "bg", "ink": "ink"}
 
 
 def with_policy(page: str) -> str:
-    """Return a page with the policy that allows the styles and scripts it carries, and nothing else."""
+    """Return a page with the policy that allows the styles and scripts it carries, its pictures, and nothing else."""
     styles, scripts = (re.findall(rf"<{name}[^>]*>(.*?)</{name}>", page, re.DOTALL) for name in ("style", "script"))
-    return page.replace(_POLICY, policy(styles, scripts))
+    return page.replace(_POLICY, policy(styles, scripts, pictures=_PICTURE in page))
 
 
 def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:

@@ -76,13 +76,15 @@ def sanitised(text: str) -> str:
     return _CLEANER.clean(text)
 
 
-def policy(styles: Sequence[str], scripts: Sequence[str]) -> str:
+def policy(styles: Sequence[str], scripts: Sequence[str], *, pictures: bool = False) -> str:
     """Return the Content-Security-Policy of a page that carries its styles and scripts itself.
 
     Parameters
     ----------
     styles, scripts
         The exact texts of its style and script elements; nothing else runs.
+    pictures
+        Whether it shows pictures that lie beside it.
 
     Examples
     --------
@@ -95,7 +97,7 @@ def policy(styles: Sequence[str], scripts: Sequence[str]) -> str:
             f"script-src {_hashes(scripts)}",
             f"style-src-elem {_hashes(styles)}",
             "style-src-attr 'unsafe-inline'",  # drawings place their parts with style attributes
-            "img-src data:",
+            "img-src data: 'self'" if pictures else "img-src data:",
             "font-src data:",
             "base-uri 'none'",
             "form-action 'none'",

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from replicate.display import numbers
 from replicate.display.addresses import trial_address
 from replicate.display.distance import off
-from replicate.display.spanners import Span, spans
+from replicate.display.pieces import Piece, pieces
 from replicate.display.words import CERTAINTIES
 from replicate.exhibits import Reading, Table
 from replicate.exhibits.conventions import tallies
@@ -21,7 +21,6 @@ from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
 _WRONG = {*ERRORS, "unexplained"}
-_TOWER, _MOST_STRETCHES = 14, 3  # lines of a table with one column from which on it is a tower; pieces at most
 
 
 @dataclass(frozen=True)
@@ -119,40 +118,37 @@ class TableView:
     shortened: list[tuple[str, str]] = field(default_factory=list)  # quantities with truncated cells, and the count
     strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
     trials: dict[str, str] = field(default_factory=dict)  # by row: where its loop can be tried out
+    every_card: bool = True  # whether cells that hold have a card, too
+    left_out: int = 0  # rows that are in the files only
 
-    @property
-    def spans(self) -> list[Span]:
-        """The columns in groups that stand under one head."""
-        return spans([self.table.labels.get(column, column.replace("_", " ")) for column in self.columns])
+    def has_card(self, verdict: VerdictRow) -> bool:
+        """Return whether a printed value has a card; all that do not hold do."""
+        return self.every_card or verdict.verdict not in HOLDING
 
     @property
     def differing(self) -> set[str]:
-        """The rows in which some printed value does not hold."""
-        return {verdict.row for verdict in self.verdicts if verdict.verdict not in HOLDING}
+        """The rows in which some printed value that can be computed does not hold."""
+        return {one.row for one in self.verdicts if one.verdict not in HOLDING and one.verdict != "not-computable"}
+
+    @property
+    def matches(self) -> set[str]:
+        """The kinds of match that occur."""
+        return {value.match.kind for _, cells in self.rows for cell in cells for value in cell.values if value.full}
 
     @property
     def line_count(self) -> int:
         """How long the table is."""
-        return sum(self._height(cells) for _, cells in self.rows)
+        return sum(self.height(cells) for _, cells in self.rows)
 
-    def _height(self, cells: list[Cell]) -> int:
+    def height(self, cells: list[Cell]) -> int:
+        """Return how many lines a row has."""
         lines = len(self.lines(cells))
         return lines + 1 if self.verdicts or lines > 1 else lines
 
     @property
-    def stretches(self) -> list[list[tuple[int, str, list[Cell]]]]:
-        """The numbered rows of the table; those of a long one with a single column in stretches of similar length.
-
-        The stretches can stand beside each other, where the whole would be a mostly white tower.
-        """
-        rows = [(number, row, cells) for number, (row, cells) in enumerate(self.rows, 1)]
-        wanted = min(_MOST_STRETCHES, -(-self.line_count // _TOWER)) if len(self.columns) == 1 else 1
-        stretches: list[list[tuple[int, str, list[Cell]]]] = [[] for _ in range(max(1, wanted))]
-        height, total = 0, max(1, self.line_count)
-        for entry in rows:
-            stretches[height * len(stretches) // total].append(entry)
-            height += self._height(entry[2])
-        return [stretch for stretch in stretches if stretch] or [[]]
+    def pieces(self) -> list[Piece]:
+        """The table in pieces that fit a page."""
+        return pieces(self)
 
     @staticmethod
     def found(row: list[Cell]) -> str:
@@ -160,14 +156,15 @@ class TableView:
         return classes(cell.verdict.verdict for cell in row if cell.verdict)
 
     def lines(self, row: list[Cell]) -> list[Line]:
-        """Return the lines of a row: readings that agree in all of it share one."""
+        """Return the lines of a row: readings that agree in all of it share one, and what computes nothing has none."""
         places = {reading.id: str(place) for place, reading in enumerate(self.readings, 2)}
         lines: dict[tuple[tuple[str, ...], ...], tuple[list[str], list[Value]]] = {}
         for values in zip(*(entry.values for entry in row), strict=True):
             ids, _ = lines.setdefault(tuple(value.same for value in values), ([], list(values)))
             ids.append(values[0].reading.id)
         found: list[Line] = []
-        for ids, shown in lines.values():
+        told = [line for line in lines.values() if any(value.text for value in line[1])]
+        for ids, shown in told if told or self.verdicts else lines.values():
             above = [value.same for value in found[-1].values] if found else [None] * len(shown)
             repeats = [one.same == said for one, said in zip(shown, above, strict=True)]
             found.append(Line(ids, shown, " ".join(places[id] for id in ids), repeats))

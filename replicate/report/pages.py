@@ -1,13 +1,15 @@
 """The report: an overview of all papers and one page per paper (or per part of a long one).
 
-Every page stands alone: style and script are inside it, nothing is fetched, and all can be read without the script.
+Every page stands alone: style and script are inside it, nothing is fetched but drawings too heavy for a page, and all
+can be read without the script.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import dropwhile, takewhile
 from pathlib import Path
 
@@ -27,6 +29,7 @@ from replicate.report.search import KINDS, hits
 from replicate.report.single_file import self_contained
 from replicate.report.site import Site
 from replicate.report.views import ExhibitView, exhibit_views
+from replicate.report.weight import within_limits
 from replicate.resources import templates_dir
 from replicate.run.modules import distributions_used
 from replicate.verdicts.prose import Prose
@@ -144,19 +147,25 @@ def build_report(
     texts[SEARCH] = render("search.html", SEARCH, hits=listed, kinds=KINDS, **shared)
     for pages in site.values():
         for page in pages:
-            texts[page.file] = render(
+            fill = partial(
+                render,
                 "paper.html",
                 page.file,
-                page=page,
                 pages=pages,
                 mistakes=[erratum for erratum in mistakes if erratum.page == page.file],
                 unexplained=[erratum for erratum in unexplained if erratum.page == page.file],
                 **shared,
             )
+            texts[page.file] = within_limits(page.exhibits, _filling(fill, page))
     out_dir.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         (out_dir / name).write_bytes(text.encode())
     return [out_dir / name for name in texts]
+
+
+def _filling(fill: Callable[..., str], page: Page) -> Callable[[Sequence[ExhibitView]], str]:
+    """Return what makes a page with other views of its exhibits."""
+    return lambda views: fill(page=replace(page, exhibits=list(views)))
 
 
 def _listed(found: Iterable[Sheet], row: VerdictRow) -> tuple[Paper, Erratum, VerdictRow, str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -23,12 +25,21 @@ from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
 
 @dataclass(frozen=True)
 class FigureView:
-    """A figure: the drawing as an element of the page, or the reason why there is none."""
+    """A figure: the drawing as an element of the page or in a file beside it, or the reason why there is none."""
 
     figure: Figure
     svg: Markup
     error: str
     files: list[tuple[str, str]]  # (format, address)
+    description: str = ""
+    lightest: str = ""  # address of the drawing's file with the fewest bytes
+    beside: str = ""  # address of the file that is shown in place of an element
+
+    @property
+    def names(self) -> list[str]:
+        """The names of the curves that a legend lists, as the figure writes them."""
+        found = re.findall(r' data-legend="([^"]*)"', self.svg)
+        return [html.unescape(name) for name in dict.fromkeys(found)]
 
 
 @dataclass(frozen=True)
@@ -70,6 +81,13 @@ class ExhibitView:
     def found(self) -> str:
         """Its verdicts as names of classes, by which a page selects what it shows."""
         return classes(one.verdict for one in self.verdicts)
+
+    @property
+    def failed(self) -> bool:
+        """Whether what stands in its place says why there is nothing to see."""
+        return bool(
+            (self.table and self.table.errors and not self.table.verdicts) or (self.figure and self.figure.error)
+        )
 
 
 def exhibit_views(
@@ -143,9 +161,11 @@ def _figure(figure: Figure, result: FigureResult) -> FigureView:
     if result.error:
         return FigureView(figure, Markup(""), result.error, [])
     base = f"data/figures/{result.paper}/{figure.id}"
-    svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, description(figure.alt, result.axes), result.axes)
+    said = description(figure.alt, result.axes)
+    svg = inline_svg(result.svg, f"svg-{figure.id}", figure.title, said, result.axes)
     files = [(suffix.upper(), f"{base}.{suffix}") for suffix in ("svg", "png", "csv")]
-    return FigureView(figure, Markup(svg), "", files)  # noqa: S704 -- drawn here; its texts are escaped
+    lightest = f"{base}.{'png' if len(result.png) < len(result.svg) else 'svg'}"
+    return FigureView(figure, Markup(svg), "", files, said, lightest)  # noqa: S704 -- drawn here; its texts are escaped
 
 
 def _claims(claims: Claims, result: ClaimsResult) -> Iterable[ClaimView]:

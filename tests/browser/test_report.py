@@ -261,6 +261,27 @@ def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: P
         assert again.evaluate("(cell) => getComputedStyle(cell).visibility") == "visible"
 
 
+def test_heads_are_repeated_on_printed_pages(report: Path, browser: Any) -> None:
+    """Chromium repeats the head of a table on every page, but shows no button in the copies."""
+    with Sight(browser, report / "khan.html") as page:
+        buttons = page.locator("table.values thead button")
+        assert buttons.count() > 3
+        page.emulate_media(media="print")
+        assert not any(button.is_visible() for button in buttons.all())
+        assert page.locator("table.values thead:has(button) .label").first.is_visible()
+
+
+def test_curves_are_called_what_the_legend_calls_them(report: Path, browser: Any) -> None:
+    with Sight(browser, report / "bayhan.html") as page:
+        names = page.locator("#fig-2 .curves button[aria-pressed]")  # its legend is beside the axes
+        assert names.count() == 11
+        names.first.click()
+        assert page.locator("#fig-2 [data-curve].off").count() == 2  # one in each panel
+    with Sight(browser, report / "panagopoulos-IV.html") as page:
+        assert page.locator("#IV-fig-2 .curves button math").count() == 4
+        assert not re.search(r"tau|[$\\_]", page.locator("#IV-fig-2 .curves").inner_text())
+
+
 def test_tables_sort_and_copy(report: Path, browser: Any) -> None:
     with Sight(browser, report / "khan.html") as page:
         table = page.locator("#table-2 table.values").first
