@@ -35,8 +35,8 @@ MOST_PIXELS = 100_000_000
 CROWD = 10_000
 
 
-def check_limits(figure: Figure) -> None:
-    """Check that a figure can be drawn in reasonable time and space.
+def within_limits(figure: Figure) -> None:
+    """Check that a figure can be drawn in reasonable time and space, and have crowds of marks drawn as pixels.
 
     Raises
     ------
@@ -54,11 +54,7 @@ def check_limits(figure: Figure) -> None:
     _demand(len(parts), MOST_PARTS, "parts, ticks and labels among them")
     _demand(sum(_points(artist) for artist in parts), MOST_POINTS, "points")
     _demand(sum(_pixels(artist) for artist in parts), MOST_PIXELS, "pixels in images")
-
-
-def rasterise_crowds(figure: Figure) -> None:
-    """Have everything that consists of very many marks drawn as pixels in formats of shapes."""
-    for artist in everything(figure):
+    for artist in parts:
         if elements(artist) > CROWD:
             artist.set_rasterized(True)
 

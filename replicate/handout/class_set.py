@@ -19,7 +19,7 @@ from replicate.handout.key_figures import key_pages
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.placing import exercises_of
-from replicate.handout.questions import Question, questions_of
+from replicate.handout.questions import Question, questions_of, with_pictures
 from replicate.handout.roster import file_stem
 from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
@@ -126,7 +126,7 @@ class ClassSet:
         while some := list(islice(waiting, AT_ONCE)):
             for form, document in zip(some, self._batch(some), strict=True):
                 if questions is not None:
-                    questions += questions_of(document, exercises, form)
+                    questions += with_pictures(questions_of(document, exercises, form))
                 yield document
 
     def _batch(self, forms: Sequence[Form]) -> list[Document]:

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 _COLUMNS, _ROWS = 2, 6  # of a page
 _PAGE = (6.7, 9.2)  # inches
-_ROOM = {"left": 0.13, "right": 0.97, "bottom": 0.37, "top": 0.86}  # for the labels around the axes
+_ROOM = {"left": 0.13, "right": 0.97, "bottom": 0.42, "top": 0.96}  # for the labels around the axes
+_NAME = 0.13  # of a panel's height, above its figure
 _LONGEST = 34  # letters of a name above a figure
 
 
@@ -56,8 +57,9 @@ def _page(
         fig.subplotpars.update(**_ROOM)
         parts = fig.subfigures(_ROWS, _COLUMNS, squeeze=False).ravel()
         for part, name, (_, form) in zip(parts, names, forms, strict=False):
-            figure.draw(part, inputs=variation.drawn(form.draw))
-            part.text(0.13, 0.9, name[:_LONGEST], fontsize=8, fontweight="bold", parse_math=False)
+            head, body = part.subfigures(2, 1, height_ratios=[_NAME, 1.0 - _NAME])
+            figure.draw(body, inputs=variation.drawn(form.draw))
+            head.text(_ROOM["left"], 0.1, name[:_LONGEST], fontsize=8, fontweight="bold", parse_math=False)
 
     alt = f"{figure.alt} One for each of: {', '.join(names)}."
     page = Figure(id, "figure", heading, draw, alt=alt, size=_PAGE)

@@ -14,7 +14,7 @@ _OPTIONS = ("--wrap=none", "--fail-if-warnings")
 
 
 def written(pieces: Sequence[Blocks], target: str, *options: str, raw: str = "") -> list[str]:
-    """Write pieces of a tree, each as if it were alone.
+    """Write pieces of a tree, each as if it were alone; equal ones are written once.
 
     Parameters
     ----------
@@ -27,9 +27,12 @@ def written(pieces: Sequence[Blocks], target: str, *options: str, raw: str = "")
     """
     if not pieces:
         return []
-    blocks = [block for piece in pieces for block in (raw_block(raw or target, _MARK), *piece)]
+    keys = [json.dumps(piece) for piece in pieces]
+    different = dict(zip(keys, pieces, strict=True))
+    blocks = [block for piece in different.values() for block in (raw_block(raw or target, _MARK), *piece)]
     text = convert(json.dumps(document(blocks)), target, "json", *_OPTIONS, *options)
-    return [piece.strip("\n") + "\n" for piece in text.split(_MARK)[1:]]
+    made = {key: piece.strip("\n") + "\n" for key, piece in zip(different, text.split(_MARK)[1:], strict=True)}
+    return [made[key] for key in keys]
 
 
 def document(blocks: Blocks) -> dict[str, object]:

@@ -154,8 +154,10 @@ class Placing:
 
     def try_it(self, table: str, row: str) -> str:
         """Return a link, in Markdown, to the page that holds the loop of a table's row."""
-        exhibit = self.paper.exhibits.get(table)
-        trials = exhibit.trials() if isinstance(exhibit, Table) and exhibit.trials else {}
+        exhibit, key = self.paper.exhibits.get(table), f"trials {table}"
+        if key not in self.shared:
+            self.shared[key] = exhibit.trials() if isinstance(exhibit, Table) and exhibit.trials else {}
+        trials: Mapping[str, tuple[str, str]] = self.shared[key]
         if row not in trials:
             msg = f"try_it('{table}', '{row}'): no loop to try out; allowed: {_listed(trials)}"
             raise TemplateError(msg)

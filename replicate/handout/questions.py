@@ -95,6 +95,15 @@ def drawings_in(blocks: Blocks, document: Document) -> list[Drawing]:
     return [document.drawings[name] for name in dict.fromkeys(found)]
 
 
+def with_pictures(questions: Iterable[Question]) -> list[Question]:
+    """Return questions with their pictures drawn, while another thread still sets sheets."""
+    found = list(questions)
+    for question in found:
+        for drawing in drawings_in([*question.text, *question.solution], question.document):
+            drawing.png  # noqa: B018  -- it is kept
+    return found
+
+
 def different(questions: Iterable[Question]) -> list[Question]:
     """Return questions by exercise and form; those of exercises that do not vary are the same on all forms."""
     found = {question.id: question for question in questions}

@@ -15,13 +15,24 @@ Blocks = list[Element]
 _WORDS = {"Str", "Space", "SoftBreak", "LineBreak"}  # nine of ten elements
 
 
-def elements(node: object) -> Iterator[Element]:
-    """Yield every element below a node, in the order of the text."""
+def elements(node: object, *, words: bool = False) -> Iterator[Element]:
+    """Yield every element below a node, in the order of the text.
+
+    Parameters
+    ----------
+    words
+        Whether words and the spaces between them are wanted, too.
+    """
+    unwanted = () if words else _WORDS
     waiting = [node]  # a stack, not a recursion: trees of a class set are walked a thousand times
     while waiting:
         found = waiting.pop()
         if isinstance(found, list):
-            waiting += [child for child in reversed(found) if isinstance(child, list | dict)]
+            waiting += [
+                child
+                for child in reversed(found)
+                if isinstance(child, list) or (isinstance(child, dict) and child.get("t") not in unwanted)
+            ]
         elif isinstance(found, dict):
             if "t" in found:
                 yield found
@@ -50,7 +61,7 @@ def transform(node: Any, change: Callable[[Element], list[Element] | None]) -> A
                 replaced = change(kept)
                 out += [kept] if replaced is None else replaced
             else:
-                out.append(transform(child, change))
+                out.append(transform(child, change) if isinstance(child, list) else child)
         return out
     return node
 
@@ -65,7 +76,7 @@ def classes(element: Element) -> list[str]:
 def text_of(node: object) -> str:
     """Return the words of a node as plain text; formulas as their LaTeX source."""
     out = []
-    for element in elements(node):
+    for element in elements(node, words=True):
         match element["t"]:
             case "Str":
                 out.append(element["c"])

@@ -17,7 +17,7 @@ from replicate.errors import PaperDefinitionError
 from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
 from replicate.figures import capture as record_of
-from replicate.figures.limits import check_limits, rasterise_crowds
+from replicate.figures.limits import within_limits
 from replicate.figures.off_screen import curves_frame, png_bytes, svg_and_png, svg_text
 from replicate.figures.style import style
 
@@ -71,8 +71,7 @@ def _drawn(exhibit: Figure) -> Canvas:
     if isinstance(made, Canvas) and made is not canvas:
         msg = "the function returns a figure of its own; expected: something drawn on the figure given"
         raise PaperDefinitionError(msg)
-    check_limits(canvas)
-    rasterise_crowds(canvas)
+    within_limits(canvas)
     return canvas
 
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 SHOWN = 8.0  # dead times
 _SIZE = (6.2, 2.3)
+_ROOM = (0.55, 0.12, 0.45, 0.1)  # inches for ticks and labels: left, right, below, above
 
 
 def _loop(inputs: Inputs) -> Loop:
@@ -142,7 +143,10 @@ def _blank(fig: Figure, top: float) -> None:
 
 
 def _axes(fig: Figure, top: float) -> Axes:
-    axes = fig.subplots()
+    width, height = (float(side) / fig.dpi for side in fig.bbox.size)
+    left, right, below, above = _ROOM
+    fig.figure.set_layout_engine("none")  # the axes have their place: nothing is weighed anew for each of a class
+    axes = fig.add_axes((left / width, below / height, 1 - (left + right) / width, 1 - (below + above) / height))
     axes.axhline(1.0, color="0.4", linestyle="--", linewidth=1.0)
     axes.set(xlabel="$t/L$", ylabel="output $y$", xlim=(0.0, SHOWN), ylim=(0.0, top))
     axes.grid(visible=True)
