@@ -19,27 +19,27 @@ from replicate.exhibits import Paper
 from replicate.figures.style import dark_curves
 from replicate.loops.errors import LoopError
 from replicate.loops.tune import marked_rules
-from replicate.loops.tune.models import LINKED
 from replicate.resources import templates_dir
 from replicate.whatif.rows import Row, rows_of, why_not_drawn
 from replicate.whatif.script import script
 
 NAME = TRIALS
 
-#: Constants of the script: degree of a piece, pieces at most, fastest pole times length of the first piece, last
-#: coefficients of a smooth piece, dead times after which jumps are too smooth to be seen, up to which angle of the dead
-#: time, in radians, a frequency response is looked at, how near to each other roots are one; then the sensitivity peaks
-#: whose contours are drawn, and the settling band.
+#: Constants of the script: degree of a piece, fastest pole times length of the first piece, last coefficients of a
+#: smooth piece, dead times after which jumps are too smooth to be seen, up to which angle of the dead time, in radians,
+#: a frequency response is looked at; then the sensitivity peaks whose contours are drawn, and the settling band. Last,
+#: for a loop at rest and one that is moved: what is left of a response at its end, its pieces at most, and the steps
+#: of a limited response.
 CONSTANTS = {
     "nodes": 24,
-    "mostPieces": 12000,
     "decayPerPiece": 8,
     "rounding": 1e-13,
     "laps": 16,
     "mostTurns": 2000,
-    "linked": LINKED,
     "levels": [1.2, 1.4, 1.6, 2.0],
     "band": 0.02,
+    "atRest": {"settle": 1e-11, "pieces": 12000, "steps": 12000},
+    "moving": {"settle": 1e-6, "pieces": 300, "steps": 3000},
 }
 
 #: What the page gives to copy; `PLANT` and `CONTROLLER` are put in there.
@@ -87,7 +87,7 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", ke
             raise LoopError(reason)
     style = (templates_dir() / "whatif" / "whatif.css").read_text(encoding="utf-8") + dark_curves()
     data = {
-        "rows": [asdict(row) for row in rows],
+        "rows": [_with_names(row) for row in rows],
         "rules": marked_rules(),
         "optimal": _optimal(rows, keep),
         "reference": _reference(keep),
@@ -121,6 +121,12 @@ def write_whatif(papers: Iterable[Paper], folder: Path, back: str = "", keep: Ke
         return []
     (folder / NAME).write_bytes(whatif_page(rows, back=back, keep=keep).encode())
     return [folder / NAME]
+
+
+def _with_names(row: Row) -> dict[str, str]:
+    """Return a row with the names of its table and of itself, by which the gain plane marks it."""
+    table, _, name = row.label.partition(": ")
+    return {**asdict(row), "table": table, "name": name or row.label}
 
 
 def _optimal(rows: Sequence[Row], keep: Keep) -> dict[str, Any]:

@@ -10,9 +10,11 @@ export function shown(x, digits = 4, all = false) {
   return (all || text.includes("e") ? text : String(Number(text))).replace("-", "−");
 }
 
+export const set = (made, attributes) => { for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value); };
+
 export function element(name, attributes, parent, text) {
   const made = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  set(made, attributes);
   if (text !== undefined) made.textContent = text;
   if (parent) parent.append(made);
   return made;
@@ -25,10 +27,10 @@ function ticks(low, high, count = 5) {
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
 }
 
-// An empty diagram in an <svg>: axes, and functions from values to places.
-export function diagram(svg, box, { height, x, y }) {
-  const width = 460;
-  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+// An empty diagram in an <svg>: axes, functions from values to places, and what draws inside: `path` gives the line through
+// values, `draw` draws one, also in SVG's words, `add` any element.
+export function diagram(svg, box) {
+  const { width, height } = svg.viewBox.baseVal, { x = "", y } = svg.dataset;
   svg.replaceChildren();
   const left = 52, right = width - 10, top = 10, bottom = height - (x ? 36 : 20);
   const px = (value) => left + (value - box.left) / (box.right - box.left) * (right - left);
@@ -43,7 +45,8 @@ export function diagram(svg, box, { height, x, y }) {
   const frame = { x: left, y: top, width: right - left, height: bottom - top };
   element("rect", frame, element("clipPath", { id: clip }, svg));
   element("rect", { ...frame, class: "frame" }, svg);
-  return { inside, px, py, box, left, right, top, bottom };
+  const add = (kind, attributes, text) => element(kind, attributes, inside, text);
+  const path = (points) => points.map(([across, up], i) => `${i && Number.isFinite(up) ? "L" : "M"}${px(across).toFixed(1)} ${py(up).toFixed(1)}`).join("");
+  const draw = (kind, line) => add("path", { class: kind, d: typeof line === "string" ? line : path(line) });
+  return { px, py, box, left, right, top, bottom, add, path, draw };
 }
-
-export const path = (points, { px, py }) => points.map(([x, y], i) => `${i && Number.isFinite(y) ? "L" : "M"}${px(x).toFixed(1)} ${py(y).toFixed(1)}`).join("");

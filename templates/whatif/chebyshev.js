@@ -1,4 +1,4 @@
-// Polynomials of one degree through Chebyshev-Lobatto nodes: interpolate, integrate, differentiate; dense linear systems.
+// Polynomials of one degree through Chebyshev-Lobatto nodes, dense linear systems, roots.
 
 import { CONSTANTS } from "./data.js";
 
@@ -16,14 +16,20 @@ export function table(rows, columns, entry) {
   return made;
 }
 
-// row . x, from the given place of the row on, and from that of x.
-export function dot(row, x, count = x.length, from = 0, at = 0) {
+// row . x, from the given place of the row on.
+export function dot(row, x, from = 0) {
   let sum = 0;
-  for (let j = 0; j < count; j++) sum += row[from + j] * x[at + j];
+  for (let j = 0; j < x.length; j++) sum += row[from + j] * x[j];
   return sum;
 }
 
-export const identity = (size) => table(size, size, (i, j) => Number(i === j));
+// M x, with the columns of M from the given one on, written or added to y.
+export function apply(M, x, y = floats(M.length), from = 0, added = false) {
+  for (let i = 0; i < M.length; i++) y[i] = dot(M[i], x, from) + (added ? y[i] : 0);
+  return y;
+}
+
+export const identity = () => table(COUNT, COUNT, (i, j) => Number(i === j));
 
 // A B, with the columns of A from the given one on.
 export function product(A, B, from = 0) {
@@ -52,63 +58,62 @@ export const integrate = table(COUNT, COUNT, (i, j) => coefficients.reduce((sum,
 export const differentiate = table(COUNT, COUNT, (i, j) => (i === j ? 0 : weights[j] / weights[i] / (nodes[i] - nodes[j])));
 differentiate.forEach((row, i) => { row[i] = -row.reduce((sum, value) => sum + value, 0); });
 
-// What each value at a node counts for the value at s.
-export function lagrange(s) {
-  const at = nodes.indexOf(s), parts = nodes.map((node, j) => (at < 0 ? weights[j] / (s - node) : Number(j === at)));
-  const sum = parts.reduce((total, part) => total + part, 0);
-  return Float64Array.from(parts, (part) => part / sum);
-}
-
-// The value at s of the polynomial through values (offset: where its nodes begin in the array).
-export function interpolate(values, offset, s) {
+// The value at s of the polynomial through values.
+export function interpolate(values, s) {
   let above = 0, below = 0;
   for (let j = 0; j < COUNT; j++) {
     const gap = s - nodes[j];
-    if (gap === 0) return values[offset + j];
+    if (gap === 0) return values[j];
     const weight = weights[j] / gap;
-    above += weight * values[offset + j];
+    above += weight * values[j];
     below += weight;
   }
   return above / below;
 }
 
 // The size of the last coefficients: how well the degree suffices.
-export const tail = (values, offset) => Math.max(...coefficients.slice(-3).map((row) => Math.abs(dot(row, values, COUNT, 0, offset))));
+const last = coefficients.slice(-3);
+export const tail = (values) => Math.max(...last.map((row) => Math.abs(dot(row, values))));
+
+// row - factor other, in place, from the given column on.
+function subtract(row, factor, other, from = 0) {
+  if (factor) for (let j = from; j < row.length; j++) row[j] -= factor * other[j];
+}
 
 // Solve M X = R in place for a dense matrix (rows of Float64Array); returns R.
-export function solve(matrix, right) {
-  const size = matrix.length, columns = right[0].length;
+export function solve(M, R) {
+  const size = M.length;
   for (let i = 0; i < size; i++) {
     let pivot = i;
-    for (let r = i + 1; r < size; r++) if (Math.abs(matrix[r][i]) > Math.abs(matrix[pivot][i])) pivot = r;
-    [matrix[i], matrix[pivot]] = [matrix[pivot], matrix[i]];
-    [right[i], right[pivot]] = [right[pivot], right[i]];
+    for (let r = i + 1; r < size; r++) if (Math.abs(M[r][i]) > Math.abs(M[pivot][i])) pivot = r;
+    for (const rows of [M, R]) [rows[i], rows[pivot]] = [rows[pivot], rows[i]];
     for (let r = i + 1; r < size; r++) {
-      const factor = matrix[r][i] / matrix[i][i];
-      if (factor === 0) continue;
-      for (let c = i + 1; c < size; c++) matrix[r][c] -= factor * matrix[i][c];
-      for (let c = 0; c < columns; c++) right[r][c] -= factor * right[i][c];
+      const factor = M[r][i] / M[i][i];
+      subtract(M[r], factor, M[i], i);
+      subtract(R[r], factor, R[i]);
     }
   }
   for (let i = size - 1; i >= 0; i--) {
-    for (let c = 0; c < columns; c++) {
-      let sum = right[i][c];
-      for (let j = i + 1; j < size; j++) sum -= matrix[i][j] * right[j][c];
-      right[i][c] = sum / matrix[i][i];
-    }
+    for (let j = i + 1; j < size; j++) subtract(R[i], M[i][j], R[j]);
+    for (let c = 0; c < R[i].length; c++) R[i][c] /= M[i][i];
   }
-  return right;
+  return R;
 }
 
-// A place between a and c, where f has different signs, at which it is zero: regula falsi, with a bisection each third time.
+// A zero of f between a and c, where its signs differ (Chandrupatla: inverse quadratic interpolation where safe, else bisection).
 export function root(f, a, c) {
-  let low = f(a), high = f(c);
-  for (let round = 0; round < 100 && c - a > 2e-16 * Math.max(Math.abs(a), Math.abs(c)); round++) {
-    let s = round % 3 === 2 ? a + (c - a) / 2 : a - low * (c - a) / (high - low);
-    if (!(s > a && s < c)) s = a + (c - a) / 2;
-    const here = f(s);
-    if (s === a || s === c || here === 0) return s;
-    if (here * high < 0) { a = s; low = here; high /= 2; } else { c = s; high = here; low /= 2; }
+  let x1 = c, x2 = a, f1 = f(c), f2 = f(a), part = 0.5; // newest place, and the other end
+  const least = Number.EPSILON * Math.abs(c - a) / 4;
+  for (let round = 0; round < 100; round++) {
+    const x = x1 + part * (x2 - x1), here = f(x), same = here * f1 > 0;
+    const x3 = same ? x1 : x2, f3 = same ? f1 : f2; // the place given up
+    if (!same) [x2, f2] = [x1, f1];
+    [x1, f1] = [x, here];
+    const best = Math.abs(f1) < Math.abs(f2) ? x1 : x2, near = (2 * Number.EPSILON * Math.abs(best) + least) / Math.abs(x2 - x1);
+    if (f1 === 0 || !(near < 0.5)) return best;
+    const along = (x1 - x2) / (x3 - x2), up = (f1 - f2) / (f3 - f2), safe = up * up < along && (1 - up) ** 2 < 1 - along;
+    part = safe ? f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2) : 0.5;
+    part = Math.min(1 - near, Math.max(near, part));
   }
-  return a + (c - a) / 2;
+  return x1;
 }

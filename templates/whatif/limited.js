@@ -1,15 +1,14 @@
-// Loops that are not as drawn: a control signal with limits, a plant that is off.
+// Loops other than drawn: a control signal with limits, a plant that is off.
 
+import { CONSTANTS } from "./data.js";
 import { dot, NODES, nodes } from "./chebyshev.js";
 import { prepare } from "./loop.js";
 import { closedRate, pieceMap, spaceOf } from "./response.js";
 
-const STEPS = 12000; // at least
-
 // A loop whose control signal is limited, in small steps, between which signals are lines. Nothing where it is too fast.
-export function limited(plant, controller, limit, antiWindup, end) {
-  const { k, ki, kd, b, c, filter, prefilter } = controller, { order: n, deadTime } = plant, { A, B, C, D } = spaceOf(plant), delay = deadTime ? Math.ceil(STEPS * deadTime / end) : 0;
-  const dt = deadTime ? deadTime / delay : end / Math.max(STEPS, Math.ceil(5 * end * closedRate(plant, controller))), count = Math.ceil(end / dt);
+export function limited(plant, controller, limit, antiWindup, end, steps = CONSTANTS.atRest.steps) {
+  const { k, ki, kd, b, c, filter, prefilter } = controller, { order: n, deadTime } = plant, { A, B, C, D } = spaceOf(plant), delay = deadTime ? Math.ceil(steps * deadTime / end) : 0;
+  const dt = deadTime ? deadTime / delay : end / Math.max(steps, Math.ceil(5 * end * closedRate(plant, controller))), count = Math.ceil(end / dt);
   if (!(count < 30000)) return null;
   // from (state, input before, input after) to the state after a step
   const stepped = (map, size) => map.slice(NODES * size).map((row) => [...row.slice(0, size), ...[-1, 1].map((side) => nodes.reduce((sum, node, j) => sum + row[size + j] * (1 + side * node) / 2, 0))]);
@@ -18,7 +17,7 @@ export function limited(plant, controller, limit, antiWindup, end) {
   const clamped = (v) => Math.min(limit, Math.max(-limit, v)), used = [], output = [], control = [];
   let x = new Float64Array(n), y = 0, integral = 0, before = { error: 0, lagged: 0, acted: 0, off: 0 };
   for (let i = 0; i <= count; i++) {
-    const r = prefilter ? -Math.expm1(-i * dt / prefilter) : 1, input = (j) => (j < 0 ? 0 : used[j]);
+    const r = prefilter ? -Math.expm1(-i * dt / prefilter) : 1, input = (j) => used[j] ?? 0;
     let now, state = x;
     for (let pass = 0; pass < (delay ? 1 : 3); pass++) { // without dead time the input afterwards is that of the pass before
       const after = delay ? input(i - delay) : now?.u ?? input(i - 1);

@@ -4,10 +4,10 @@
 
 import { add, divide, multiply, onAxis, roots, sizes, times, trimmed } from "./polynomials.js";
 
-// A plant with what every later step asks of it.
+// A plant with what later steps ask of it; poles and zeros that are known better come along.
 export function prepare(plant) {
   const [den, num] = [plant.den, plant.num].map((p) => trimmed(p).map((a) => a / trimmed(plant.den)[0]));
-  return { num, den, deadTime: plant.deadTime, order: den.length - 1, relativeDegree: den.length - num.length, poles: roots(den), zeros: roots(num) };
+  return { poles: roots(den), zeros: roots(num), ...plant, num, den, order: den.length - 1, relativeDegree: den.length - num.length };
 }
 
 // P(i w), with the dead time.
@@ -26,7 +26,7 @@ export const loopAt = (plant, controller, w) => times(plantAt(plant, w), control
 // The characteristic quasi-polynomial free(s) + delayed(s) exp(-s L).
 export function characteristic(plant, { k, ki, kd, filter }) {
   const lag = kd ? [filter, 1] : [1], integrator = ki ? [1, 0] : [1];
-  const feedback = add(add(multiply([k], multiply(integrator, lag)), ki ? multiply([ki], lag) : [0]), kd ? multiply([kd, 0], integrator) : [0]);
+  const feedback = add(add(multiply([k], multiply(integrator, lag)), multiply([ki], lag)), multiply([kd, 0], integrator));
   return {
     free: trimmed(multiply(plant.den, multiply(integrator, lag))),
     delayed: trimmed(multiply(plant.num, feedback)),
@@ -36,5 +36,13 @@ export function characteristic(plant, { k, ki, kd, filter }) {
 
 // A controller with two of its gains given: those of a point of the gain plane.
 export const named = (controller, plane, k, other) => ({ ...controller, k, [plane]: other });
+
+// The frequency from which on something is no longer loud, near a guess.
+export function quietFrom(loud, guess) {
+  let w = guess;
+  for (let i = 0; i < 200 && loud(w); i++) w *= 1.3;
+  for (let i = 0; i < 200 && !loud(w / 1.3); i++) w /= 1.3;
+  return w;
+}
 
 export const fastest = (poles) => Math.max(0, ...sizes(poles));

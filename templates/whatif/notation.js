@@ -1,6 +1,6 @@
-// Plants and controllers as text, in the notation of replicate.loops.notation: e^{-1.5s}/(s+1)^3 and k=0.6,ki=0.5,b=1.
+// Plants and controllers as text, as in replicate.loops.notation: e^{-1.5s}/(s+1)^3 and k=0.6,ki=0.5,b=1.
 
-import { add, multiply, trimmed } from "./polynomials.js";
+import { add, multiply, roots, trimmed } from "./polynomials.js";
 
 export class NotationError extends Error {}
 
@@ -24,38 +24,41 @@ function tokens(text) {
   return [...found, { kind: "end", column: text.length + 1 }];
 }
 
-// Values are quotients of polynomials with a dead time: {num, den, delay}.
-const poly = (...num) => ({ num, den: [1], delay: 0 });
-const negative = (a) => ({ ...a, num: a.num.map((x) => -x) });
-const isZero = (p) => p.every((x) => x === 0);
+// Values are quotients of products of polynomials with a dead time: {num, den, delay}, the factors as they were written.
+const poly = (...num) => ({ num: [num], den: [], delay: 0 });
+const expanded = (factors) => trimmed(factors.reduce(multiply, [1]));
+const negative = (a) => ({ ...a, num: [[-1], ...a.num] });
+const isZero = (a) => a.num.some((p) => p.every((x) => x === 0));
 
 function plus(a, b, column) {
-  if (isZero(b.num)) return a;
-  if (isZero(a.num)) return b;
+  if (isZero(b)) return a;
+  if (isZero(a)) return b;
   if (a.delay !== b.delay) fail(column, "a sum of different dead times is not drawn here; replicate.loops computes it");
-  const same = a.den.join() === b.den.join(), num = same ? add(a.num, b.num) : add(multiply(a.num, b.den), multiply(b.num, a.den));
-  return { num: trimmed(num), den: same ? a.den : multiply(a.den, b.den), delay: a.delay };
+  const same = JSON.stringify(a.den) === JSON.stringify(b.den), crossed = (one, other) => expanded(same ? one.num : [...one.num, ...other.den]);
+  return { num: [add(crossed(a, b), crossed(b, a))], den: same ? a.den : [...a.den, ...b.den], delay: a.delay };
 }
-const joined = (a, b) => ({ num: multiply(a.num, b.num), den: multiply(a.den, b.den), delay: a.delay + b.delay });
+const joined = (a, b) => ({ num: [...a.num, ...b.num], den: [...a.den, ...b.den], delay: a.delay + b.delay });
 function over(a, b, column) {
-  if (isZero(b.num)) fail(column, "division by zero");
+  if (isZero(b)) fail(column, "division by zero");
   return joined(a, { num: b.den, den: b.num, delay: -b.delay });
 }
-const constant = (a) => (a.num.length === 1 && a.den.length === 1 && !a.delay ? a.num[0] / a.den[0] : null);
+function constant(a) {
+  const [num, den] = [expanded(a.num), expanded(a.den)];
+  return num.length === 1 && den.length === 1 && !a.delay ? num[0] / den[0] : null;
+}
 
 function power(base, exponent, column) {
   const n = constant(exponent);
   if (n === null || !Number.isInteger(n) || Math.abs(n) > 40) fail(column, "an exponent is a whole number here");
-  let result = poly(1);
-  for (let i = 0; i < Math.abs(n); i++) result = joined(result, base);
+  const result = Array.from({ length: Math.abs(n) }, () => base).reduce(joined, poly(1));
   return n < 0 ? over(poly(1), result, column) : result;
 }
 
 function evaluate(text) {
   const list = tokens(text);
   let at = 0, depth = 0;
-  const next = () => list[at], take = () => list[at].kind === "end" ? list[at] : list[at++];
-  const shown = (token) => (token.kind === "number" ? String(token.value) : token.kind);
+  const next = () => list[at], take = () => (next().kind === "end" ? next() : list[at++]);
+  const unexpected = ({ kind, column, value }) => fail(column, kind === "end" ? "the text ends too early" : `'${value ?? kind}' is not expected here`);
 
   function sum() {
     if (++depth > 40) fail(next().column, "too many parentheses inside each other");
@@ -101,13 +104,12 @@ function evaluate(text) {
     if (token.kind === "e" && !(next().kind === "^" && list[at + 1].kind in CLOSING)) fail(token.column, "e needs an exponent in braces, as in e^{-2s}");
     if (token.kind === "e") take();
     if (token.kind === "e" || token.kind === "exp") return exponential(token.column);
-    return fail(token.column, token.kind === "end" ? "the text ends too early" : `'${shown(token)}' is not expected here`);
+    return unexpected(token);
   }
   function exponential(column) {
-    const value = group(), p = trimmed(value.num);
-    if (value.delay || value.den.length > 1 || p.length > 2 || (p.length === 2 && p[1] !== 0)) fail(column, "the exponent of e is a number times s");
-    if (p.length === 1) return poly(Math.exp(p[0] / value.den[0]));
-    return { num: [1], den: [1], delay: -p[0] / value.den[0] };
+    const value = group(), p = expanded(value.num), [scale, ...more] = expanded(value.den);
+    if (value.delay || more.length || p.length > 2 || (p.length === 2 && p[1] !== 0)) fail(column, "the exponent of e is a number times s");
+    return p.length === 1 ? poly(Math.exp(p[0] / scale)) : { ...poly(1), delay: -p[0] / scale };
   }
   function group() {
     const opening = take();
@@ -119,20 +121,18 @@ function evaluate(text) {
 
   if (next().kind === "end") fail(1, "the text is empty");
   const value = sum();
-  if (next().kind !== "end") fail(next().column, `'${shown(next())}' is not expected here`);
-  return value;
+  return next().kind === "end" ? value : unexpected(next());
 }
 
 export function parsePlant(text) {
-  const value = evaluate(text), num = trimmed(value.num), den = trimmed(value.den);
-  if (isZero(num)) fail(1, "the plant is zero");
-  if (value.delay < 0) fail(1, "the plant predicts; the dead time must not be negative");
-  if (num.length > den.length) fail(1, "the plant is improper: its numerator has the higher degree");
-  if (num.length === den.length && !value.delay) fail(1, "a plant that answers at once is not drawn here");
-  if (den.length > 16) fail(1, "at most order 15 is drawn here");
-  const numbers = [...num, ...den, value.delay];
-  if (!numbers.every(Number.isFinite)) fail(1, "a coefficient is beyond any limit");
-  return { num, den, deadTime: value.delay };
+  const value = evaluate(text), num = expanded(value.num), den = expanded(value.den);
+  const wrong = [
+    [isZero(value), "the plant is zero"], [value.delay < 0, "the plant predicts; the dead time must not be negative"],
+    [num.length > den.length, "the plant is improper: its numerator has the higher degree"],
+    [num.length === den.length && !value.delay, "a plant that answers at once is not drawn here"], [den.length > 16, "at most order 15 is drawn here"],
+    [![...num, ...den, value.delay].every(Number.isFinite), "a coefficient is beyond any limit"],
+  ].find(([holds]) => holds);
+  return wrong ? fail(1, wrong[1]) : { num, den, deadTime: value.delay, poles: value.den.flatMap((p) => roots(p)), zeros: value.num.flatMap((p) => roots(p)) };
 }
 
 const ALIASES = { kp: "k", gain: "k", integral_time: "ti", derivative_time: "td" };

@@ -2,9 +2,8 @@
 
 import { CONSTANTS } from "./data.js";
 import { divide, onAxis, sizes, times } from "./polynomials.js";
-import { characteristic } from "./loop.js";
+import { characteristic, quietFrom } from "./loop.js";
 
-// The number of closed-loop poles in the right half plane: the argument principle on the imaginary axis.
 export function unstablePoles(plant, controller) {
   const { free, delayed, corners: all } = characteristic(plant, controller);
   const degree = free.length - 1, delay = plant.deadTime;
@@ -17,12 +16,8 @@ export function unstablePoles(plant, controller) {
   // Beyond `end` the argument can be read off the leading terms.
   const corners = sizes(all), far = delayed.length === free.length ? Math.abs(delayed[0] / free[0]) : 0;
   const loud = (w) => Math.hypot(...divide(onAxis(delayed, w), onAxis(free, w))) > 0.25 * (1 + 3 * far);
-  let end = 4 * Math.max(1e-9, ...corners);
-  for (let i = 0; i < 200 && loud(end); i++) end *= 1.5;
-  let last = end;
-  for (let i = 0; i < 200 && !loud(last / 1.2); i++) last /= 1.2;
-  if (!(last * delay < 10 * CONSTANTS.mostTurns)) return NaN; // so high a gain is not decided here
-  end *= 4;
+  const guess = 4 * Math.max(1e-9, ...corners), quiet = quietFrom(loud, guess), end = 4 * Math.max(guess, quiet);
+  if (!(quiet * delay < 10 * CONSTANTS.mostTurns)) return NaN; // so high a gain is not decided here
   const turned = (from, to) => { const [re, im] = divide(to, from); return Math.atan2(im, re); };
   let total = 0, w = 0, here = value(0), step = Math.min(...corners, delay ? 1 / delay : Infinity, end) / 8;
   while (w < end) {

@@ -12,28 +12,34 @@ export function add(p, q) {
 export const times = ([a, b], [c, d]) => [a * c - b * d, a * d + b * c];
 export const divide = ([a, b], [c, d]) => { const scale = c * c + d * d; return [(a * c + b * d) / scale, (b * c - a * d) / scale]; };
 
-// All roots (Aberth's iteration, started on a circle of the roots' geometric mean).
-export function roots(polynomial) {
+// All roots: Aberth's iteration from a circle on, until rounding hides what is left or none moves by a fraction of itself.
+export function roots(polynomial, fraction = 1e-15) {
   const p = trimmed(polynomial), found = [];
   while (p.length > 1 && p.at(-1) === 0) { p.pop(); found.push([0, 0]); }
   const n = p.length - 1, radius = Math.pow(Math.abs(p[n] / p[0]), 1 / n);
   const z = Array.from({ length: n }, (_, i) => [radius * Math.cos(2 * Math.PI * i / n + 0.4), radius * Math.sin(2 * Math.PI * i / n + 0.4)]);
-  for (let round = 0, moved = 1; round < 500 && moved > 1e-15; round++) {
+  for (let round = 0, moved = 1; round < 500 && moved > fraction; round++) {
     moved = 0;
     for (let i = 0; i < n; i++) {
-      let value = [p[0], 0], slope = [0, 0];
+      const [x, y] = z[i], size = Math.hypot(x, y);
+      let re = p[0], im = 0, slopeRe = 0, slopeIm = 0, rounding = Math.abs(re);
       for (let k = 1; k <= n; k++) {
-        slope = times(slope, z[i]).map((part, j) => part + value[j]);
-        value = times(value, z[i]);
-        value[0] += p[k];
+        [slopeRe, slopeIm] = [slopeRe * x - slopeIm * y + re, slopeRe * y + slopeIm * x + im];
+        [re, im] = [re * x - im * y + p[k], re * y + im * x];
+        rounding = rounding * size + Math.abs(p[k]);
       }
-      if (!value[0] && !value[1]) continue;
-      const rate = divide(slope, value);
-      z.forEach((other, j) => { if (j !== i) { const [re, im] = divide([1, 0], [z[i][0] - other[0], z[i][1] - other[1]]); rate[0] -= re; rate[1] -= im; } });
-      const [re, im] = divide([1, 0], rate);
-      if (!Number.isFinite(re) || !Number.isFinite(im)) continue;
-      z[i] = [z[i][0] - re, z[i][1] - im];
-      moved = Math.max(moved, Math.hypot(re, im) / (Math.hypot(...z[i]) + radius * 1e-300));
+      if (Math.hypot(re, im) <= Number.EPSILON * rounding) continue;
+      const rate = divide([slopeRe, slopeIm], [re, im]);
+      for (let j = 0; j < n; j++) {
+        if (j === i) continue;
+        const gapRe = x - z[j][0], gapIm = y - z[j][1], gap = gapRe * gapRe + gapIm * gapIm;
+        rate[0] -= gapRe / gap;
+        rate[1] += gapIm / gap;
+      }
+      const step = divide([1, 0], rate), moves = Math.hypot(...step);
+      if (!Number.isFinite(moves)) continue;
+      z[i] = [x - step[0], y - step[1]];
+      moved = Math.max(moved, moves / (Math.hypot(...z[i]) + radius * 1e-300));
     }
   }
   return [...found, ...z];

@@ -8,10 +8,13 @@ import { grid } from "./margins.js";
 
 const COLUMNS = 72, ROWS = 54; // cells of the map; only its curves between cells are interpolated
 
-const place = (box, row, column) => [box.left + (box.right - box.left) * column / COLUMNS, box.bottom + (box.top - box.bottom) * row / ROWS];
 const at = (field, [row, column]) => field[row * (COLUMNS + 1) + column];
-const corners = (row, column) => [[row, column], [row, column + 1], [row + 1, column + 1], [row + 1, column]];
-const stableAt = (plant, controller, plane, box, [x, y]) => isStable(plant, named(controller, plane, x, y || 1e-9 * (box.top + box.bottom)));
+// All [row, column]; the cells, each as its corners with the next ones.
+const CORNERS = Array.from({ length: (ROWS + 1) * (COLUMNS + 1) }, (_, i) => [Math.floor(i / (COLUMNS + 1)), i % (COLUMNS + 1)]);
+const CELLS = CORNERS.filter(([row, column]) => row < ROWS && column < COLUMNS).map(([row, column]) => {
+  const ring = [[row, column], [row, column + 1], [row + 1, column + 1], [row + 1, column]];
+  return ring.map((corner, i) => [corner, ring[(i + 1) % 4]]);
+});
 
 // Two of the three gains at which a closed-loop pole lies at i w; `plane` is "ki" (kd fixed) or "kd" (ki fixed).
 function boundary(plant, controller, plane, w) {
@@ -29,7 +32,7 @@ export function border(plant, controller, plane) {
   return points.filter((point) => point.every((gain) => Math.abs(gain) < 1e6));
 }
 
-// The part of the plane that holds the stable gains that belong together with small ones, and the gains at hand.
+// The part of the plane with the stable gains next to small ones and the gains at hand.
 export function extent(plant, controller, plane) {
   const curve = border(plant, controller, plane), sign = Math.sign(plant.num.at(-1)) || 1; // the integral gain has the plant's
   const points = curve.filter(([x, y], i) => {
@@ -50,7 +53,7 @@ export function extent(plant, controller, plane) {
 
 // Stability and log Ms on a grid of the plane; the plant is evaluated once for each frequency.
 export function gainMap(plant, controller, plane, box) {
-  const w = grid(plant, named(controller, plane, box.right, box.top || box.bottom), 0.2), table = [];
+  const { w } = grid(plant, named(controller, plane, box.right, box.top || box.bottom), 0.2), table = [];
   for (let i = 0; i < w.length; i += Math.max(1, Math.floor(w.length / 500))) {
     const fixed = controllerAt(named(controller, plane, 0, 0), w[i]), unit = controllerAt(named({ ki: 0, kd: 0, filter: controller.filter }, plane, 0, 1), w[i]);
     table.push([...plantAt(plant, w[i]), ...fixed, ...unit]);
@@ -63,57 +66,35 @@ export function gainMap(plant, controller, plane, box) {
     }
     return -Math.log(least) / 2;
   };
-  const stable = [], level = [];
-  for (let row = 0; row <= ROWS; row++) {
-    for (let column = 0; column <= COLUMNS; column++) {
-      const point = place(box, row, column), here = stableAt(plant, controller, plane, box, point);
-      stable.push(here);
-      level.push(here ? logMs(point) : Infinity);
-    }
-  }
-  return { box, stable, level, logMs };
+  const place = ([row, column]) => [box.left + (box.right - box.left) * column / COLUMNS, box.bottom + (box.top - box.bottom) * row / ROWS];
+  const stableAt = ([x, y]) => isStable(plant, named(controller, plane, x, y || 1e-9 * (box.top + box.bottom)));
+  const points = CORNERS.map(place), stable = points.map(stableAt), level = points.map((point, i) => (stable[i] ? logMs(point) : Infinity));
+  return { place, stable, level, stableAt, logMs };
 }
 
 // Segments inside cells where log Ms crosses a level: marching squares, their ends found exactly.
-export function contour({ box, stable, level, logMs }, value) {
-  const segments = [];
-  for (let row = 0; row < ROWS; row++) {
-    for (let column = 0; column < COLUMNS; column++) {
-      const ring = corners(row, column), cuts = [];
-      if (!ring.every((corner) => at(stable, corner))) continue;
-      ring.forEach((one, i) => {
-        const other = ring[(i + 1) % 4], between = (part) => place(box, one[0] + (other[0] - one[0]) * part, one[1] + (other[1] - one[1]) * part);
-        if ((at(level, one) < value) !== (at(level, other) < value)) cuts.push(between(root((part) => logMs(between(part)) - value, 0, 1)));
-      });
-      while (cuts.length > 1) segments.push(cuts.splice(0, 2));
-    }
-  }
-  return segments;
+export function contour({ place, stable, level, logMs }, value) {
+  return CELLS.filter((cell) => cell.every(([corner]) => at(stable, corner))).flatMap((cell) => {
+    const cut = cell.filter(([one, other]) => (at(level, one) < value) !== (at(level, other) < value)).map(([one, other]) => {
+      const between = (part) => place(one.map((index, i) => index + (other[i] - index) * part));
+      return between(root((part) => logMs(between(part)) - value, 0, 1));
+    });
+    return [cut.slice(0, 2), cut.slice(2)].filter((segment) => segment.length);
+  });
 }
 
-// The stable cells as polygons, their corners on the border found by bisection with the exact test.
-export function region({ box, stable }, plant, controller, plane) {
-  const polygons = [], known = new Map();
+// The stable cells as polygons, their corners on the border found by bisection, to a fifth of a pixel.
+export function region({ place, stable, stableAt }) {
   const between = (one, other) => {
-    const key = [one, other].sort(([r, c], [row, column]) => r - row || c - column).join();
-    if (!known.has(key)) {
-      let a = place(box, ...one), b = place(box, ...other), middle;
-      for (let i = 0; i < 8; i++) {
-        middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
-        if (stableAt(plant, controller, plane, box, middle) === at(stable, one)) a = middle; else b = middle;
-      }
-      known.set(key, middle);
+    let a = place(one), b = place(other);
+    for (let i = 0; i < 5; i++) {
+      const middle = [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2];
+      if (stableAt(middle) === at(stable, one)) a = middle; else b = middle;
     }
-    return known.get(key);
+    return a;
   };
-  for (let row = 0; row < ROWS; row++) {
-    for (let column = 0; column < COLUMNS; column++) {
-      const polygon = corners(row, column).flatMap((one, i, ring) => {
-        const other = ring[(i + 1) % 4], here = at(stable, one);
-        return [...(here ? [place(box, ...one)] : []), ...(here === at(stable, other) ? [] : [between(one, other)])];
-      });
-      if (polygon.length) polygons.push(polygon);
-    }
-  }
-  return polygons;
+  return CELLS.map((cell) => cell.flatMap(([one, other]) => {
+    const here = at(stable, one);
+    return [...(here ? [place(one)] : []), ...(here === at(stable, other) ? [] : [between(one, other)])];
+  })).filter((polygon) => polygon.length);
 }

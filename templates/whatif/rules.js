@@ -1,6 +1,6 @@
-// Where the tuning rules of replicate.loops.tune, sent along as data, put the controller of a plant.
+// Where the tuning rules of replicate.loops.tune, sent as data, put the controller of a plant.
 
-import { CONSTANTS, DATA } from "./data.js";
+import { DATA } from "./data.js";
 
 const OPERATIONS = { "+": (a, b) => a + b, "-": (a, b) => a - b, "*": (a, b) => a * b, "/": (a, b) => a / b, "**": (a, b) => a ** b };
 
@@ -11,39 +11,16 @@ const value = (formula, symbols) => {
   return OPERATIONS[formula[0]](value(formula[1], symbols), value(formula[2], symbols));
 };
 
-// Roots, with each multiple one, which rounding has split into a ring, replaced by its mean.
-function clustered(roots, polynomial) {
-  const left = [...roots], found = [], at = (p, x) => p.reduce((sum, a) => sum * x + a, 0), slope = (p) => p.slice(0, -1).map((a, i) => a * (p.length - 1 - i));
-  while (left.length) {
-    const group = [left.pop()];
-    for (let i = 0; i < group.length; i++) {
-      const [re, im] = group[i], near = ([a, c]) => Math.hypot(a - re, c - im) <= CONSTANTS.linked * Math.hypot(a, c);
-      for (let j = left.length - 1; j >= 0; j--) if (near(left[j])) group.push(...left.splice(j, 1));
-    }
-    const size = group.length;
-    let mean = group.reduce((sum, [re]) => sum + re / size, 0), p = polynomial;
-    const spread = Math.max(...group.map(([re, im]) => Math.hypot(re - mean, im)));
-    const split = size > 1 && spread <= 30 * Number.EPSILON ** (1 / size) * Math.abs(mean);
-    if (split) {
-      for (let i = 1; i < size; i++) p = slope(p); // of which it is a simple root
-      for (let i = 0; i < 4; i++) mean -= at(p, mean) / at(slope(p), mean);
-    }
-    found.push(...group.map((one) => (split ? [mean, 0] : one)));
-  }
-  return found;
-}
-
 // The plant as gain, real lags, integrators and dead time, zeros to the right as dead time; nothing if it is another one.
+// Rounding moves multiple roots of polynomials without factors a little off the real axis.
 function lagModel({ num, den, poles, zeros, deadTime }) {
-  const integrators = poles.filter((pole) => Math.hypot(...pole) === 0).length;
-  const lags = clustered(poles.filter((pole) => Math.hypot(...pole) > 0), den), inverse = clustered(zeros, num);
-  const complex = ([re, im]) => Math.abs(im) > 1e-13 * Math.abs(re);
-  if ([...lags, ...inverse].some(complex) || lags.some(([re]) => re >= 0) || inverse.some(([re]) => re <= 0) || integrators > 1) return null;
-  const L = inverse.reduce((sum, [re]) => sum + 1 / re, deadTime);
+  const lags = poles.filter(([re, im]) => re || im), integrators = poles.length - lags.length, complex = ([re, im]) => Math.abs(im) > 0.01 * Math.abs(re);
+  if ([...lags, ...zeros].some(complex) || lags.some(([re]) => re >= 0) || zeros.some(([re]) => re <= 0) || integrators > 1 || !poles.length) return null;
+  const L = zeros.reduce((sum, [re]) => sum + 1 / re, deadTime);
   return { K: num.at(-1) / den.at(-1 - integrators), L, integrators, lags: lags.map(([re]) => -1 / re).sort((a, b) => b - a) };
 }
 
-// PI settings by all rules that apply.
+// PI settings.
 export function rules(plant) {
   const model = lagModel(plant);
   if (!model) return [];
@@ -56,8 +33,7 @@ export function rules(plant) {
     if (!(rule.reduces || first) || rule.process !== (integrators ? "integrator" : "lag")) return [];
     const symbols = { K, ...(rule.reduces ? reduced : { tau, L: model.L }) };
     for (const [name, formula] of rule.where) symbols[name] = value(formula, symbols);
-    if (!(symbols.L > 0) || (rule.holds && !(value(rule.holds[0], symbols) >= rule.holds[1] && value(rule.holds[0], symbols) <= rule.holds[2]))) return [];
-    const k = value(rule.Kp, symbols);
-    return [{ name: rule.name, k, ki: rule.Ki ? value(rule.Ki, symbols) : k / value(rule.Ti, symbols), kd: 0 }];
+    const [quantity, low, high] = rule.holds ? [value(rule.holds[0], symbols), ...rule.holds.slice(1)] : [0, 0, 0];
+    return symbols.L > 0 && quantity >= low && quantity <= high ? [{ name: rule.name, k: value(rule.Kp, symbols), ki: value(rule.Ki, symbols), kd: 0 }] : [];
   });
 }

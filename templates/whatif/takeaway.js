@@ -2,11 +2,11 @@
 
 import { DATA } from "./data.js";
 import { controllerText } from "./notation.js";
-import { SVG } from "./charts.js";
+import { set, SVG } from "./charts.js";
 import { $, everyone, say } from "./views.js";
 
 export async function copy(text, done) {
-  try { await navigator.clipboard.writeText(text); say("done", done); } catch { $("copied").hidden = false; $("copied").value = text; $("copied").select(); }
+  try { await navigator.clipboard.writeText(text); say("done", done); } catch { Object.assign($("copied"), { hidden: false, value: text }).select(); }
 }
 
 export function download(name, type, text) {
@@ -18,22 +18,21 @@ export function download(name, type, text) {
 
 export const python = ({ plantText, controller }) => DATA.python.replace("PLANT", () => JSON.stringify(plantText)).replace("CONTROLLER", JSON.stringify(controllerText(controller)));
 
-// Stable loops only.
+// The responses of all stable loops.
 export function curves(state) {
-  const signals = everyone(state).filter(({ measured }) => measured.stable).flatMap(({ name, measured: { step, load } }) => {
-    const before = name === "now" ? "" : `${name}_`;
-    return [[`${before}y_setpoint`, step, step.output], [`${before}u_setpoint`, step, step.control], [`${before}y_load`, load, load.output], [`${before}u_load`, load, load.control]];
-  });
-  const end = Math.min(...signals.map(([, { end: its }]) => its)), lines = [["t", ...signals.map(([name]) => name)]];
-  for (let i = 0; i <= 2000; i++) lines.push([end * i / 2000, ...signals.map(([, response, values]) => response.at(values, end * i / 2000))].map((x) => Number(x.toPrecision(12))));
+  const signals = everyone(state).filter(({ measured }) => measured.stable).flatMap(({ name, measured }) => Array.from(document.querySelectorAll("[data-signal]"), ({ dataset }) => (
+    { column: (name === "now" ? "" : `${name}_`) + dataset.column, response: measured[dataset.from], signal: dataset.signal }
+  )));
+  const end = Math.min(...signals.map(({ response }) => response.end)), lines = [["t", ...signals.map(({ column }) => column)]];
+  for (let i = 0; i <= 2000; i++) lines.push([end * i / 2000, ...signals.map(({ response, signal }) => response.at(response[signal], end * i / 2000))].map((x) => Number(x.toPrecision(12))));
   return lines.map((line) => `${line.join()}\n`).join("");
 }
 
 export function picture() {
   let y = 0;
-  const parts = ["plane", "nyquist", "output", "control", "load"].map((id) => {
-    const copyOf = $(id).cloneNode(true), { width, height } = $(id).viewBox.baseVal;
-    for (const [name, value] of Object.entries({ x: 5, y, width, height, style: `width:${width}px;height:${height}px` })) copyOf.setAttribute(name, value);
+  const parts = Array.from(document.querySelectorAll("#main svg"), (svg) => {
+    const copyOf = svg.cloneNode(true), { width, height } = svg.viewBox.baseVal;
+    set(copyOf, { x: 5, y, width, height, style: `width:${width}px;height:${height}px` });
     y += height + 10;
     return new XMLSerializer().serializeToString(copyOf);
   });

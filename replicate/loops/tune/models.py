@@ -13,7 +13,7 @@ from replicate.loops.plant import Plant
 
 ComplexArray = NDArray[np.complex128]
 
-LINKED = 0.02  # relative distance at which roots may be one multiple root, split by rounding
+_LINKED = 0.02  # relative distance at which roots may be one multiple root, split by rounding
 
 
 @dataclass(frozen=True)
@@ -143,7 +143,7 @@ def _clustered(roots: ArrayLike) -> ComplexArray:
     while left:
         group, grown = [left.pop()], True
         while grown:
-            near = [r for r in left if min(abs(r - g) for g in group) <= LINKED * abs(r)]
+            near = [r for r in left if min(abs(r - g) for g in group) <= _LINKED * abs(r)]
             left = [r for r in left if r not in near]
             group += near
             grown = bool(near)

@@ -157,7 +157,7 @@ def marked_rules() -> list[dict[str, Any]]:
     """Return the rules that a gain plane marks, as data for JSON; a formula is what `formula_tree` returns.
 
     Each has ``name``, ``process`` (``lag`` or ``integrator``), ``reduces`` (whether the half rule comes first),
-    ``where`` (pairs of symbol and formula, in order), ``Kp``, ``Ti`` or ``Ki``, and for one case of several ``holds``:
+    ``where`` (pairs of symbol and formula, in order), ``Kp``, ``Ki``, and for one case of several ``holds``:
     quantity, low, high.
     """
     return [_marked(record) for record in _records(FIRST_ORDER)]
@@ -165,10 +165,7 @@ def marked_rules() -> list[dict[str, Any]]:
 
 def _marked(record: Mapping[str, Any]) -> dict[str, Any]:
     form = _form(record, record["mark"]["form"])
-    second = "Ki" if "Ki" in form else "Ti"
-    scaled = {"Kp": form["Kp"], second: form[second]}
-    if "unit" in record:
-        scaled = {name: text if name == "Ti" else f"({record['unit']})*({text})" for name, text in scaled.items()}
+    scaled = {name: f"({record.get('unit', 1)})*({form[name]})" for name in ("Kp", "Ki") if name in form}
     holds = record.get("holds")
     return {
         "name": record["mark"]["name"],
@@ -176,4 +173,6 @@ def _marked(record: Mapping[str, Any]) -> dict[str, Any]:
         "reduces": record.get("reduces", False),
         "where": [[symbol, formula_tree(text)] for symbol, text in record.get("where", {}).items()],
         "holds": [formula_tree(holds["quantity"]), holds["low"], holds["high"]] if holds else None,
-    } | {name: formula_tree(text) for name, text in scaled.items()}
+        "Kp": formula_tree(scaled["Kp"]),
+        "Ki": formula_tree(scaled.get("Ki") or f"({scaled['Kp']})/({form['Ti']})"),
+    }
