@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pandas as pd
 import pytest
 
@@ -9,6 +11,8 @@ from replicate.display.spanners import spans
 from replicate.display.tables import TableView, table_view
 from replicate.exhibits import Table
 from replicate.exhibits.results import TableResult
+from replicate.exhibits.trials import listed
+from replicate.run.library import Library
 
 COLUMNS = ("k_1", "Ti_1", "k_2", "Ti_2")
 LABELS = {"k_1": "$k$, first loop", "Ti_1": "$T_i$, first loop", "k_2": "$k$, $f(1, 2)$", "Ti_2": "$T_i$, $f(1, 2)$"}
@@ -72,3 +76,35 @@ def test_a_reading_that_computes_nothing_in_a_row_has_no_line_there() -> None:
     (_, first), (_, second) = shown.rows
     assert [line.readings for line in shown.lines(first)] == [["as-written"]]
     assert len(shown.lines(second)) == 1  # of a row that nothing was printed for, one line remains
+
+
+def test_a_row_leads_to_its_loops() -> None:
+    table = Table("table-1", "table", "Gains", rows=("A", "B"), columns=("k", "Ti"), printed=False)
+    frame = pd.DataFrame([[1.0, 2.0], [math.nan, 4.0]], index=["A", "B"], columns=["k", "Ti"])
+    table.reading("as-written", "as written")(frame.copy)
+    table.trials = lambda: {("A", "slow"): ("1/s", "k=1"), ("A", "fast"): ("1/s", "k=2")}
+    table.computed_trial = lambda _row, numbers: (f"1/(s+{numbers['Ti']:g})", f"k={numbers['k']:g}")
+    shown = table_view(table, TableResult("p", "table-1", {"as-written": frame}), [])
+    assert shown.trials == {  # nothing for B, whose gain was not computed
+        "A": [
+            ("slow", "whatif.html#plant=1%2Fs&controller=k%3D1"),
+            ("fast", "whatif.html#plant=1%2Fs&controller=k%3D2"),
+            ("", "whatif.html#plant=1%2F%28s%2B2%29&controller=k%3D1"),
+        ]
+    }
+
+
+PROPORTIONAL = {"k", "K", "Kp", "Kp_41", "KKp", "K_P"}
+INTEGRAL = {"ki", "Ti", "Ti_41", "K_I"}
+
+
+def test_every_row_of_tuning_parameters_can_be_tried_out() -> None:
+    missing = {}
+    for paper in Library(bundled=True).papers():
+        for table in paper.exhibits.values():
+            if not (isinstance(table, Table) and PROPORTIONAL & {*table.columns} and INTEGRAL & {*table.columns}):
+                continue
+            rows = {*table.rows} - {trial.row for trial in listed(table.trials)}
+            if rows and table.computed_trial is None:
+                missing[f"{paper.id} {table.id}"] = rows
+    assert missing == {"panagopoulos I-table-2": {"G9 Ms=1.4", "G9 Ms=2.0"}}  # e^{-sqrt(s)}, which the page cannot draw

@@ -59,15 +59,17 @@ def address(page: str, exhibit: str, row: str, column: str) -> str:
     return f"{page}#{anchor(exhibit, row, column)}"
 
 
-def trial_label(exhibit: str, row: str) -> str:
-    """Return what a row is called where its loop can be tried out, after its paper.
+def trial_label(exhibit: str, row: str, case: str = "") -> str:
+    """Return what a row, or a case of it, is called where its loop can be tried out, after its paper.
 
     Examples
     --------
     >>> trial_label("I-table-1", "G1 Ms=1.4")
     'I-table-1: G1 Ms=1.4'
+    >>> trial_label("table-2", "ISE", "ph = 0.1")
+    'table-2: ISE, ph = 0.1'
     """
-    return f"{exhibit}: {row.replace('_', ' ')}"
+    return f"{exhibit}: {row.replace('_', ' ')}" + (f", {case}" if case else "")
 
 
 def trial_address(plant: str, controller: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
@@ -17,6 +18,7 @@ from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.readings import input_name
 from replicate.exhibits.results import Ranges, TableResult
+from replicate.exhibits.trials import listed
 from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
@@ -117,7 +119,7 @@ class TableView:
     verdicts: list[VerdictRow]
     shortened: list[tuple[str, str]] = field(default_factory=list)  # quantities with truncated cells, and the count
     strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
-    trials: dict[str, str] = field(default_factory=dict)  # by row: where its loop can be tried out
+    trials: dict[str, list[tuple[str, str]]] = field(default_factory=dict)  # by row: case, and where one tries it out
     every_card: bool = True  # whether cells that hold have a card, too
     left_out: int = 0  # rows that are in the files only
 
@@ -229,8 +231,23 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         list(by_cell.values()),
         _shortened(table, by_cell.values()),
         _strengths(table, frames, by_cell),
-        {row: trial_address(*loop) for row, loop in table.trials().items()} if table.trials else {},
+        _trials(table, first),
     )
+
+
+def _trials(table: Table, cells: FrameCells | None) -> dict[str, list[tuple[str, str]]]:
+    """Return by row the cases that can be tried out, each with its address."""
+    found: dict[str, list[tuple[str, str]]] = {}
+    for row, case, *loop in listed(table.trials):
+        found.setdefault(row, []).append((case, trial_address(*loop)))
+    if table.computed_trial is not None and cells is not None:
+        for row in cells.rows:
+            computed = {column: cells.numbers.get((row, column)) for column in cells.columns}
+            numbers = {column: number for column, number in computed.items() if number is not None}
+            with contextlib.suppress(KeyError):  # the row computes no parameters
+                address = trial_address(*table.computed_trial(row, numbers))
+                found.setdefault(row, []).append(("", address))
+    return found
 
 
 def _cell(

@@ -27,6 +27,7 @@ from replicate.exhibits.printed import USUAL, Key, Near
 from replicate.exhibits.read_off import Point
 from replicate.exhibits.readings import AS_WRITTEN, Compute, Reading
 from replicate.exhibits.rows import Row, frame_of_rows
+from replicate.exhibits.trials import ComputedTrial, Trials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -78,7 +79,10 @@ class Table:
     module
         The module in which it is defined; set by itself.
     trials
-        Returns what a reader may try out, by row: two texts, plant and controller.
+        Returns what a reader may try out, by row, or by row and case where a row holds several: two texts, plant and
+        controller.
+    computed_trial
+        The same for rows whose parameters are computed: returns the two texts of a row from its numbers as written.
     """
 
     id: str
@@ -99,7 +103,8 @@ class Table:
     depends: tuple[str, ...] = ()
     cases: Literal["rows", "columns", ""] = ""
     comparisons: list[Comparison] = field(default_factory=list)
-    trials: Callable[[], Mapping[str, tuple[str, str]]] | None = None
+    trials: Trials | None = None
+    computed_trial: ComputedTrial | None = None
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     def __post_init__(self) -> None:

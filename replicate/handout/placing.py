@@ -41,6 +41,7 @@ from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult
+from replicate.exhibits.trials import Trial, listed
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
 from replicate.handout.drawings import Drawing, DrawnLater, captured, said_by
@@ -152,16 +153,21 @@ class Placing:
         variation = self._variation("stated", name)
         return f" {variation.stated}" if self.form and variation.stated else ""
 
-    def try_it(self, table: str, row: str) -> str:
-        """Return a link, in Markdown, to the page that holds the loop of a table's row."""
+    def try_it(self, table: str, row: str, case: str = "") -> str:
+        """Return a link, in Markdown, to the page that holds the loop of a table's row, or of one case of it."""
         exhibit, key = self.paper.exhibits.get(table), f"trials {table}"
         if key not in self.shared:
-            self.shared[key] = exhibit.trials() if isinstance(exhibit, Table) and exhibit.trials else {}
-        trials: Mapping[str, tuple[str, str]] = self.shared[key]
-        if row not in trials:
-            msg = f"try_it('{table}', '{row}'): no loop to try out; allowed: {_listed(trials)}"
-            raise TemplateError(msg)
-        return f"[{TRIALS} ({self.paper.id} {trial_label(table, row)})]({trial_address(*trials[row])})"
+            self.shared[key] = listed(exhibit.trials) if isinstance(exhibit, Table) else []
+        trials: list[Trial] = self.shared[key]
+        for trial in trials:
+            if (trial.row, trial.case) == (row, case):
+                label, address = trial_label(table, row, case), trial_address(trial.plant, trial.controller)
+                return f"[{TRIALS} ({self.paper.id} {label})]({address})"
+        asked, *allowed = (
+            "', '".join(filter(None, names)) for names in ((table, row, case), *(one[:2] for one in trials))
+        )
+        msg = f"try_it('{asked}'): no loop to try out; allowed: {_listed(allowed)}"
+        raise TemplateError(msg)
 
     def _variation(self, function: str, name: str) -> Variation:
         if name not in self.exercises.variations:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from replicate.display.addresses import trial_label
 from replicate.exhibits import Paper, Table
+from replicate.exhibits.trials import listed
 from replicate.loops.notation import parse_controller, parse_plant
 
 
@@ -45,8 +46,7 @@ def rows_of(papers: Iterable[Paper]) -> list[Row]:
     found: dict[tuple[str, str], Row] = {}
     for paper in papers:
         for exhibit in paper.exhibits.values():
-            if isinstance(exhibit, Table) and exhibit.trials is not None:
-                for row, (plant, controller) in exhibit.trials().items():
-                    label = f"{paper.id} {trial_label(exhibit.id, row)}"
-                    found.setdefault((plant, controller), Row(label, plant, controller))
+            for row, case, plant, controller in listed(exhibit.trials) if isinstance(exhibit, Table) else ():
+                label = f"{paper.id} {trial_label(exhibit.id, row, case)}"
+                found.setdefault((plant, controller), Row(label, plant, controller))
     return list(found.values())

@@ -15,8 +15,8 @@ export function grid(plant, controller, floor) {
   for (let x = Math.min(...all) / 1e3; x < high; x += Math.min(x * 0.03, 0.12 * turn)) w.push(x);
   w.push(high);
   for (const [re, im] of corners) {
-    const centre = Math.abs(im), width = Math.max(Math.abs(re), 1e-9 * centre);
-    if (centre > 2 * width) for (let j = -23.5; j < 24; j++) w.push(centre + Math.sinh(j / 4) * width); // never at a pole
+    const width = Math.max(Math.abs(re), 1e-4 * im), gap = (j) => Math.sinh(j / 20) * width;
+    if (im > 2 * width) for (let j = 0.5; gap(j) < 0.3 * im; j++) w.push(im - gap(j), im + gap(j)); // never at a pole
   }
   return { w: Float64Array.from(w.filter((x) => x > 0)).sort(), falls };
 }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
 from replicate.papers.bayhan import paper
@@ -43,7 +42,11 @@ table_1 = paper.table(
     "that of Example 4.1 is used.",
     labels=_labels(),
 )
-table_1.trials = partial(trials, EXAMPLE_41, RULES)  # a row has both examples
+table_1.trials = lambda: {
+    (rule, example): loop
+    for example, process in (("Example 4.1", EXAMPLE_41), ("Example 4.2", EXAMPLE_42))
+    for rule, loop in trials(process, RULES).items()
+}
 
 
 def _evaluate(variant: str) -> pd.DataFrame:

@@ -181,10 +181,10 @@ for _table, _dead_times in ((table_1, {"": 10.0}), (table_2, {"ph1_": 1.0, "ph0.
     )(partial(_of_coefficients, _dead_times))
 
 
-def _trials(rules: tuple[str, ...], h: float) -> dict[str, tuple[str, str]]:
-    """Return plant and controller of each rule as printed, for p = 1."""
-    return {rule: (plant(1.0, h).notation(), PI(*gains(rule, 1.0, h)).notation()) for rule in rules}
+def _loop(rule: str, h: float) -> tuple[str, str]:
+    """Return plant and controller of a rule as printed, for p = 1."""
+    return plant(1.0, h).notation(), PI(*gains(rule, 1.0, h)).notation()
 
 
-table_1.trials = partial(_trials, RULES_1, 10.0)
-table_2.trials = partial(_trials, RULES_2, 1.0)  # a row has ph = 1 and ph = 0.1: the first
+table_1.trials = lambda: {rule: _loop(rule, 10.0) for rule in RULES_1}
+table_2.trials = lambda: {(rule, f"ph = {h:g}"): _loop(rule, h) for rule in RULES_2 for h in (1.0, 0.1)}

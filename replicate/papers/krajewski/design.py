@@ -177,6 +177,10 @@ worked_designs = paper.table(
     },
     units={"m_phi": "degrees", "m_phi_max": "degrees"},
 )
+worked_designs.computed_trial = lambda row, numbers: (
+    Plant.foptd(GAIN, TIME_CONSTANT, float(row) * TIME_CONSTANT).notation(),
+    PI(numbers["K_P"], numbers["K_I"]).notation(),
+)
 
 
 @worked_designs.reading("as-written", "Section 6")

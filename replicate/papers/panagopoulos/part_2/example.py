@@ -98,6 +98,12 @@ envelope = paper.table(
 )
 
 
+envelope.computed_trial = lambda row, numbers: (
+    G4.notation(),
+    PID(numbers["k"], numbers["ki"], float(row.removeprefix("kd="))).notation(),
+)
+
+
 @envelope.reading("as-written", "Exact")
 def envelopes() -> pd.DataFrame:
     """Compare the true largest ki with what the vertices suggest."""

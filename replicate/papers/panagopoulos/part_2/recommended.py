@@ -37,6 +37,10 @@ table = paper.table(
         "undershoot": "swing back",
     },
 )
+table.computed_trial = lambda row, numbers: (
+    PLANTS[split(row)[0]].notation(),
+    PID(numbers["k"], numbers["k"] / numbers["Ti"], numbers["k"] * numbers["Td"]).notation(),
+)
 
 
 @cache
