@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import varied_handout
 from conftest import Run
 
 from replicate.errors import ReplicateError
@@ -72,43 +73,6 @@ def test_a_lecturers_code_is_stopped_and_named(
     assert not list((tmp_path / "temporary").glob("replicate-*"))  # whatever has ended it
 
 
-HANDOUT = """from replicate.exhibits.exercises import Exercises
-from replicate.exhibits.variants import Answer, VariedFigure
-
-exercises = Exercises()
-
-
-def draw(fig, *, inputs):
-    {in_figure}
-    fig.subplots().plot([0, inputs["a"]])
-
-
-@exercises.vary(
-    "division",
-    original={{"a": 1}},
-    variant=lambda rng: {{"a": rng.randint(11, 99)}},
-    requires={{}},
-    files=lambda inputs: {{"{file}": "a"}},
-    figures={{"line": VariedFigure("A line", "It rises.", draw, in_key=True)}},
-)
-def division(inputs):
-    {in_answers}
-    return {{"half": Answer(inputs["a"] / 2, digits=3)}}
-"""
-SOUND = {"in_figure": "pass", "in_answers": "pass", "file": "data.csv"}
-TEXT = """# Roots
-
-::: exercise
-## Halve {vary="division"}
-Halve ${{ inputs('division')['a'] }}$.
-
-::: solution
-${{ fixed(answer('division')['half'], 3) }}$
-
-{{ figure('line') }}
-:::
-:::
-"""
 SET = ("handout", "lab", "--variants", "2", "--format", "html")
 
 
@@ -126,8 +90,7 @@ SET = ("handout", "lab", "--variants", "2", "--format", "html")
 def test_a_papers_handout_is_stopped_and_named(
     replicate: Run, folder: Path, where: str, code: str, command: tuple[str, ...], said: str
 ) -> None:
-    (folder / "handout.py").write_text(HANDOUT.format(**SOUND | {where: code}), encoding="utf-8")
-    (folder / "handout.md").write_text(TEXT, encoding="utf-8")
+    varied_handout.write(folder, **{where: code})
     accepted = ("--accepted", "accepted")
     if command[0] == "check":
         replicate("accept", "lab", *accepted, "--reason", "first", "-j1")

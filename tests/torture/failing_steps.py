@@ -14,11 +14,13 @@ import re
 import shutil
 import sys
 from itertools import count
+from multiprocessing import forkserver
 from pathlib import Path
+from typing import Any
 
 from crash_states import watch
 
-PROGRESS = re.compile(r"computed \d|\d+ of \d+ results kept|.*(removed|finished|put back) what a run")
+PROGRESS = re.compile(r"computed \d|\d+ of \d+ (results kept|sheets)|.*(removed|finished|put back) what a run")
 CREATING = {"open", "torn", "os.mkdir", "os.link", "os.symlink", "shutil.copyfile"}
 
 
@@ -76,6 +78,13 @@ def attempt(number: int, how: str, folder: Path, arguments: list[str], errors: P
     return os.waitstatus_to_exitcode(status), errors.read_text(encoding="utf-8")
 
 
+def keep_server() -> None:
+    """Have forks use the server that their parent has started, which they would not find to be a child of theirs."""
+    server: Any = forkserver._forkserver
+    if server._forkserver_address is not None:
+        server.ensure_running = forkserver.ensure_running = lambda: None  # type: ignore[method-assign]
+
+
 def main() -> None:
     how, where, site, every, *arguments = sys.argv[1:]
     sys.path.insert(0, site)
@@ -86,6 +95,7 @@ def main() -> None:
     command(arguments)  # and imports everything
     new = tree(folder)
     assert old != new
+    keep_server()
     if (folder / "build/cache").is_dir():  # forks compute nothing
         shutil.copytree(folder / "build/cache", kept / "build/cache", dirs_exist_ok=True)
     found = []

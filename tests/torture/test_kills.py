@@ -13,6 +13,7 @@ from pathlib import Path
 
 import installed_paper
 import pytest
+import varied_handout
 from attack import Attack
 
 from replicate.staging import replace_files
@@ -56,7 +57,9 @@ COMMANDS = {
     "diff": ["diff", "lab", "--accepted", "accepted"],
     "accept": ["accept", "lab", "--accepted", "accepted", "--reason", "moved"],
     "handout": ["handout", "lab", "--format", "html"],
+    "class set": ["handout", "lab", "--roster", "roster.csv", "--seed", "{}", "--format", "html"],
     "chart": ["chart", "krajewski", "--tau", "{}", "--chart", "design", "--out", "charts/mine.svg"],
+    "whatif": ["whatif", "--plant", "1/(s+1)", "--controller", "k={},ki=0.5", "--out", "pages/mine.html"],
     "new": ["new", "another"],
 }
 
@@ -72,13 +75,16 @@ def prepared(quick: Path, command: str) -> list[str]:
     here, site = quick / "here", quick / "site"
     with installed_paper.installed(site):
         pass  # the files stay
+    if command == "class set":
+        varied_handout.write(site / "lab_paper")
 
     def arguments(command: str, value: str) -> list[str]:
-        jobs = ["-j1"] if command not in ("chart", "new") else []
+        jobs = ["-j1"] if command not in ("chart", "whatif", "new") else []
         return [*(part.format(value) for part in COMMANDS[command]), *jobs]
 
     (here / "build/report").mkdir(parents=True)
     (here / "build/report/main.tex").write_text("thesis")
+    (here / "roster.csv").write_text("student,name\n1,Ada\n2,Emil\n", encoding="utf-8")
     for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
         replicate(quick, arguments(earlier, "0.3"))
     edit(site, "2**0.5, 3**0.51")
