@@ -113,6 +113,32 @@ def parse_toml(text: str, name: str, error: type[ReplicateError]) -> dict[str, A
         raise error(msg) from why
 
 
+def toml_line(text: str, *keys: str) -> int:
+    r"""Return the line of a readable TOML text in which a value begins, however its keys are written; 1 without it.
+
+    Examples
+    --------
+    >>> toml_line('[a]\nb = [\n  1,\n]\n"c".d = 2', "a", "c", "d")
+    5
+    """
+    lines = text.splitlines()
+    begins = 1
+    for number, line in enumerate(lines, start=1):
+        if begins == number and (not line.strip() or line.lstrip().startswith("#")):
+            begins += 1
+            continue
+        try:
+            found: Any = tomllib.loads("\n".join(lines[:number]))
+        except tomllib.TOMLDecodeError:
+            continue  # in the middle of a value
+        for key in keys:
+            found = found.get(key) if isinstance(found, dict) else None
+        if found is not None:
+            return begins
+        begins = number + 1
+    return 1
+
+
 def _named(character: str) -> str:
     name = unicodedata.name(character, "")
     return f"U+{ord(character):04X}{f' {name}' if name else ''}"

@@ -17,12 +17,13 @@ from replicate.cli import app
 from replicate.errors import PaperDefinitionError, ReplicateError, TemplateError
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Variation, rounded
-from replicate.handout import ClassSet, Form, Sheet, language, stressed
+from replicate.handout import ClassSet, Form, Sheet, stressed
 from replicate.handout import class_set as class_set_module
 from replicate.handout.edition import edition
 from replicate.handout.key_figures import key_pages
 from replicate.handout.marking_key import key_pdf, key_rows
 from replicate.handout.printout import markup, pdf
+from replicate.languages import language
 from replicate.papers.bayhan import paper as bayhan_paper
 from replicate.papers.bayhan.handout import exercises as bayhan
 

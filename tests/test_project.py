@@ -11,6 +11,7 @@ import pytest
 from replicate.errors import ProjectError, UnknownPaperError
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
+from replicate.resources import templates_dir
 from replicate.run.library import Library
 from replicate.run.project import find_project
 
@@ -115,7 +116,20 @@ def test_folders_one_after_the_other_have_papers_of_their_own(tmp_path: Path) ->
         ('papers = ["../nowhere"]', "replicate.toml:1: papers: there is no folder ../nowhere"),
         ('methods = "m.md"', "replicate.toml:1: methods: there is no file m.md"),
         ('[theme]\naccent = "red"', "replicate.toml:2: theme: accent = 'red'; allowed: accent, paper, ink, each a"),
-        ('language = "English"', "replicate.toml:1: language is 'English'; expected: a tag such as 'en'"),
+        ('language = "English"', "replicate.toml:1: language is 'English', allowed: de, en, or the path of"),
+        (
+            '"language" = "xx"',
+            "replicate.toml:1: language is 'xx', allowed: de, en, or the path of a file",
+        ),
+        ('language = "fr.toml"', "replicate.toml:1: language is '"),
+        ('title = "x"\n\ntheme = {\naccent = "red" }', "replicate.toml:3: is not readable TOML"),
+        (
+            'title = "x"\n# theme\ntheme = { accent = "red" }',
+            "replicate.toml:3: theme: accent = 'red'; allowed",
+        ),
+        ('title = "x"\ntheme.accent = "red"', "replicate.toml:2: theme: accent = 'red'; allowed: accent, paper, ink"),
+        ('title = """\nout = 3"""\nout = 3', "replicate.toml:3: out is 3; expected: a text in quotes"),
+        ('papers = [\n  "papers",\n  "../nowhere",\n]', "replicate.toml:1: papers: there is no folder"),
         ("title = ", "replicate.toml:1: is not readable TOML: Invalid value"),
     ],
 )
@@ -123,6 +137,38 @@ def test_a_malformed_project_file(text: str, message: str, tmp_path: Path) -> No
     (tmp_path / "replicate.toml").write_text(text)
     with pytest.raises(ProjectError, match=re.escape(message)):
         find_project(tmp_path)
+
+
+def test_a_third_language_is_a_file_beside_the_project_file(tmp_path: Path) -> None:
+    english = (templates_dir() / "languages" / "en.toml").read_text(encoding="utf-8")
+    (tmp_path / "words").mkdir()
+    words = tmp_path / "words/fr.toml"
+    words.write_text(english.replace('"gb"', '"fr"').replace('"Exercise"', '"Exercice"'), encoding="utf-8")
+    (tmp_path / "replicate.toml").write_text('papers = []\nlanguage = "words/fr.toml"')
+    project = find_project(tmp_path)
+    assert project is not None
+    assert (project.language.code, project.language["exercise"]) == ("fr-FR", "Exercice")
+
+
+def test_a_paper_in_a_folder_and_one_of_that_id_that_is_installed(
+    replicate: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    replicate("init", "mine")
+    monkeypatch.chdir("mine")
+    assert replicate("new", "lab")[0] == 2  # there is one of this id
+    replicate("new", "gauss")
+    init = Path("papers/gauss/__init__.py")
+    init.write_text(init.read_text(encoding="utf-8").replace('id="gauss"', 'id="lab"'), encoding="utf-8")
+    said = "the paper 'lab' is already defined in papers/gauss; one of them needs another id"
+    for command in (("report",), ("check", "lab"), ("show", "lab", "table-1"), ("diff",), ("handout", "lab")):
+        status, _, errors = replicate(*command)
+        assert status == 2
+        assert errors.splitlines() == [f"replicate: entry point 'lab': {said}"]
+
+
+def test_an_installed_paper_in_its_own_folder_is_one_paper(replicate: Run, folder: Path) -> None:
+    status, out, errors = replicate("list", "--papers", str(folder))
+    assert (status, errors, re.findall(r"^lab", out, re.MULTILINE)) == (0, "", ["lab"])
 
 
 def test_an_installed_paper_that_is_not_installed(tmp_path: Path) -> None:

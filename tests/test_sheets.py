@@ -11,10 +11,11 @@ import pytest
 import toy_class
 
 from replicate.errors import ReplicateError
-from replicate.handout import Form, Sheet, handouts, language
+from replicate.handout import Form, Sheet, handouts
 from replicate.handout.edition import edition
 from replicate.handout.printout import form_code, markup, pdf
 from replicate.handout.webpage import webpage
+from replicate.languages import language
 from replicate.resources import templates_dir
 
 

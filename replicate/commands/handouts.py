@@ -50,8 +50,11 @@ def handout(
     title: Annotated[str, typer.Option("--title", help="In place of the handout's own.")] = "",
     date: Annotated[str, typer.Option("--date", help="Printed at the top, as it stands.")] = "",
     language: Annotated[
-        str, typer.Option("--language", help="Of the words besides the text: en, de, or a file like en.toml.")
-    ] = "en",
+        str | None,
+        typer.Option(
+            "--language", help="Of the words besides the text: en, de, or a file like en.toml; default: the project's."
+        ),
+    ] = None,
     exercises: Annotated[
         list[Path] | None,
         typer.Option("--exercises", metavar="DIR", help="Add exercises of your own: exercise.md and exercise.py."),
@@ -78,7 +81,7 @@ def handout(
         stress_test,
         with_handout,
     )
-    from replicate.handout import language as language_of
+    from replicate.languages import language as language_of
     from replicate.run.guarded import GuardedProcess
     from replicate.staging import staged
     from replicate.terminal.console import console
@@ -87,7 +90,9 @@ def handout(
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
-    sheet = Sheet(title, date, read_points(points) if points else (), selected, language_of(language))
+    project = run.within.project
+    words = language_of(language) if language else project.language if project else language_of()
+    sheet = Sheet(title, date, read_points(points) if points else (), selected, words)
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
     file_format = checked_format(format)
     chosen = with_handout(run.within.papers(given), all_needed=bool(given), file_format=file_format)

@@ -8,7 +8,7 @@ from replicate.handout.making import Order, Sheets, check_order, make, stress_te
 from replicate.handout.own_code import LONGEST_RUN
 from replicate.handout.own_exercises import own_exercises
 from replicate.handout.roster import read_roster
-from replicate.handout.sheet import Sheet, language, read_points, read_selection
+from replicate.handout.sheet import Sheet, read_points, read_selection
 from replicate.handout.stress import stressed
 
 __all__ = [
@@ -23,7 +23,6 @@ __all__ = [
     "check_order",
     "checked_format",
     "handouts",
-    "language",
     "make",
     "own_exercises",
     "read_points",

@@ -21,8 +21,9 @@ from replicate.handout.own_exercises import OwnExercise
 from replicate.handout.placing import CLOSE, OPEN, Placed, Placing
 from replicate.handout.programs import run_programs
 from replicate.handout.reading import Lines, read
-from replicate.handout.sheet import Language, Sheet, language
+from replicate.handout.sheet import Sheet
 from replicate.handout.tree import Blocks, Element, attribute, classes, div, elements, plain, string, text_of, transform
+from replicate.languages import Language, language
 from replicate.plain_text import read_text
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import VerdictRow
@@ -64,7 +65,7 @@ class Document:
     drawings: dict[str, Drawing]
     form: str = ""
     sheet: Sheet = field(default_factory=Sheet)
-    language: Language = field(default_factory=lambda: language("en"))
+    language: Language = field(default_factory=language)
     source: str = ""
 
 

@@ -3,82 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
-from pathlib import Path
 
 from replicate.errors import ReplicateError
 from replicate.handout.own_exercises import OwnExercise
-from replicate.plain_text import parse_toml, read_text
-from replicate.resources import templates_dir
-
-FOLDER = "languages"
-_TAG = re.compile(r"[a-z]{2,3}")
-
-
-@dataclass(frozen=True)
-class Language:
-    """The words that a sheet has besides its text.
-
-    Attributes
-    ----------
-    tag
-        As in the documents' metadata, say ``en``.
-    region
-        Say ``gb``; empty if none is meant.
-    words
-        By their names.
-    """
-
-    tag: str
-    region: str
-    words: Mapping[str, str]
-
-    def __getitem__(self, name: str) -> str:
-        """Return a word."""
-        return self.words[name]
-
-    @property
-    def code(self) -> str:
-        """Tag and region, as HTML has it."""
-        return f"{self.tag}-{self.region.upper()}" if self.region else self.tag
-
-
-@cache
-def language(tag: str) -> Language:
-    """Return a language of the folder of templates, or of a file of one's own.
-
-    Parameters
-    ----------
-    tag
-        Its name, or the path of a file like ``en.toml`` whose name it is.
-
-    Raises
-    ------
-    ReplicateError
-        If there is no such file, or it is not as ``en.toml``.
-    """
-    folder = templates_dir() / FOLDER
-    path = Path(tag) if tag.endswith(".toml") else folder / f"{tag}.toml"
-    if not _TAG.fullmatch(path.stem) or not path.is_file():
-        known = ", ".join(sorted(file.stem for file in folder.glob("*.toml")))
-        msg = f"--language is '{tag}', allowed: {known}, or the path of a file like en.toml, say fr.toml"
-        raise ReplicateError(msg)
-    found = parse_toml(read_text(path, path.name, ReplicateError), path.name, ReplicateError)
-    words, region = found.get("words"), found.get("region", "")
-    if not isinstance(words, dict) or not isinstance(region, str):
-        msg = f"{path.name}: needs a text 'region' and a table [words], as {FOLDER}/en.toml"
-        raise ReplicateError(msg)
-    needed = set(words) if path == folder / "en.toml" else set(language("en").words)
-    for name in sorted(needed ^ set(words)):
-        msg = f"{path.name}: [words] {'lacks' if name in needed else 'has an unknown'} '{name}'"
-        raise ReplicateError(msg)
-    for name, word in words.items():
-        if not isinstance(word, str) or not word.strip():
-            msg = f"{path.name}: '{name}' is {word!r}, allowed: a text"
-            raise ReplicateError(msg)
-    return Language(path.stem, region, words)
+from replicate.languages import Language, language
 
 
 @dataclass(frozen=True)
@@ -105,7 +34,7 @@ class Sheet:
     date: str = ""
     points: tuple[float, ...] = ()
     select: tuple[int, ...] = ()
-    language: Language = field(default_factory=lambda: language("en"))
+    language: Language = field(default_factory=language)
     own: tuple[OwnExercise, ...] = ()
 
     def points_of(self, place: int, count: int) -> float | None:

@@ -53,7 +53,7 @@ def site_of(project: Project | None, *, bundled: bool) -> Site:
         return default
     methods = read_text(project.methods, project.methods.name, TemplateError) if project.methods else default.methods
     return Site(
-        project.title or default.title, project.intro or default.intro, methods, project.language, project.theme
+        project.title or default.title, project.intro or default.intro, methods, project.language.code, project.theme
     )
 
 

@@ -16,7 +16,7 @@ from replicate.exhibits import Paper
 from replicate.exhibits.definitions import check_id
 from replicate.run.discovery import Found, bundled_papers, find_exhibit, importing, installed_papers
 from replicate.run.paper_folders import papers_in
-from replicate.run.project import Project
+from replicate.run.project import Project, place_of
 
 Selection = list[tuple[str, str]]
 
@@ -58,8 +58,9 @@ class Library:
             known = [one for one in self._installed if one.name == name]
             if not known:
                 listed = ", ".join(one.name for one in self._installed) or "none"
-                msg = f"{self.project.file.name}: papers: there is neither a folder nor an installed paper '{name}'; "
-                raise ProjectError(msg + f"installed: {listed}")
+                place = place_of(self.project.file, "papers")
+                msg = f"{place}: papers: there is neither a folder nor an installed paper '{name}'; installed: {listed}"
+                raise ProjectError(msg)
             found += known
         return found
 
@@ -168,12 +169,13 @@ class Library:
 
     def _found(self, id: str) -> Found:
         found = [one for one in self.known if one.name == id]
-        for source in (self.meant, self._installed):
-            same = [one for one in source if one.name == id and one.paper is not None]
-            if len(same) > 1 and found[0] in same:
-                first, second = same[:2]
-                msg = f"{second.where}: the paper '{id}' is already defined in {first.where}"
-                raise PaperDefinitionError(msg)
+        same = [one for one in self.meant if one.name == id and one.paper is not None]
+        packages = {one.paper.package for one in same if one.paper is not None}
+        same += [one for one in self._installed if one.paper and one.name == id and one.paper.package not in packages]
+        if len(same) > 1 and found[0] in same:
+            first, second = same[:2]
+            msg = f"{second.where}: the paper '{id}' is already defined in {first.where}; one of them needs another id"
+            raise PaperDefinitionError(msg)
         if found:
             return found[0]
         msg = f"there is no paper '{id}'; known: {', '.join(self.ids()) or 'none'}"

@@ -9,7 +9,7 @@ folder upwards. All paths in it are relative to its folder::
     papers = ["papers"]                            # folders of papers, or names of installed ones
     accepted = "accepted"                          # the state that diff and check compare with
     out = "build"
-    language = "en"
+    language = "en"                                # also de, or a file such as fr.toml
 
     [theme]                                        # colours of the report
     accent = "#0b5cad"
@@ -23,8 +23,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from replicate.errors import ProjectError
-from replicate.plain_text import parse_toml, read_text
+from replicate.errors import ProjectError, ReplicateError
+from replicate.languages import Language, language
+from replicate.plain_text import parse_toml, read_text, toml_line
 
 FILE = "replicate.toml"
 PYPROJECT = "pyproject.toml"
@@ -34,7 +35,6 @@ _PATHS = ("accepted", "out")
 _KEYS = ("title", "intro", "methods", "papers", "bundled", "accepted", "out", "language", "theme")
 _THEME = ("accent", "paper", "ink")
 _COLOUR = re.compile(r"#[0-9a-fA-F]{3}([0-9a-fA-F]{3})?")
-_LANGUAGE = re.compile(r"[a-z]{2,3}(-[A-Za-z0-9]{2,8})*")
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class Project:
     bundled: bool = False
     accepted: Path = Path("accepted")
     out: Path = Path("build")
-    language: str = "en"
+    language: Language = field(default_factory=language)
     theme: dict[str, str] = field(default_factory=dict)
 
 
@@ -93,7 +93,7 @@ def find_project(start: Path | None = None) -> Project | None:
         if (folder / FILE).is_file():
             if also:
                 why = f"[tool.replicate] beside {FILE}: there are two project files; allowed: one of them"
-                raise _wrong(pyproject, "replicate", why)
+                raise _wrong(pyproject, "", why)
             return read_project(folder / FILE)
         if also:
             return read_project(pyproject)
@@ -131,7 +131,7 @@ def read_project(path: Path) -> Project:
     if path.name == PYPROJECT:
         data = data["tool"]["replicate"]
         if not isinstance(data, dict):
-            raise _wrong(path, "replicate", "[tool.replicate] is not a table")
+            raise _wrong(path, "", "[tool.replicate] is not a table")
     for key in data:
         if key not in _KEYS:
             raise _wrong(path, key, f"'{key}' is unknown; allowed: {', '.join(_KEYS)}")
@@ -140,9 +140,6 @@ def read_project(path: Path) -> Project:
             raise _wrong(path, key, f"{key} is {data[key]!r}; expected: a text in quotes")
     if not isinstance(data.get("bundled", False), bool):
         raise _wrong(path, "bundled", f"bundled is {data['bundled']!r}; expected: true or false")
-    language = data.get("language", "en")
-    if not _LANGUAGE.fullmatch(language):
-        raise _wrong(path, "language", f"language is {language!r}; expected: a tag such as 'en' or 'pt-BR'")
     root = path.parent
     methods = root / data["methods"] if data.get("methods") else None
     if methods is not None and not methods.is_file():
@@ -164,7 +161,7 @@ def read_project(path: Path) -> Project:
         bundled=data.get("bundled", False),
         accepted=root / (data.get("accepted") or "accepted"),
         out=out,
-        language=language,
+        language=_language(path, data.get("language", "en")),
         theme=_theme(path, data.get("theme", {})),
     )
 
@@ -185,13 +182,22 @@ def _papers(path: Path, data: dict[str, Any]) -> tuple[tuple[Path, ...], tuple[s
     return tuple(folders), tuple(installed)
 
 
+def _language(path: Path, given: str) -> Language:
+    """Return a language that comes with this package, or that of a file beside the project file."""
+    try:
+        tag = str(path.parent / given) if given.endswith(".toml") else given
+        return language(tag, f"{place_of(path, 'language')}: language")
+    except ReplicateError as error:
+        raise ProjectError(str(error)) from error
+
+
 def _theme(path: Path, theme: object) -> dict[str, str]:
     if not isinstance(theme, dict):
         raise _wrong(path, "theme", f"theme is {theme!r}; expected: a table of colours")
     for name, colour in theme.items():
         if name not in _THEME or not isinstance(colour, str) or not _COLOUR.fullmatch(colour):
             allowed = f"{', '.join(_THEME)}, each a colour such as '#0b5cad'"
-            raise _wrong(path, name, f"theme: {name} = {colour!r}; allowed: {allowed}")
+            raise _wrong(path, f"theme.{name}", f"theme: {name} = {colour!r}; allowed: {allowed}")
     return theme
 
 
@@ -200,6 +206,10 @@ def _tables(path: Path) -> dict[str, Any]:
 
 
 def _wrong(path: Path, key: str, why: str) -> ProjectError:
-    lines = path.read_text(encoding="utf-8").splitlines()
-    found = (number for number, line in enumerate(lines, 1) if re.match(rf"\s*\[?(tool\.)?{re.escape(key)}\b", line))
-    return ProjectError(f"{path.name}:{next(found, 1)}: {why}")
+    return ProjectError(f"{place_of(path, *key.split('.'))}: {why}")
+
+
+def place_of(path: Path, *keys: str) -> str:
+    """Return file and line of a value in a project file, as messages name it."""
+    text = read_text(path, path.name, ProjectError)
+    return f"{path.name}:{toml_line(text, *(('tool', 'replicate') if path.name == PYPROJECT else ()), *keys)}"

@@ -82,7 +82,7 @@ def keep_server() -> None:
     """Have forks use the server that their parent has started, which they would not find to be a child of theirs."""
     server: Any = forkserver._forkserver
     if server._forkserver_address is not None:
-        server.ensure_running = forkserver.ensure_running = lambda: None  # type: ignore[method-assign]
+        server.ensure_running = forkserver.ensure_running = lambda: None
 
 
 def main() -> None:
