@@ -5,20 +5,25 @@ import json
 import re
 import tomllib
 from collections.abc import Callable
+from dataclasses import fields
 from pathlib import Path
 from typing import get_args
 
 import jsonschema
 import pytest
+import toy_class
 
+from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import ClaimVerdict
 from replicate.exhibits.matching import MatchKind
+from replicate.exhibits.variants import Answer
+from replicate.handout import Sheet
 from replicate.loops.sweep.axes import CONTROLLER_COLUMNS
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
 from replicate.report import data
 from replicate.report.columns import COLUMN_COLUMNS
-from replicate.resources import schemas
+from replicate.resources import schemas, templates_dir
 from replicate.run import project as projects
 from replicate.sweeps import sweep_file
 from replicate.verdicts import ledger as ledgers
@@ -166,3 +171,86 @@ def test_the_command_prints_them(replicate: Run) -> None:
     assert [line.split()[0] for line in out.splitlines()] == list(schemas())
     assert json.loads(replicate("schema", "ledger")[1])["title"] == "ledger.toml"
     assert replicate("schema", "x")[0] == 2
+
+
+# ---------------------------------------------------------------------------------- exercises, keys and languages
+
+SOUND = {"value": 0.3, "digits": 3}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"value": "three"},
+        {"value": True},
+        {"digits": 0},
+        {"digits": 16},
+        {"digits": 2.5},
+        {"tolerance": 0.1},
+        {"digits": None, "tolerance": 0.0},
+        {"digits": None, "tolerance": "x"},
+        {"digits": None},
+        {"carried": 1.0},
+        {"carried": ["x"]},
+        {"mistakes": [1.0]},
+        {"mistakes": {"sign": "x"}},
+        {"asked": 3},
+        {"unit": 3},
+        {},
+        {"carried": (0.31,), "mistakes": {"sign": -0.3}, "asked": "$k$", "unit": "s"},
+        {"digits": None, "tolerance": 0.5},
+    ],
+)
+def test_the_schema_of_an_answer_refuses_what_the_program_does(change: dict[str, object]) -> None:
+    given = {name: value for name, value in (SOUND | change).items() if value is not None}
+    try:
+        made = Answer(**given)  # type: ignore[arg-type]
+    except PaperDefinitionError:
+        made = None
+    sent = json.loads(json.dumps(given))
+    for answers in (sent, {"first": sent, "second": SOUND}):
+        assert bool(refused("exercise", {"inputs": {"x": 1}, "answers": answers})) == (made is None)
+
+
+def test_the_schema_of_an_answer_has_its_fields() -> None:
+    answer = json.loads(schemas()["exercise"])["$defs"]["answer"]["properties"]
+    assert list(answer) == [field.name for field in fields(Answer)]
+
+
+@pytest.mark.parametrize(
+    ("part", "value"),
+    [
+        ("inputs", {}),
+        ("inputs", {"x": None}),
+        ("inputs", {"x": [1]}),
+        ("answers", {}),
+        ("answers", {"first": 3}),
+        ("files", {"../x.csv": "1"}),
+        ("files", {"x.csv": 1}),
+        ("stated", 3),
+    ],
+)
+def test_what_no_exercise_may_return(part: str, value: object) -> None:
+    assert not refused("exercise", {"inputs": {"x": 1}, "answers": SOUND, "files": {"x.csv": "1"}, "stated": "two"})
+    assert refused("exercise", {"inputs": {"x": 1}, "answers": SOUND, part: value})
+
+
+def test_keys_fit_their_schema(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for select in ((), (1,)):
+        toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(select=select))
+        name, content = next(toy.files(["Ada", "Émile :2", "山田"], "2026 W:1"))
+        assert name == "toy-key.csv"
+        lines = list(csv.DictReader(content.decode().splitlines()))
+        assert lines
+        assert not [why for line in lines if (why := refused("key", line))]
+
+
+def test_languages_fit_their_schema_which_says_each_word_in_english() -> None:
+    folder = templates_dir() / "languages"
+    for file in folder.glob("*.toml"):
+        assert not refused("language", tomllib.loads(file.read_text(encoding="utf-8")))
+    words = tomllib.loads((folder / "en.toml").read_text(encoding="utf-8"))["words"]
+    schema = json.loads(schemas()["language"])["properties"]["words"]
+    said = {name: word["description"].removesuffix(" ...") for name, word in schema["properties"].items()}
+    assert (said, schema["required"]) == (words, list(words))
+    assert refused("language", {"words": {name: words[name] for name in list(words)[1:]}})
