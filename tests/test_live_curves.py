@@ -12,6 +12,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from replicate.display.live_curves import mark_curves
+from replicate.figures.curve_labels import label_curves
 from replicate.figures.describe import describe
 from replicate.figures.style import style
 
@@ -49,6 +50,16 @@ def test_a_legend_beside_the_axes_names_the_curves_of_all() -> None:
         fig.legend(*fig.axes[0].get_legend_handles_labels(), loc="outside lower center")
 
     assert named(shared) == ["PA", "ZN"] * 2
+
+
+def test_a_name_beside_its_curve_is_its_own() -> None:
+    def labelled(fig: Figure) -> None:
+        axes = fig.subplots()
+        for name, slope in (("up", 1.0), ("down", -1.0)):
+            axes.plot(X, slope * X, color="C0", linestyle="-", label=name)
+        assert label_curves(axes)
+
+    assert named(labelled) == ["up", "down"]
 
 
 @pytest.mark.parametrize(("legend", "names"), [(["a"], ["a", "a"]), (["a", "b", "c"], ["", ""])])

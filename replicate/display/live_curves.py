@@ -2,7 +2,8 @@
 
 matplotlib names its groups by kind (``axes_1``, ``line2d_7``, ``legend_1``) and writes the text of a legend as a
 comment beside its outlines. That is enough to tell which line is which curve: a line belongs to the legend entry that
-is drawn in the same style, and of several in one style, to the one in its place.
+is drawn in the same style, and of several in one style, to the one in its place. A name beside its curve says whose it
+is by its id (`replicate.figures.curve_labels`).
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from xml.etree import ElementTree as ET
 
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 _SCALES = {"linear", "log"}
+_LINE = re.compile(r"line2d_|curve-\d+$")
+_NAME = re.compile(r"(curve-\d+)-name")
 
 _Look = tuple[str, ...]
 
@@ -45,8 +48,9 @@ def mark_curves(root: ET.Element, panels: Sequence[Mapping[str, Any]]) -> None:
             continue
         lines = [(line, path) for line in group if (path := _line(line)) is not None]
         names = _names([_look(path) for _, path in lines], list(_legend(group)) or beside)
+        own = dict(_written(group))
         for (line, _), name in zip(lines, names, strict=True):
-            line.set("data-curve", name)
+            line.set("data-curve", own.get(_id(line), name))
         if lines:
             group.set("data-box", " ".join(f"{edge:g}" for edge in box))
             for axis in "xy":
@@ -61,7 +65,7 @@ def _id(element: ET.Element) -> str:
 def _line(group: ET.Element) -> ET.Element | None:
     """Return the path of a line without markers."""
     paths = list(group)
-    if not _id(group).startswith("line2d_") or len(paths) != 1 or tag(paths[0]) != "path":
+    if not _LINE.match(_id(group)) or len(paths) != 1 or tag(paths[0]) != "path":
         return None
     return paths[0] if "stroke:" in paths[0].get("style", "") else None
 
@@ -114,7 +118,7 @@ def _legend(parent: ET.Element) -> Iterator[tuple[_Look, str]]:
     for legend in (group for group in parent if _id(group).startswith("legend_")):
         handle: ET.Element | None = None
         for part in legend:
-            text = next((str(child.text).strip() for child in part if not tag(child)), "")
+            text = _said(part)
             if _line(part) is not None:
                 handle = part
             elif text and handle is not None:
@@ -124,3 +128,16 @@ def _legend(parent: ET.Element) -> Iterator[tuple[_Look, str]]:
                     piece.set("data-legend", text)
                 yield _look(path), text
                 handle = None
+
+
+def _written(axes: ET.Element) -> Iterator[tuple[str, str]]:
+    """Yield ids and names of the curves whose names stand beside them."""
+    for part in axes:
+        if found := _NAME.fullmatch(_id(part)):
+            part.set("data-legend", _said(part))
+            yield found[1], _said(part)
+
+
+def _said(part: ET.Element) -> str:
+    """Return the text of a group, which matplotlib writes as a comment beside its outlines."""
+    return next((str(child.text).strip() for child in part if not tag(child)), "")

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.figures.curve_labels import label_curves
 from replicate.loops import Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS
@@ -37,13 +38,14 @@ def load_responses(fig: Figure) -> None:
     axes.set_xlim(0.0, 50.0)
     axes.set_xlabel("time $t$")
     axes.set_ylabel("output $y(t)$")
-    axes.legend(title="$(k, k_i, k_d)$")
+    if not label_curves(axes):
+        axes.legend(title="$(k, k_i, k_d)$")
 
 
 @paper.figure(
     "IIs-fig-5",
     "Bode diagrams of the loop transfer functions",
-    caption="Gain and phase of $L$. With $k_d = 3$ the phase first lags, then leads.",
+    caption="Gain and phase of $L$, with $(k, k_i, k_d)$ as labelled. With $k_d = 3$ the phase first lags, then leads.",
     alt="Bode diagram. Both gains fall; the phase of the full line falls steadily, that of the dashed line "
     "drops below it, rises again around 0.6 rad/s and then falls.",
     size=(6.0, 4.6),
@@ -63,7 +65,8 @@ def bode(fig: Figure) -> None:
     phase.set_ylabel("$\\arg L(i\\omega)$, degrees")
     phase.set_yticks([-90, -180, -270])
     phase.set_xlabel("frequency $\\omega$, rad per unit of time")
-    gain.legend(title="$(k, k_i, k_d)$")
+    if not label_curves(gain):
+        gain.legend(title="$(k, k_i, k_d)$")
 
 
 @paper.figure(
@@ -94,4 +97,5 @@ def nyquist(fig: Figure) -> None:
         axes.set_title(LABELS[key])
         axes.set_xlabel("Re")
     panels[0].set_ylabel("Im")
-    panels[0].legend(loc="lower left")
+    if not label_curves(panels[0]):
+        panels[0].legend(loc="lower left")

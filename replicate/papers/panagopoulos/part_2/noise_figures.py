@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.figures.curve_labels import label_curves
 from replicate.loops import PID, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import filters
@@ -116,4 +117,5 @@ def amplitudes(fig: Figure) -> None:
         axes.set_xlabel(r"$\omega$, rad per unit of time")
         axes.set_xlim(0.01, 100.0)
     panels[0].set_ylabel("$|G_c/(1+GG_c)|$")
-    panels[0].legend()
+    if not label_curves(panels[0]):
+        panels[0].legend()

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.figures.curve_labels import label_curves
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_2 import feasible
 from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS
@@ -60,7 +61,8 @@ def surface(fig: Figure) -> None:
     right.set_ylabel("largest $k_i$")
     right.set_ylim(0.0)
     right.set_title("ridge")
-    right.legend(loc="lower center")
+    if not label_curves(right):
+        right.legend(loc="lower center")
 
 
 def _loci(axes: Axes, kd: float, w: np.ndarray) -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.figures.curve_labels import label_curves
 from replicate.loops import Circle
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.iii_examples import smallest_weight
@@ -59,7 +60,8 @@ def circles(fig: Figure) -> None:
     _circle(axes, combined_circle(M), label="combined circle", linewidth=2.0)
     _plane(axes, -2.3, 0.5, 0.9)
     axes.set_ylabel("$\\mathrm{Im}\\,L$")
-    axes.legend(loc="upper right")
+    if not label_curves(axes):
+        axes.legend(loc="upper right")
 
 
 @paper.figure(
@@ -145,5 +147,6 @@ def enclosure(fig: Figure) -> None:
         axes.plot(touch.real, touch.imag, "o", markersize=5, color=axes.xaxis.label.get_color(), linestyle="none")
         _plane(axes, left, 0.2, half)
         axes.set_title(f"$M = {m:.1f}$")
-        axes.legend(loc="upper left", fontsize="small")
+        if not label_curves(axes):
+            axes.legend(loc="upper left", fontsize="small")
     fig.axes[0].set_ylabel("$\\mathrm{Im}\\,L$")

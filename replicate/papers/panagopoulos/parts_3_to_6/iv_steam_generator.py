@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.figures.curve_labels import label_curves
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.diagrams import Diagram
 from replicate.papers.panagopoulos.parts_3_to_6.reference_model import characteristics, step
@@ -98,7 +99,8 @@ def reference_step(fig: Figure) -> None:
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time $t/\\tau_e$")
     axes.set_ylabel("output of the model")
-    axes.legend(loc="upper right")
+    if not label_curves(axes):
+        axes.legend(loc="upper right")
 
 
 for _id, _title in (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.figures.curve_labels import label_curves
 from replicate.loops import PID, Loop, Plant
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.diagrams import Diagram
@@ -50,7 +51,8 @@ def model_step(fig: Figure) -> None:
     axes.set_ylim(0.0, 1.5)
     axes.set_xlabel("time (s)")
     axes.set_ylabel("change of temperature signal")
-    axes.legend(loc="lower right")
+    if not label_curves(axes):
+        axes.legend(loc="lower right")
 
 
 @paper.figure(

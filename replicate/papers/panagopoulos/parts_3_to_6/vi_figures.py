@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.figures.curve_labels import label_curves
 from replicate.loops import PI, Loop
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.active_damping import (
@@ -244,4 +245,5 @@ def closed_loop(fig: Figure) -> None:
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time (s)")
     axes.set_ylabel("output $y$")
-    axes.legend(loc="lower right")
+    if not label_curves(axes):
+        axes.legend(loc="lower right")
