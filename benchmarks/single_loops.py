@@ -167,7 +167,7 @@ def _designs(plant: Plant) -> Table:
         ("design", "processor time", "share of one step_response", "error of Ms"),
     )
     for name, design in (("design_pi", design_pi), ("design_pid", design_pid)):
-        spent = processor_time(partial(design, plant, ms=1.4), 7)
+        spent = processor_time(partial(design, plant, ms=1.4), 20)
         found = design(plant, ms=1.4)
         made = found.controller if isinstance(found, PIDDesign) else PI(found.k, found.ki)
         reached = Loop(plant, made).sensitivity_peak().value

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import cache
+from math import log10
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -94,12 +97,17 @@ def design_grid(plant: Plant) -> Array:
 
 
 def _logarithmic(start: float, end: float, per_decade: int) -> Array:
-    return np.geomspace(start, end, max(2, int(per_decade * np.log10(end / start))))
+    decades = log10(end / start)
+    w: Array = start * 10.0 ** np.linspace(0.0, decades, max(2, int(per_decade * decades)))
+    w[-1] = end
+    return w
 
 
+@cache
 def _two_sided(widest: float, narrowest: float, count: int) -> Array:
     """Return offsets that are dense at zero, in units of a resonance's half-width."""
-    return np.concatenate([-np.geomspace(widest, narrowest, count), [0.0], np.geomspace(narrowest, widest, count)])
+    offsets = np.geomspace(narrowest, widest, count)
+    return np.concatenate([-offsets[::-1], [0.0], offsets])
 
 
 def _resonant(roots: ComplexArray) -> ComplexArray:

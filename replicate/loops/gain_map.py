@@ -111,8 +111,7 @@ def ascend(
         kd = np.clip(kd, -largest_kd, largest_kd)
         connected = [
             Summit(float(k[i]), gap.top, float(kd[j]), 0.5 * (max(gap.bottom, 0.5 * gap.top) + gap.top), start.reach)
-            for (i, j), gaps in _gaps(jets, circle, k, kd, slack).at.items()
-            for gap in gaps
+            for (i, j), gap in _gaps(jets, circle, k, kd, slack)
             if gap.bottom < best.inside < gap.top
         ]
         highest = max(connected, key=lambda s: s.ki, default=best)

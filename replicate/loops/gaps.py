@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import product
-from operator import add
+from math import prod
 from typing import NamedTuple
 
 import numpy as np
@@ -33,10 +33,23 @@ class Gap(NamedTuple):
 
 @dataclass(frozen=True)
 class Gaps:
-    """The gaps at each point of a grid, ascending, and the end of the uppermost interval there."""
+    """The gaps at the points of a grid, ascending at each point.
 
-    at: dict[Index, list[Gap]]
+    Attributes
+    ----------
+    uppermost
+        The end of the uppermost interval at each point of the grid.
+    point
+        The point of each gap, as its place in the flattened grid; ascending.
+    bottom, top, bound
+        Ends of each gap, and the interval that bounds it from above.
+    """
+
     uppermost: Array
+    point: Places
+    bottom: Array
+    top: Array
+    bound: Places
 
     @classmethod
     def between(cls, parts: Iterable[tuple[Array, Array, Places]], *, rounding: float) -> Gaps:
@@ -46,32 +59,53 @@ class Gaps:
         Each says which intervals it holds; those that it lacks forbid nothing there.
         ``rounding`` is the relative width below which a gap is none. An interval that forbids nothing starts at inf.
         """
-        at: dict[Index, list[Gap]] = {}
+        found: list[tuple[Places, Array, Array, Places]] = []
         uppermost: list[Array] = []
         first = 0
         for low, high, names in parts:
-            shape = low.shape[:-1]
-            rows = low.reshape(-1, low.shape[-1]), high.reshape(-1, low.shape[-1])
-            points, floors, tops, bounds = _gaps(*rows, rounding)
-            ends = floors, tops, names[bounds]
-            places = zip(*(index.tolist() for index in np.unravel_index(points, shape)), strict=True)
-            for point, floor, top, bound in zip(places, *(part.tolist() for part in ends), strict=True):
-                gaps = at.setdefault((first + point[0], *point[1:]), [])
-                if not gaps or gaps[-1].top < top:
-                    gaps.append(Gap(floor, top, bound))
+            size = prod(low.shape[:-1])
+            points, bottoms, tops, bounds = _gaps(low.reshape(size, -1), high.reshape(size, -1), rounding)
+            found.append((first + points, bottoms, tops, names[bounds]))
             uppermost.append(high.max(axis=-1, initial=0.0))
-            first += shape[0]
-        return cls(at, np.concatenate(uppermost))
+            first += size
+        return cls(np.concatenate(uppermost), *(np.concatenate(column) for column in zip(*found, strict=True)))
+
+    def __iter__(self) -> Iterator[tuple[Index, Gap]]:
+        """Yield the grid point and the ends of each gap."""
+        return ((self._index(g), self._gap(g)) for g in range(self.top.size))
 
     def maxima(self) -> Iterator[tuple[Index, Gap, list[Gap]]]:
         """Yield (grid point, gap, connected gaps) for each gap whose upper end no connected gap exceeds."""
-        steps = [step for step in product((-1, 0, 1), repeat=self.uppermost.ndim) if any(step)]
-        for point, gaps in self.at.items():
-            around = [g for step in steps for g in self.at.get(tuple(map(add, point, step)), ())]
-            for gap in gaps:
-                connected = [g for g in around if g.bottom < gap.top and g.top > gap.bottom]
-                if all(gap.top >= g.top for g in connected):
-                    yield point, gap, connected
+        highest = np.ones(self.top.size, dtype=bool)
+        pairs = list(self._connected())
+        for gap, other in pairs:
+            highest[gap[self.top[other] > self.top[gap]]] = False
+        for g in np.nonzero(highest)[0]:
+            connected = [self._gap(o) for gap, other in pairs for o in other[gap == g]]
+            yield self._index(g), self._gap(g), connected
+
+    def _connected(self) -> Iterator[tuple[Places, Places]]:
+        """Yield pairs of gaps that overlap, for each direction in which points are neighbours."""
+        shape = self.uppermost.shape
+        starts = np.searchsorted(self.point, np.arange(self.uppermost.size + 1))
+        index = np.array(np.unravel_index(self.point, shape))
+        for step in product((-1, 0, 1), repeat=len(shape)):
+            if not any(step):
+                continue
+            moved = index + np.array(step)[:, None]
+            gap = np.nonzero(np.all((moved >= 0) & (moved < np.array(shape)[:, None]), axis=0))[0]
+            neighbour = np.ravel_multi_index(tuple(moved[:, gap]), shape)
+            first, count = starts[neighbour], starts[neighbour + 1] - starts[neighbour]
+            gap = np.repeat(gap, count)
+            other = np.arange(gap.size) + np.repeat(first - np.cumsum(count) + count, count)
+            overlap = (self.bottom[other] < self.top[gap]) & (self.top[other] > self.bottom[gap])
+            yield gap[overlap], other[overlap]
+
+    def _index(self, gap: int) -> Index:
+        return tuple(int(i) for i in np.unravel_index(self.point[gap], self.uppermost.shape))
+
+    def _gap(self, gap: int) -> Gap:
+        return Gap(float(self.bottom[gap]), float(self.top[gap]), int(self.bound[gap]))
 
 
 def _gaps(low: Array, high: Array, rounding: float) -> tuple[Places, Array, Array, Places]:
@@ -88,6 +122,8 @@ def _gaps(low: Array, high: Array, rounding: float) -> tuple[Places, Array, Arra
         floors[some] = np.max(below, axis=-1, initial=0.0)
     free = np.nonzero(tops > floors * (1.0 + rounding))[0]
     free = free[np.lexsort((tops[free], points[free]))]
+    # two intervals may begin at the same place
+    free = free[np.append(True, (np.diff(points[free]) > 0) | (np.diff(tops[free]) > 0.0))[: free.size]]
     return points[free], floors[free], tops[free], bounds[free]
 
 

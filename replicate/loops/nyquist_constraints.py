@@ -94,12 +94,12 @@ class LoopJet:
 
     def values(self, kind: Kind, circle: Circle, x: Array, margin: float = 0.0) -> tuple[Array, Array]:
         """Return the constraint's values (>= 0 where it holds), shape (n,), and gradients in x, shape (n, 3)."""
-        loop = np.einsum("dxn,x->dn", self.phi, x)
         if kind == "sensitivity":
-            offset = circle.center + loop[0]
-            value = np.abs(offset) ** 2 / circle.radius**2 - 1.0
+            offset = circle.center + x @ self.phi[0]
+            value = (offset.real**2 + offset.imag**2) / circle.radius**2 - 1.0
             gradient = 2.0 * (np.conj(offset) * self.phi[0]).real / circle.radius**2
             return value, gradient.T
+        loop = x @ self.phi
         if kind == "phase":
             # -w d(arg L)/dw
             size = np.abs(loop[0]) ** 2 / self.w
@@ -115,7 +115,7 @@ class LoopJet:
 
     def slopes(self, kind: Kind, circle: Circle, x: Array) -> Array:
         """Return w times the derivative of the constraint's value in w, shape (n,); the basis must be of order 3."""
-        loop = np.einsum("dxn,x->dn", self.phi, x)
+        loop = x @ self.phi
         if kind == "sensitivity":
             return np.asarray(self.w * 2.0 * (np.conj(circle.center + loop[0]) * loop[1]).real / circle.radius**2)
         if kind == "phase":

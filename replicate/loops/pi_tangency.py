@@ -22,22 +22,18 @@ Array = NDArray[np.float64]
 def smooth_condition(plant: Plant, circle: Circle, w: Array) -> Array:
     """Evaluate h(w) / (2 R) of (18); a smooth optimum is a root of it."""
     value = plant(1j * w)
+    direction = value / np.abs(value)  # cos phi + i sin phi
     slope = 1j * plant.log_derivative(1j * w)  # d log G / d w = r'/r + i phi'
-    phase = np.angle(value)
-    h = (circle.radius + circle.center * np.sin(phase)) * (slope.real - 1.0 / w) - circle.center * slope.imag * np.cos(
-        phase
-    )
+    radius, center = circle.radius, circle.center
+    h = (radius + center * direction.imag) * (slope.real - 1.0 / w) - center * slope.imag * direction.real
     return np.asarray(h)
 
 
 def smooth_gains(plant: Plant, circle: Circle, w: float) -> tuple[float, float]:
     """Return (k, ki) of the lowest vertex of the ellipse at a frequency (17)."""
     value = complex(plant(1j * w))
-    r, phase = abs(value), np.angle(value)
-    return (
-        float(-circle.center * np.cos(phase) / r),
-        float(-w / r * (circle.center * np.sin(phase) + circle.radius)),
-    )
+    r, direction = abs(value), value / abs(value)
+    return -circle.center * direction.real / r, -w / r * (circle.center * direction.imag + circle.radius)
 
 
 def smooth_optimum(plant: Plant, circle: Circle, w: Array, near: float) -> PIDesign | None:
@@ -49,7 +45,7 @@ def smooth_optimum(plant: Plant, circle: Circle, w: Array, near: float) -> PIDes
     index = changes[np.argmin(np.abs(np.log(w[changes] / near)))]
 
     def condition(x: float) -> float:
-        return float(smooth_condition(plant, circle, np.array([x]))[0])
+        return float(smooth_condition(plant, circle, np.array(x)))
 
     frequency = float(brentq(condition, w[index], w[index + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200))
     k, ki = smooth_gains(plant, circle, frequency)

@@ -208,7 +208,7 @@ class Search:
                 },
                 method="SLSQP",
                 bounds=None if np.isinf(limit) else [(None, None), (None, None), (-limit, limit)],
-                options={"maxiter": 100, "ftol": 1e-11},
+                options={"maxiter": 100, "ftol": 1e-9},
             )  # fmt: skip
             if not np.all(np.abs(result.x) < RUNAWAY) or np.min(constraints(result.x)[0]) < -NEARLY:
                 return None

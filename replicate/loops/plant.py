@@ -7,6 +7,7 @@ A `Plant` made by its constructor is rational times one dead time. `Plant.from_f
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -227,11 +228,17 @@ class Plant(PlantViews, SetOnce):
 
     def poles(self) -> ComplexArray:
         """Return the poles of the rational part (empty for plants given by a function)."""
-        return np.asarray(np.roots(self.den), dtype=complex)
+        return self._roots[0].copy()
 
     def zeros(self) -> ComplexArray:
         """Return the zeros of the rational part (empty for plants given by a function)."""
-        return np.asarray(np.roots(self.num), dtype=complex)
+        return self._roots[1].copy()
+
+    @cached_property
+    def _roots(self) -> tuple[ComplexArray, ComplexArray]:
+        """Poles and zeros."""
+        poles, zeros = (np.asarray(np.roots(part), dtype=complex) for part in (self.den, self.num))
+        return poles, zeros
 
     @property
     def corners(self) -> tuple[float, float]:

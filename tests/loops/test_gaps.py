@@ -21,7 +21,7 @@ def test_a_point_is_in_a_gap_exactly_where_no_interval_covers_it(seed: int, widt
     names = np.arange(INTERVALS)
     gaps = Gaps.between([(low[:3], high[:3], names), (low[3:], high[3:], names)], rounding=1e-12)
     for row in range(ROWS):
-        found = gaps.at.get((row,), [])
+        found = [gap for point, gap in gaps if point == (row,)]
         assert found == sorted(found)
         for gap in found:
             assert low[row, gap.bound] == gap.top
