@@ -80,8 +80,8 @@ class Gaps:
         pairs = list(self._connected())
         for gap, other in pairs:
             highest[gap[self.top[other] > self.top[gap]]] = False
-        for g in np.nonzero(highest)[0]:
-            connected = [self._gap(o) for gap, other in pairs for o in other[gap == g]]
+        for g in np.nonzero(highest)[0].tolist():
+            connected = [self._gap(o) for gap, other in pairs for o in other[gap == g].tolist()]
             yield self._index(g), self._gap(g), connected
 
     def _connected(self) -> Iterator[tuple[Places, Places]]:
