@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
@@ -47,6 +48,36 @@ def kind(text: str, given: object, notation: Notation = PLAIN) -> str:
         ("3.4(2)", PAIR, 3.36, 3.9),
         ("3.4 ± 0.2", PAIR, (3.41, 0.21), (3.41, 0.9)),
         ("1.234(12)", PAIR, (1.2341, 0.0121), (1.2341, 0.12)),
+        ("(3.4 ± 0.2) × 10^-3", PAIR, (0.00341, 0.00021), (3.41, 0.21)),
+        ("(3.4±0.2)e-3", PAIR, (0.00341, 0.00021), (0.00341, 0.21)),
+        ("3.4(2)×10⁻³", PAIR, (0.00341, 0.00021), (0.00341, 0.21)),
+        ("103.4(1.2)", PAIR, (103.41, 1.21), (103.41, 0.12)),
+        ("3.4e3 ± 2e2", PAIR, (3390.0, 210.0), (3390.0, 900.0)),
+        ("-1.234,5(12) · 10^3", Notation(uncertainty=True, decimal=",", thousands="."), (-1234504.0, 1190.0), -1.2),
+        ("1.6021766208(98)×10^-19", PAIR, (1.60217662080e-19, 9.8e-28), (1.6021766208e-19, 9.8e-19)),
+        ("12 ± 3 %", Notation(uncertainty=True, percent="fraction"), (0.121, 0.031), (12.1, 3.1)),
+        ("12% ± 3%", Notation(uncertainty=True, percent="percent"), (12.1, 3.1), (0.121, 0.031)),
+        ("(12 ± 3)%", Notation(uncertainty=True, percent="fraction"), 0.121, 12.1),
+        ("(0.045***)", Notation(stars=True, parentheses="negative"), -0.0451, 0.0451),
+        ("(0.045)**", Notation(stars=True, parentheses="standard-error"), 0.0451, -0.0451),
+        ("(12%)*", Notation(stars=True, parentheses="negative", percent="fraction"), -0.1201, -12.01),
+        ("<0.001***", Notation(stars=True, bounds=True), 0.0004, 0.01),
+        ("≤ 0.05", BOUND, 0.05, 0.06),
+        (">=10", BOUND, 10.0, 9.0),
+        ("[−1.2, −0.4]", ENDS, (-1.24, -0.35), (1.24, -0.35)),
+        ("[−1.2,−0.4]", ENDS, (-1.24, -0.35), (-1.24, 0.35)),
+        ("−1.2 to −0.4", ENDS, (-1.24, -0.35), (-1.24, 0.35)),
+        ("1.2–3.4", ENDS, (1.24, 3.35), (1.24, -3.35)),
+        ("]1.2, 3.4[", ENDS, (1.24, 3.35), (1.24, 4.0)),
+        ("[1,2; 3,4]*", Notation(interval="ends", decimal=",", stars=True), (1.24, 3.35), (12.0, 34.0)),
+        ("[12, 15] %", Notation(interval="ends", percent="fraction"), (0.121, 0.149), (12.1, 14.9)),
+        ("[-1.2?, 0.4]", Notation(interval="inside"), -1.1, 0.6),
+        ("[0.[3], 0.[6]]", Notation(interval="inside"), 0.4, 0.7),
+        ("10^-3", PLAIN, 0.00104, 0.01),
+        ("−10⁴", PLAIN, -10400.0, 10400.0),
+        ("5.670 374 419 × 10^-8", Notation(thousands=" "), 5.6703744191e-8, 6e-8),
+        ("1 234,567 8", Notation(decimal=",", thousands=" "), 1234.56781, 1.2345678),
+        ("1·5", Notation(decimal="·"), 1.54, 15.0),
         ("12 %", Notation(percent="percent"), 12.3, 0.12),
         ("12 %", Notation(percent="fraction"), 0.123, 12.0),
         ("1.2e-3", PLAIN, 0.00123, 0.0123),
@@ -89,6 +120,23 @@ def test_the_border_of_a_bound_is_near() -> None:
         ("3.4(2)", PLAIN, r"notation=Notation\(uncertainty=True\) would accept it"),
         ("[1, 2]", PLAIN, r'notation=Notation\(interval="ends"\) would accept it'),
         ("12 %", PLAIN, r'notation=Notation\(percent="percent"\) would accept it'),
+        ("3,4 ± 0,2", PLAIN, r'notation=Notation\(decimal=",", uncertainty=True\) would accept it'),
+        ("<0.01*", BOUND, r"notation=Notation\(bounds=True, stars=True\) would accept it"),
+        ("0,123", Notation(thousands=","), r'notation=Notation\(decimal=","\) would accept it'),
+        ("12.0", Notation(count=True), r"notation=Notation\(\) would accept it"),
+        ("unstable", Notation(words=("n.s.",)), r'Notation\(words=\("n.s.", "unstable"\)\) would accept it'),
+        ("–", PLAIN, r'notation=Notation\(none=\("–",\)\) would accept it'),
+        ("–3", PLAIN, "the dash is no minus sign: write - or −"),
+        ("2003-05-17", PLAIN, r"notation=Notation\(date=True\) would accept it"),
+        ("3.4 ±", PAIR, r"is not a number \(allowed: an uncertainty\)"),
+        ("3.4 ± 0.2 ± 0.3", PAIR, "is not a number"),
+        ("3.4 ± -0.2", PAIR, "is not a number"),
+        ("3.4 ± 0.2 × 10^-3", PAIR, "is not a number"),  # of both, or of the second?
+        ("3,4 ± 0.2", Notation(uncertainty=True, decimal=","), "is not a number"),
+        ("12% ± 3", Notation(uncertainty=True, percent="percent"), "is not a number"),
+        ("1e3(2)", PAIR, "is not a number"),
+        ("(-0.045)", Notation(parentheses="negative"), "is not a number or a number in parentheses"),
+        ("0.123", COMMA, "is not a number"),
         ("12,34.5", Notation(thousands=","), r"is not a number \(allowed: separators of thousands\)"),
         ("stable", WORDS, "is not a number or 'unstable' or 'n.s.'"),
         ("2003-02-30", Notation(date=True), "is not a date such as 2003-05-17"),
@@ -100,6 +148,21 @@ def test_the_border_of_a_bound_is_near() -> None:
 def test_what_the_notation_does_not_allow_is_refused(text: str, notation: Notation, message: str) -> None:
     with pytest.raises(PrintedFileError, match=message):
         PrintedValue(text, notation=notation)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"decimal": ";"}, r"notation: decimal is ';'; allowed: '.', ',', '·'"),
+        ({"words": "unstable"}, r"notation: words is 'unstable' \(str\); expected: a list of texts, as in"),
+        ({"percent": True}, r"notation: percent is True; allowed: '', 'percent', 'fraction'"),
+        ({"stars": "yes"}, "notation: stars is 'yes'; allowed: False, True"),
+        ({"thousands": "."}, r"notation: decimal and thousands are both '\.'"),
+    ],
+)
+def test_a_notation_that_is_none_is_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(PaperDefinitionError, match=message):
+        Notation(**given)
 
 
 def paper(**options: object) -> Paper:

@@ -126,7 +126,7 @@ def check_mappings(what: str, **mappings: object) -> None:
             check_texts(what, **{f"a key of {name}": key, f"{name} of '{key}'": text})
 
 
-def check_one_of(what: str, name: str, value: object, allowed: Sequence[str]) -> None:
+def check_one_of(what: str, name: str, value: object, allowed: Sequence[object]) -> None:
     """Check that a field has one of a few values.
 
     Raises

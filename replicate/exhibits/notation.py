@@ -23,22 +23,29 @@ from __future__ import annotations
 
 import datetime as dt
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from decimal import Decimal
-from typing import Literal
+from itertools import combinations
+from typing import Any, Literal
 
 from replicate.errors import PrintedFileError
+from replicate.exhibits.definitions import check_lists, check_one_of, refuse
+from replicate.exhibits.grouped_numbers import plain_number
 from replicate.exhibits.numerals import ALLOWED, MINUS, last_place, parse_number
 
 Kind = Literal["number", "below", "above", "interval", "inside", "count", "date", "word"]
 
-_SUPERSCRIPTS = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺", "0123456789-+")
-_POWER = re.compile(r"\s*[×x·*]\s*10\s*(?:\^|\*\*)?\s*\{?\s*([+-]?[\d⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁺]{1,4})\s*\}?$")
-_STARS = re.compile(r"\s*[*∗†‡§]{1,4}$")
+_STARS = re.compile(r"(\s*[*∗†‡§]){1,4}$")
+_FACTOR = r"(?:\s*[×x·*]\s*10.*|[eE][+-]?\d+)?"
 _UNCERTAIN = re.compile(r"(.*?)\s*(?:±|\+/-|\+-)\s*(.*)")
-_CONCISE = re.compile(r"(.*\d)\((\d+)\)(.*)")
-_INTERVAL = re.compile(r"[\[(]\s*(.+?)\s*(?:;|\.\.\.|–|\bto\b|,(?=\s))\s*(.+?)\s*[\])]")
-_GROUPS = {",": ",", ".": ".", "'": "'’", " ": " \u00a0\u2009\u202f"}
+_UNCERTAIN_INSIDE = re.compile(rf"\(\s*(.*(?:±|\+/-|\+-).*?)\s*\)({_FACTOR})")
+_CONCISE = re.compile(rf"([^()eE×]*\d)\((\d+|\d*[.,·]\d+)\)({_FACTOR})")
+_BRACKETS = re.compile(r"[\[(\]](.+)[\])\[]")
+_BETWEEN = re.compile(r"\s*(?:;|\.\.\.|…|–|\bto\b|,(?=\s))\s*")
+_ANY_COMMA = re.compile(r"\s*,\s*")
+_WITHOUT_BRACKETS = re.compile(r"\s*(?:\.\.\.|…|–|\bto\b)\s*")
+_DASH = re.compile(r"[-–—−.…/]+")
+_WORD = re.compile(r"[^\W\d_⁰-₟²³¹]\D+")
 _DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
 
 
@@ -59,6 +66,8 @@ class Statement:
         In plain notation, for ``3.4 ± 0.2`` and ``3.4(2)``.
     upper
         The upper end of an interval, in plain notation; `text` is the lower.
+    reached
+        Whether a bound may be reached: ``≤`` and ``≥``.
     """
 
     kind: Kind
@@ -66,6 +75,7 @@ class Statement:
     scale: int = 0
     uncertainty: str = ""
     upper: str = ""
+    reached: bool = False
 
 
 @dataclass(frozen=True)
@@ -75,7 +85,8 @@ class Notation:
     Attributes
     ----------
     decimal, thousands
-        The decimal mark, ``.`` or ``,``, and what separates groups of three digits: ``,``, ``.``, ``'`` or a space.
+        The decimal mark, ``.``, ``,`` or ``·``, and what separates groups of three digits: ``,``, ``.``, ``'`` or a
+        space, which may also stand between digits behind the decimal mark.
     bounds
         ``<0.001`` and ``>10`` occur.
     stars
@@ -83,11 +94,11 @@ class Notation:
     parentheses
         What a number in parentheses is: ``negative``, or a ``standard-error``.
     uncertainty
-        ``3.4 ± 0.2`` and ``3.4(2)`` occur.
+        ``3.4 ± 0.2``, ``3.4(2)`` and ``(3.4 ± 0.2) × 10^-3`` occur.
     percent
         A per cent sign may follow a number. The readings compute in ``percent`` (12) or as a ``fraction`` (0.12).
     interval
-        ``[1.2, 3.4]`` occurs; readings compute a pair of ``ends``, or a number that must lie ``inside``.
+        ``[1.2, 3.4]`` and ``1.2–3.4`` occur; readings compute a pair of ``ends``, or a number that must lie ``inside``.
     count
         Every number is a whole number that counts something: nothing is rounded.
     date
@@ -100,14 +111,14 @@ class Notation:
     Examples
     --------
     >>> Notation(bounds=True).read("<0.001")
-    Statement(kind='below', text='0.001', scale=0, uncertainty='', upper='')
+    Statement(kind='below', text='0.001', scale=0, uncertainty='', upper='', reached=False)
     >>> Notation(decimal=",", thousands=".").read("1.234,50").text
     '1234.50'
     >>> Notation(uncertainty=True).read("3.4(2)").uncertainty
     '0.2'
     """
 
-    decimal: Literal[".", ","] = "."
+    decimal: Literal[".", ",", "·"] = "."
     thousands: Literal["", ",", ".", "'", " "] = ""
     bounds: bool = False
     stars: bool = False
@@ -121,9 +132,11 @@ class Notation:
     none: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        for name, allowed in _CHOICES.items():
+            check_one_of("notation", name, getattr(self, name), allowed)
+        check_lists("notation", words=self.words, none=self.none)
         if self.decimal == self.thousands:
-            msg = f"decimal and thousands are both '{self.decimal}'; expected: two different marks"
-            raise ValueError(msg)
+            refuse(f"notation: decimal and thousands are both '{self.decimal}'; expected: two different marks")
 
     @property
     def plain(self) -> bool:
@@ -160,7 +173,7 @@ class Notation:
             return self._date(plain)
         found = self.states(plain)
         if found is None:
-            msg = f"'{text}' is not {self.allowed}{_hint(plain)}"
+            msg = f"'{text}' is not {self.allowed}{hint(self, plain)}"
             raise PrintedFileError(msg)
         return found
 
@@ -172,7 +185,18 @@ class Notation:
         text
             The cell, without spaces around it.
         """
+        text = text.replace(MINUS, "-")
         return (self._interval(text) if self.interval else None) or self._number(text)
+
+    @property
+    def declared(self) -> str:
+        """How it is declared."""
+        given = {one.name: getattr(self, one.name) for one in fields(self) if getattr(self, one.name) != one.default}
+        said = (
+            f"{name}={value!r}" if value == "'" else f"{name}={value!r}".replace("'", '"')
+            for name, value in given.items()
+        )
+        return f"Notation({', '.join(said)})"
 
     @property
     def allowed(self) -> str:
@@ -200,86 +224,125 @@ class Notation:
         raise PrintedFileError(msg)
 
     def _interval(self, text: str) -> Statement | None:
-        match = _INTERVAL.fullmatch(text)
-        lower, upper = (self._plain(match[1]), self._plain(match[2])) if match else (None, None)
-        if lower is None or upper is None:
-            return None
-        return Statement("interval" if self.interval == "ends" else "inside", lower, upper=upper)
+        """Read ``[1.2, 3.4]``; what separates the ends is what leaves a number on both sides."""
+        text, percent = self._bare(text)
+        brackets = _BRACKETS.fullmatch(text)
+        separators = [_BETWEEN if brackets else _WITHOUT_BRACKETS]
+        if brackets and "," not in (self.decimal, self.thousands):
+            separators.append(_ANY_COMMA)
+        inside = brackets[1] if brackets else text
+        for found in (found for separator in separators for found in separator.finditer(inside)):
+            (lower, _), (upper, also) = self._bare(inside[: found.start()]), self._bare(inside[found.end() :])
+            ends = self._plain(lower), self._plain(upper)
+            if ends[0] is not None and ends[1] is not None:
+                kind: Kind = "interval" if self.interval == "ends" else "inside"
+                return Statement(kind, ends[0], self._scale(percent or also), upper=ends[1])
+        return None
 
     def _number(self, text: str) -> Statement | None:
         kind: Kind = "count" if self.count else "number"
+        reached = False
         if self.bounds and text[:1] in {"<", ">", "≤", "≥"}:
             kind = "below" if text[0] in "<≤" else "above"
+            reached = text[0] in "≤≥" or text[1:2] == "="
             text = text[1:].removeprefix("=").strip()
-        if self.stars:
-            text = _STARS.sub("", text)
-        scale = 0
-        if self.percent and text.endswith("%"):
-            text, scale = text[:-1].rstrip(), -2 if self.percent == "fraction" else 0
+        text, percent = self._bare(text)
         sign = ""
-        if self.parentheses and text.startswith("(") and text.endswith(")"):
-            text, sign = text[1:-1].strip(), "-" if self.parentheses == "negative" else ""
-        uncertainty = ""
-        if self.uncertainty:
-            text, uncertainty = self._uncertain(text)
-        number = self._plain(text)
+        if self.parentheses and text.startswith("(") and text.endswith(")") and not _UNCERTAIN_INSIDE.fullmatch(text):
+            text, also = self._bare(text[1:-1].strip())
+            percent, sign = percent or also, "-" if self.parentheses == "negative" else ""
+            if text.startswith(("-", "+")):
+                return None  # twice negative, or a negative error: what is meant is for the reader of the paper to say
+        number, uncertainty = (self._uncertain(text, percent) if self.uncertainty else None) or (self._plain(text), "")
         if number is None or (self.count and not number.lstrip("+-").isdigit()):
             return None
-        return Statement(kind, sign + number, scale, uncertainty)
+        return Statement(kind, sign + number, self._scale(percent), uncertainty, reached=reached)
 
-    def _uncertain(self, text: str) -> tuple[str, str]:
-        """Return value and uncertainty; that of ``3.4(2)`` counts units of the last digit."""
-        match = _UNCERTAIN.fullmatch(text)
+    def _bare(self, text: str) -> tuple[str, bool]:
+        """Return a text without the stars and the per cent sign behind it, and whether there was such a sign."""
+        text = _STARS.sub("", text) if self.stars else text
+        percent = bool(self.percent) and text.endswith("%")
+        if percent:
+            text = text[:-1].rstrip()
+            text = _STARS.sub("", text) if self.stars else text
+        return text, percent
+
+    def _scale(self, percent: bool) -> int:
+        return -2 if percent and self.percent == "fraction" else 0
+
+    def _uncertain(self, text: str, percent: bool) -> tuple[str, str] | None:
+        """Return value and uncertainty; digits in parentheses without a decimal mark count units of the last digit."""
+        common = _UNCERTAIN_INSIDE.fullmatch(text)
+        match = _UNCERTAIN.fullmatch(common[1] if common else text)
         if match:
-            return match[1], self._plain(match[2]) or ""
+            (first, of_first), (second, of_second) = self._bare(match[1]), self._bare(match[2])
+            factor = common[2] if common else ""
+            value, uncertainty = self._plain(first + factor), self._plain(second + factor)
+            # A power of ten behind the second alone may be meant for both.
+            unclear = uncertainty is not None and "e" in uncertainty.lower() and "e" not in (value or "").lower()
+            unclear |= of_first and not (of_second or percent)
+            if value is None or uncertainty is None or uncertainty.startswith(("-", "+")) or unclear:
+                return None
+            return value, uncertainty
         match = _CONCISE.fullmatch(text)
         value = self._plain(match[1] + match[3]) if match else None
         if match is None or value is None:
-            return text, ""
-        return match[1] + match[3], f"{Decimal(match[2]).scaleb(last_place(Decimal(value))):f}"
+            return None
+        if not match[2].isdigit():
+            uncertainty = self._plain(match[2] + match[3])
+            return None if uncertainty is None else (value, uncertainty)
+        number = parse_number(value)
+        return None if number is None else (value, str(Decimal(match[2]).scaleb(last_place(number))))
 
     def _plain(self, text: str) -> str | None:
-        """Return a number in plain notation; ``None`` if the text is not one."""
-        text = text.strip().replace(MINUS, "-")
-        power = _POWER.search(text)
-        exponent = ""
-        if power:
-            text, exponent = text[: power.start()], f"e{int(power[1].translate(_SUPERSCRIPTS))}"
-        for mark in _GROUPS.get(self.thousands, ""):
-            if mark in text:
-                whole, point, rest = text.partition(self.decimal)
-                groups = whole.lstrip("+-").split(mark)
-                if not 1 <= len(groups[0]) <= 3 or any(len(group) != 3 for group in groups[1:]):
-                    return None
-                text = whole.replace(mark, "") + point + rest
-        if self.decimal == ",":
-            if "." in text:
-                return None
-            text = text.replace(",", ".")
-        text += exponent
-        return None if parse_number(text) is None else text
+        return plain_number(text, self.decimal, self.thousands)
 
 
-def _hint(text: str) -> str:
-    """Say which notation would accept a text, if one would."""
-    for name, notation in _SUGGESTIONS.items():
-        if notation.states(text) is not None:
-            return f"; notation=Notation({name}) would accept it"
-    return ""
-
-
+_CHOICES: dict[str, tuple[object, ...]] = {
+    "decimal": (".", ",", "·"),
+    "thousands": ("", ",", ".", "'", " "),
+    "parentheses": ("", "negative", "standard-error"),
+    "percent": ("", "percent", "fraction"),
+    "interval": ("", "ends", "inside"),
+    **dict.fromkeys(("bounds", "stars", "uncertainty", "count", "date"), (False, True)),
+}
 PLAIN_ALLOWED = f"a number; allowed: {ALLOWED}"
 PLAIN = Notation()
+_DECLARATIONS: tuple[dict[str, Any], ...] = (
+    {"bounds": True},
+    {"stars": True},
+    {"percent": "percent"},
+    {"parentheses": "negative"},
+    {"uncertainty": True},
+    {"interval": "ends"},
+    {"thousands": ","},
+    {"decimal": ","},
+    {"decimal": ",", "thousands": ""},
+    {"decimal": ".", "thousands": ""},
+    {"thousands": " "},
+    {"thousands": "'"},
+    {"decimal": ",", "thousands": "."},
+    {"decimal": ",", "thousands": " "},
+    {"decimal": ".", "thousands": ","},
+    {"count": False},
+)
 
-_SUGGESTIONS = {
-    "bounds=True": Notation(bounds=True),
-    "stars=True": Notation(stars=True),
-    'percent="percent"': Notation(percent="percent"),
-    'parentheses="negative"': Notation(parentheses="negative"),
-    "uncertainty=True": Notation(uncertainty=True),
-    'interval="ends"': Notation(interval="ends"),
-    'thousands=","': Notation(thousands=","),
-    'decimal=","': Notation(decimal=","),
-    'thousands=" "': Notation(thousands=" "),
-    'decimal=",", thousands="."': Notation(decimal=",", thousands="."),
-}
+
+def hint(notation: Notation, text: str) -> str:
+    """Say which notation would accept a text that a notation does not, if one or two more declarations would do."""
+    if _DATE.fullmatch(text):
+        return "; notation=Notation(date=True) would accept it"
+    if _DASH.fullmatch(text):
+        return f"; notation={replace(notation, none=(*notation.none, text)).declared} would accept it"
+    if _WORD.fullmatch(text):
+        return f"; notation={replace(notation, words=(*notation.words, text)).declared} would accept it"
+    doubles = ({**first, **second} for first, second in combinations(_DECLARATIONS, 2))
+    for more in (*_DECLARATIONS, *doubles):
+        given: dict[str, Any] = {**vars(notation), **more}
+        if given["decimal"] != given["thousands"]:
+            changed = Notation(**given)
+            if changed.states(text) is not None:
+                return f"; notation={changed.declared} would accept it"
+    if notation.states(text.replace("–", "-")) is not None:
+        return "; the dash is no minus sign: write - or −"
+    return ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 from collections.abc import Callable
+from dataclasses import replace
 from decimal import Decimal
 from typing import Literal
 
@@ -52,10 +53,12 @@ def compare_statement(statement: Statement, given: str, compare: Compare) -> Agr
         return "differs"
     if pair:
         ends = (statement.text, statement.upper or statement.uncertainty)
-        kinds = [compare(*scaled(Statement("number", end)), number) for end, number in zip(ends, numbers, strict=True)]
+        stated = [scaled(replace(statement, text=end)) for end in ends]
+        kinds = [compare(*end, number) for end, number in zip(stated, numbers, strict=True)]
         return max(kinds, key=_KINDS.index)
     if statement.kind == "inside":
-        return _inside(Decimal(statement.text), Decimal(statement.upper), numbers[0])
+        lower, upper = (scaled(replace(statement, text=end)) for end in (statement.text, statement.upper))
+        return _inside(lower, upper, numbers[0])
     return _bound_or_count(statement, numbers[0])
 
 
@@ -64,6 +67,7 @@ def _bound_or_count(statement: Statement, value: Decimal) -> Agreement:
     if statement.kind == "count":
         return "equal" if value == printed else "differs"
     beyond = value < printed if statement.kind == "below" else value > printed
+    beyond = beyond or (statement.reached and value == printed)
     # A value that rounds to the bound itself is on the border.
     return "equal" if beyond else "near" if 2 * abs(value - printed) <= unit else "differs"
 
@@ -78,8 +82,8 @@ def scaled(statement: Statement) -> tuple[Decimal, Decimal]:
     return number, Decimal(1).scaleb(last_place(number))
 
 
-def _inside(lower: Decimal, upper: Decimal, value: Decimal) -> Agreement:
-    unit = Decimal(1).scaleb(max(map(last_place, (lower, upper))))
-    if lower <= value <= upper:
+def _inside(lower: tuple[Decimal, Decimal], upper: tuple[Decimal, Decimal], value: Decimal) -> Agreement:
+    if lower[0] <= value <= upper[0]:
         return "equal"
-    return "near" if lower - unit / 2 <= value <= upper + unit / 2 else "differs"
+    unit = max(lower[1], upper[1])
+    return "near" if lower[0] - unit / 2 <= value <= upper[0] + unit / 2 else "differs"
