@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -20,8 +21,9 @@ from replicate.exhibits.variants import Answer, Variation, rounded
 from replicate.handout import ClassSet, Form, Sheet, stressed
 from replicate.handout import class_set as class_set_module
 from replicate.handout.edition import edition
-from replicate.handout.key_figures import key_pages
-from replicate.handout.marking_key import key_pdf, key_rows
+from replicate.handout.key_figures import key_figures
+from replicate.handout.letters import can_be_set
+from replicate.handout.marking_key import KeyRow, key_pdf, key_rows
 from replicate.handout.printout import markup, pdf
 from replicate.languages import language
 from replicate.papers.bayhan import paper as bayhan_paper
@@ -163,19 +165,37 @@ def test_a_sheet_made_again_has_the_same_bytes_if_what_is_set_is_given_again(
 
 
 def test_the_key_shows_the_curves_that_students_were_to_sketch() -> None:
-    students = ["Ada", "$a_b$", "山田", *(str(number) for number in range(10))]
+    students = ["Ada", "$a_b$", "山田"]
     forms = {student: Form.of("bayhan", "1", student) for student in students}
-    pages = list(key_pages(bayhan.variations, forms, "bayhan"))
-    assert [page.heading for page in pages] == ["sketch: The response"] * 2  # twelve to a page
-    assert [page.alt.partition("One for each of: ")[2] for page in pages] == [
-        f"Ada, $a_b$, {forms['山田'].key}, 0, 1, 2, 3, 4, 5, 6, 7, 8.",
-        "9.",
+    figures = list(key_figures(bayhan.variations, forms, "bayhan"))
+    assert [(figure.heading, figure.student) for figure in figures] == [
+        ("sketch: The response", student) for student in students
     ]
-    assert pages == list(key_pages(bayhan.variations, forms, "bayhan"))
+    assert len({figure.svg for figure in figures}) == len(students)
+    assert figures == list(key_figures(bayhan.variations, forms, "bayhan"))
     rows = [row for student, form in forms.items() for row in key_rows(bayhan.variations, student, form)]
-    without, together = (key_pdf(rows, bayhan_paper, "1", some) for some in ((), pages))
-    assert together.count(b"/S/Figure") == without.count(b"/S/Figure") + 2
+    without, together = (key_pdf(rows, bayhan_paper, "1", some) for some in ((), figures))
+    assert together.count(b"/S/Figure") == without.count(b"/S/Figure") + len(students)
     assert b"<pdfuaid:part>1</pdfuaid:part>" in together
+
+
+@pytest.mark.parametrize(
+    ("name", "font"),
+    [("Łukasz Žižka", "Libertinus"), ("Nguyễn Văn Ánh", "Libertinus"), ("Иван Щербаков", "Libertinus"),
+     ("Αθηνά", "Libertinus"), ("محمد حسن", "DejaVuSans"), ("Անի", "DejaVuSans"), ("ნინო", "DejaVuSans"),
+     ("山田太郎", "NotoSansCJK"), ("王小明", "NotoSansCJK"), ("김철수", "NotoSansCJK"), ("สมชาย", "NotoSansThai"),
+     ("अनिता", "NotoSansDevanagari"), ("கவிதா", "NotoSansTamil"), ("లక్ష్మి", "NotoSansTelugu"), ("សុខា", "NotoSansKhmer")],
+)  # fmt: skip
+def test_the_key_shows_names_of_many_scripts(name: str, font: str) -> None:
+    row = KeyRow(name, "e", "p", "1", "0.9", "1.1", "", "toy:0123456789ab:1")
+    made = key_pdf([row], bayhan_paper, "1")
+    assert re.search(rb"/BaseFont/[A-Z]{6}\+" + font.encode(), made), re.findall(rb"/BaseFont/\S+", made)
+    assert can_be_set(name)
+
+
+def test_a_name_that_no_font_has_is_replaced_by_the_key_of_its_form() -> None:
+    row = KeyRow("\U00012000", "e", "p", "1", "0.9", "1.1", "", "toy:0123456789ab:1")  # cuneiform
+    assert key_pdf([row], bayhan_paper, "1") == key_pdf([replace(row, student="0123456789ab")], bayhan_paper, "1")
 
 
 def test_progress_counts_the_sheets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

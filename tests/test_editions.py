@@ -23,7 +23,7 @@ from replicate.handout import Form
 from replicate.handout.checking import Checker
 from replicate.handout.editable import docx, tex, typ
 from replicate.handout.edition import Document, edition, without_solutions
-from replicate.handout.letters import fonts_dir
+from replicate.handout.letters import fonts
 from replicate.handout.notebook import notebook
 from replicate.handout.printout import pdf
 from replicate.papers.bayhan.handout import exercises as bayhan
@@ -77,9 +77,7 @@ def test_a_latex_document_asks_for_the_figures_beside_it(sheet: Document) -> Non
 
 def test_a_typst_document_is_one_file_that_typst_sets(sheet: Document) -> None:
     source = typ(sheet)
-    made = typst.compile(  # type: ignore[misc]
-        source, ignore_system_fonts=True, font_paths=[str(fonts_dir())], pdf_standards=["ua-1"]
-    )
+    made = typst.compile(source, font_paths=fonts(), pdf_standards=["ua-1"])  # type: ignore[misc]
     assert isinstance(made, bytes)
     assert b'image("' not in source
     assert b"#import" not in source

@@ -28,7 +28,7 @@ def test_a_roster_of_many_scripts() -> None:
         ("name\nA/B\nA:B\n", "", "names the same sheet"),
         ("name\nZo\u00eb\nZoe\u0308\n", "", "r.csv:3: 'Zoë' names the same sheet as 'Zoë' in line 2"),
         ("name\nSTRASSE\nStraße\n", "", "r.csv:3: 'Straße' names the same sheet as 'STRASSE' in line 2"),
-        (f"name\n{'x' * 151}\n{'x' * 150}y\n", "", "names the same sheet"),
+        (f"name\n{'x' * 300}\n{'x' * 300}\n", "", r"r.csv:3: 'x{60}\.\.\.' names the same sheet as 'x{60}\.\.\.'"),
         ("id,id\n1,2\n", "id", "r.csv: several columns are named 'id'; rename them"),
         ('name\n"Ada\nBob\n', "", "r.csv:3: cannot be read as CSV: unexpected end of data"),
         ('name,mail\n"Ada,a\nBob"\n', "", "r.csv:3: 'Ada,a...' goes on in another line; is a quotation mark missing?"),
@@ -41,6 +41,13 @@ def test_a_roster_that_cannot_be_used_is_one_line(tmp_path: Path, text: str, col
     with pytest.raises(ReplicateError, match=message) as found:
         read_roster(tmp_path / "r.csv", column)
     assert "\n" not in str(found.value)
+
+
+def test_long_names_that_differ_at_their_end_name_two_sheets(tmp_path: Path) -> None:
+    students = ["x" * 300, "x" * 299 + "y", "山" * 300, "山" * 299 + "田"]
+    (tmp_path / "r.csv").write_text("\n".join(["name", *students]), encoding="utf-8")
+    assert read_roster(tmp_path / "r.csv") == students
+    assert len({file_stem(student) for student in students}) == len(students)
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from replicate.exhibits.variants import Variation
 from replicate.handout.edition import AT_ONCE, Document, editions, without_solutions
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, EDITIONS, named
-from replicate.handout.key_figures import key_pages
+from replicate.handout.key_figures import key_figures
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.placing import exercises_of
@@ -100,7 +100,7 @@ class ClassSet:
                 msg = f"{self.paper.id}, seed '{form.seed}', student '{student}': {error}"
                 raise PaperDefinitionError(msg) from error
         yield f"{self.paper.id}-key.csv", key_csv(rows)
-        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed, key_pages(chosen, forms, self.paper.id))
+        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed, key_figures(chosen, forms, self.paper.id))
 
     def _data(self, exercises: Exercises, stem: str, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the files that go with a sheet."""

@@ -17,8 +17,8 @@ from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.variants import Variation
 from replicate.handout.form import Form
-from replicate.handout.key_figures import KeyPage
-from replicate.handout.letters import can_be_set, fonts_dir
+from replicate.handout.key_figures import KeyFigure
+from replicate.handout.letters import FAMILIES, can_be_set, fonts
 from replicate.resources import templates_dir
 
 TEMPLATE = "handout_key.typ"
@@ -69,39 +69,34 @@ def key_csv(rows: Sequence[KeyRow]) -> bytes:
     return text.getvalue().encode()
 
 
-def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str, pages: Iterable[KeyPage] = ()) -> bytes:
+def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str, figures: Iterable[KeyFigure] = ()) -> bytes:
     """Return the key as PDF; a student whose name no font at hand can show stands there by the key of the form.
 
     Parameters
     ----------
-    pages
-        Figures, behind the table.
+    figures
+        Behind the table.
 
     Raises
     ------
     TemplateError
         If it cannot be set.
     """
-    shown = [row if can_be_set(row.student) else replace(row, student=row.form.split(":")[1]) for row in rows]
+    names = {row.student: row.student if can_be_set(row.student) else row.form.split(":")[1] for row in rows}
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        (root / "key.csv").write_bytes(key_csv(shown))
-        listed = []
-        for number, page in enumerate(pages):
-            (root / f"{number}.svg").write_bytes(page.svg)
-            listed.append({"file": f"{number}.svg", "heading": page.heading, "alt": page.alt})
-        (root / "pages.json").write_text(json.dumps(listed), encoding="utf-8")
+        (root / "key.csv").write_bytes(key_csv([replace(row, student=names[row.student]) for row in rows]))
+        listed: dict[str, list[dict[str, str]]] = {}
+        for number, figure in enumerate(figures):
+            (root / f"{number}.svg").write_bytes(figure.svg)
+            about = {"file": f"{number}.svg", "student": names[figure.student], "alt": figure.alt}
+            listed.setdefault(figure.heading, []).append(about)
+        (root / "figures.json").write_text(json.dumps(listed), encoding="utf-8")
         (root / TEMPLATE).write_text((templates_dir() / TEMPLATE).read_text(encoding="utf-8"), encoding="utf-8")
+        about_key = {"paper": paper.id, "citation": paper.citation, "seed": seed, "fonts": FAMILIES}
         try:
-            made = typst.compile(
-                str(root / TEMPLATE),
-                root=str(root),
-                ignore_system_fonts=True,
-                font_paths=[str(fonts_dir())],
-                format="pdf",
-                pdf_standards=["ua-1"],
-                sys_inputs={"paper": paper.id, "citation": paper.citation, "seed": seed},
-            )
+            compiler = typst.Compiler(str(root / TEMPLATE), root=str(root), font_paths=fonts(), sys_inputs=about_key)
+            made = compiler.compile(format="pdf", pdf_standards=["ua-1"])
         except typst.TypstError as error:
             msg = f"{paper.id}: the key cannot be typeset: {error.message}"
             raise TemplateError(msg) from error

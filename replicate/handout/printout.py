@@ -2,7 +2,7 @@
 
 The PDF is tagged and claims PDF/UA-1, the standard for accessible documents; Typst refuses to write one that
 lacks what the standard asks for (title, language, words for figures and formulas, an order of headings).
-Only fonts inside the typst package are used, and nothing tells the time: the same handout is the same bytes.
+Only fonts that packages carry are used, and nothing tells the time: the same handout is the same bytes.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import tempfile
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from functools import cache, partial
+from functools import partial
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,7 @@ import typst
 import replicate
 from replicate.errors import TemplateError
 from replicate.handout.edition import Document
-from replicate.handout.letters import check_letters, fonts_dir
+from replicate.handout.letters import FAMILIES, check_letters, fonts
 from replicate.handout.pandoc import written
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import (
@@ -125,8 +125,8 @@ def typeset(document: Document, text: str, look: str = TEMPLATE, *, tables_fit: 
         main = root / "main.typ"
         main.write_text(text, encoding="utf-8")
         try:
-            known = {"tables": "fit"} if tables_fit else {}
-            compiler = typst.Compiler(str(main), root=str(root), font_paths=_fonts(), sys_inputs=known)
+            known = {"fonts": FAMILIES} | ({"tables": "fit"} if tables_fit else {})
+            compiler = typst.Compiler(str(main), root=str(root), font_paths=fonts(), sys_inputs=known)
             made, warnings = compiler.compile_with_warnings(format="pdf", pdf_standards=["ua-1"])
         except typst.TypstError as error:
             raise _failed(name, error, text) from error
@@ -139,12 +139,6 @@ def typeset(document: Document, text: str, look: str = TEMPLATE, *, tables_fit: 
     except ValueError as error:
         msg = f"{name}: {error}"
         raise TemplateError(msg) from error
-
-
-@cache
-def _fonts() -> typst.Fonts:
-    """Return the fonts of the typst package and of matplotlib, and none of the system."""
-    return typst.Fonts(include_system_fonts=False, include_embedded_fonts=True, font_paths=[str(fonts_dir())])
 
 
 def markup(document: Document) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import io
 import re
 import unicodedata
@@ -14,6 +15,7 @@ from replicate.plain_text import read_text
 
 _UNSAFE = re.compile(r'[<>:"/\\|?*]')  # in a file's name, on some system
 _LONGEST = 150  # bytes of a name, so that its file's name fits any system
+_SHOWN = 60  # letters of a name in a message
 _RESERVED = {"key", "solutions", "slides"}  # files of other kinds have these names
 _INVISIBLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
 _JOINERS = "\u200c\u200d"  # within words of some scripts, and between the parts of a pictograph
@@ -71,7 +73,7 @@ def read_roster(path: Path, column: str = "") -> list[str]:
         if name in seen:
             line, other = seen[name]
             msg = (
-                f"{path.name}:{number}: '{student}' names the same sheet as '{other}' in line {line}; "
+                f"{path.name}:{number}: '{_short(student)}' names the same sheet as '{_short(other)}' in line {line}; "
                 "choose a column in which all differ with --roster-id"
             )
             raise ReplicateError(msg)
@@ -90,8 +92,12 @@ def _text(path: Path) -> str:
         raise
 
 
+def _short(student: str) -> str:
+    return student if len(student) <= _SHOWN else f"{student[:_SHOWN]}..."
+
+
 def file_stem(student: str) -> str:
-    """Return an id as part of a file's name.
+    """Return an id as part of a file's name; of one that is too long, its beginning and a hash.
 
     Examples
     --------
@@ -99,5 +105,8 @@ def file_stem(student: str) -> str:
     ('Ångström_2', 'key_', '_')
     """
     shown = (sign if sign in _JOINERS or category(sign) not in _INVISIBLE else "_" for sign in student)
-    stem = _UNSAFE.sub("_", "".join(shown)).encode()[:_LONGEST].decode(errors="ignore").rstrip(". ") or "_"
+    stem = _UNSAFE.sub("_", "".join(shown)).rstrip(". ") or "_"
+    if len(stem.encode()) > _LONGEST:
+        digits = hashlib.sha256(student.encode()).hexdigest()[:8]
+        stem = stem.encode()[: _LONGEST - len(digits) - 1].decode(errors="ignore") + f"-{digits}"
     return f"{stem}_" if stem.casefold() in _RESERVED else stem
