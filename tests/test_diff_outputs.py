@@ -6,6 +6,8 @@ import csv
 import io
 import json
 import re
+import shutil
+import subprocess
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from html.parser import HTMLParser
@@ -390,3 +392,33 @@ def test_accepting_what_differs(diff: Run, replicate: Run) -> None:
     assert out.endswith("changes accepted: 1; in accepted\n")
     assert "## less offset\n\n- lab/fig-1: curve 'output' moved" in Path("accepted/CHANGES.md").read_text()
     assert "in 1 of 3 exhibits" in diff()[1]
+
+
+def git(*command: str) -> str:
+    options = ["-c", "user.name=n", "-c", "user.email=n@example.org", "-c", "commit.gpgsign=false"]
+    return subprocess.run(["git", *options, *command], check=True, capture_output=True, text=True).stdout.strip()
+
+
+@pytest.mark.skipif(shutil.which("git") is None, reason="git is not installed")
+def test_the_page_names_the_commits_where_git_is(diff: Run) -> None:
+    git("init", "-q")
+    git("add", "accepted")
+    git("commit", "-qm", "accepted")
+    base = git("rev-parse", "HEAD")[:12]
+    git("commit", "-qm", "something else", "--allow-empty")
+    head = git("rev-parse", "HEAD")[:12]
+    edit("table-1.csv", other_value)
+    diff()
+    assert f"base <code>{base}</code>" in index()
+    assert f"head <code>{head} with changes</code>" in index()  # the accepted state was edited
+    git("commit", "-qam", "edited")
+    diff()
+    assert "with changes" not in index()
+    assert index().count(git("rev-parse", "HEAD")[:12]) == 2  # it is base and head
+
+
+def test_the_page_shows_the_sentence_of_a_claim(diff: Run) -> None:
+    edit("claims.csv", lambda rows: rows[1].__setitem__(1, "fails"))
+    diff()
+    row = index().partition('<table class="changed">')[2].partition("</table>")[0]
+    assert "The root of two is below 1.5." in row

@@ -33,7 +33,7 @@ def diff(
         outcome = run.recompute(papers, selection)
         comparison = compare(outcome, baseline, run.within.ids())
         print_comparison(comparison, console())  # before anything else can go wrong
-        write_diff(comparison, outcome, fresh, run.jobs)
+        write_diff(comparison, outcome, fresh, baseline, run.jobs)
     echo(f"pictures: {run.folder / 'diff' / 'index.html'}")
     broken = comparison.broken or not comparison.compared
     exit_with(run.within, outcome, BROKEN if broken else DIFFERS if comparison.changes else 0, failures_shown=True)

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from replicate.diff.changes import Change
+from replicate.diff.commits import commits_compared
 from replicate.diff.comparison import Comparison
 from replicate.diff.counts import summary
 from replicate.diff.page import page
@@ -29,11 +30,13 @@ _LINES_PER_EXHIBIT = 20
 _EXHIBITS = 200
 
 
-def write_diff(comparison: Comparison, outcome: Outcome, folder: Path, jobs: int | None = None) -> None:
+def write_diff(comparison: Comparison, outcome: Outcome, folder: Path, accepted: Path, jobs: int | None = None) -> None:
     """Write ``diff/index.html``, ``diff.json``, ``diff.junit.xml`` and ``diff.md`` into an existing folder.
 
     Parameters
     ----------
+    accepted
+        The folder of the accepted state, whose commit is named.
     jobs
         Number of processes that draw.
 
@@ -45,7 +48,7 @@ def write_diff(comparison: Comparison, outcome: Outcome, folder: Path, jobs: int
     text = markdown(comparison)
     (folder / "diff").mkdir()
     for name, content in (
-        ("diff/index.html", page(comparison, outcome, jobs)),
+        ("diff/index.html", page(comparison, outcome, commits_compared(accepted), jobs)),
         ("diff.json", json_text(comparison)),
         ("diff.junit.xml", junit(comparison)),
         ("diff.md", text),

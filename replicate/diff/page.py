@@ -6,8 +6,7 @@ pictures of a figure.
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from replicate.diff.cells import CellChange
@@ -18,15 +17,11 @@ from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
 from replicate.display.addresses import address, pages_of
 from replicate.display.labels import heading
 from replicate.display.rendering import render
-from replicate.exhibits import Paper
+from replicate.exhibits import Claims, Paper
 from replicate.exhibits.numerals import parse_number
 from replicate.figures.differences import percent
 from replicate.run.outcome import Outcome
 from replicate.verdicts.rows import CLAIM_COLUMN
-
-#: Environment variables that name the commits compared; no clock and no repository decides what the page says.
-COMMITS = {"base": "REPLICATE_BASE_COMMIT", "head": "REPLICATE_HEAD_COMMIT"}
-_SHORT = 12
 
 # A change of a rule may move every value of a table.
 _MOST_CELLS = 200
@@ -71,18 +66,22 @@ class DiffView:
     def texts(self) -> list[str]:
         """What changed, in words, but for the cells, which have a table of their own with the names of the paper."""
         listed = {cell.name for cell in self.diff.cells}
-        texts = [change.text for change in self.diff.changes if change.where not in listed]
+        texts = [change.text.replace(" -> ", " → ") for change in self.diff.changes if change.where not in listed]
         if listed:
             count = len(self.diff.cells)
             texts.append(f"{count} cell{'s' if count > 1 else ''} changed, listed below")
         return [*texts[:-1], f"{texts[-1]}; {self.diff.same}"] if self.diff.same else texts
 
 
-def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> str:
+def page(
+    comparison: Comparison, outcome: Outcome, commits: Sequence[tuple[str, str]] = (), jobs: int | None = None
+) -> str:
     """Return the page of a comparison.
 
     Parameters
     ----------
+    commits
+        Names and commits of what is compared.
     jobs
         Number of processes that draw.
 
@@ -108,14 +107,13 @@ def page(comparison: Comparison, outcome: Outcome, jobs: int | None = None) -> s
         )
         for diff in comparison.changed
     ]
-    said = {name: os.environ.get(variable, "")[:_SHORT] for name, variable in COMMITS.items()}
     return render(
         "diff.html",
         "diff/index.html",
         comparison=comparison,
         summary=summary(comparison),
         views=views,
-        commits=[(name, commit) for name, commit in said.items() if commit],
+        commits=commits,
     )
 
 
@@ -130,7 +128,10 @@ def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:
 
 
 def _labels(diff: ExhibitDiff, paper: Paper | None) -> Mapping[str, str]:
-    return getattr(paper.exhibits.get(diff.exhibit), "labels", {}) if paper else {}
+    exhibit = paper.exhibits.get(diff.exhibit) if paper else None
+    if isinstance(exhibit, Claims):
+        return {id: claim.text for id, claim in exhibit.claims.items()}
+    return getattr(exhibit, "labels", {})
 
 
 def _address(cell: CellChange, diff: ExhibitDiff, paper: Paper | None) -> str:
