@@ -15,8 +15,9 @@ from matplotlib import colormaps
 from matplotlib.colors import BoundaryNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.markers import MarkerStyle
 from matplotlib.patches import Circle
-from matplotlib.patheffects import withSimplePatchShadow
+from matplotlib.patheffects import TickedStroke, withSimplePatchShadow
 from matplotlib.transforms import Affine2D, Bbox
 
 from replicate.figures import Record, capture, compare
@@ -153,7 +154,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("lines", "y label turned", on(lambda ax: ax.yaxis.label, rotation=0), "label of the y axis is turned by 0"),
     ("lines", "title", axes(lambda ax: ax.set_title("Other")), "title is now 'Other'"),
     ("lines", "title place", axes(lambda ax: ax.set_title("Step", loc="left")), "title"),
-    ("lines", "title height", axes(lambda ax: ax.set_title("Step", y=0.5)), "up of title is now 0.5"),
+    ("lines", "title height", axes(lambda ax: ax.set_title("Step", y=0.5)), "vertical place of title is now 0.5"),
     ("lines", "title size", on(lambda ax: ax.title, fontsize=20), "title has a size of 20 pt now .was 12"),
     ("lines", "title weight", on(lambda ax: ax.title, fontweight="bold"), "weight of title is now bold"),
     ("lines", "title slant", on(lambda ax: ax.title, fontstyle="italic"), "slant of title is now italic"),
@@ -221,7 +222,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("hexbin", "colour map", on(collection, cmap="gray"), "colour map of area 1 is now gray"),
     ("hexbin", "limits", on(collection, clim=(0, 5)), "colours of area 1 now run from"),
     ("circle_collection", "sizes", on(collection, sizes=[80, 100]), "CircleCollection 1"),
-    ("ellipse_collection", "angles", on(collection, angles=[20, 45]), "EllipseCollection 1"),
+    ("ellipse_collection", "angles", on(collection, angles=[0, 80]), "EllipseCollection 1"),
     ("polygon_collection", "places", axes(lambda ax: collection(ax).set_offsets([(0.2, 0.3), (0.6, 0.8)])), "RegularPoly"),
     # Bars and areas.
     ("bars", "category", lambda figure: figure.axes[0].set_xticks([0, 1, 2], ["PI", "PID", "ZN"]), "tick labels of the x axis are now|categories"),
@@ -285,7 +286,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("clipped", "image", axes(lambda ax: picture(ax).set_clip_path(Circle((0.5, 0.5), 0.4, transform=ax.transData))), "image 1 is clipped"),
     ("clipped", "line", axes(lambda ax: line(ax).set_clip_path(ax.patch)), "line 1' is clipped to its axes now"),
     # Texts.
-    ("texts", "wrapped", on(words, wrap=True), "line breaks of text 'peak' is now"),
+    ("texts", "wrapped", on(words, wrap=True), "line breaks of text 'peak' are now"),
     ("texts", "effects", on(words, path_effects=[withSimplePatchShadow()]), "effects of text 'peak'"),
     ("texts", "words", on(words, text="dip"), "text 'peak' now reads 'dip'"),
     ("texts", "place", on(words, position=(0.3, 0.3)), "text 'peak' moved from"),
@@ -299,7 +300,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("annotated", "arrow style", on(lambda ax: ax.texts[0].arrow_patch, arrowstyle="-"), "arrow of text ''"),
     ("annotated", "arrow colour", on(lambda ax: ax.texts[0].arrow_patch, color="red"), "colour of arrow of text ''"),
     ("annotated", "offset", on(lambda ax: ax.texts[1], position=(60, 30)), "text 'peak'"),
-    ("titles", "left", axes(lambda ax: ax.set_title("links", loc="left")), "titles .left, centre, right. is now"),
+    ("titles", "left", axes(lambda ax: ax.set_title("links", loc="left")), "titles .left, centre, right. are now"),
     ("two_legends", "second", axes(lambda ax: ax.artists[0].get_texts()[0].set_text("c")), "'c'"),
     ("two_legends", "second handle", axes(lambda ax: ax.artists[0].legend_handles[0].set_color("red")), "entry 'a'"),
     ("two_legends", "second gone", axes(lambda ax: ax.artists[0].remove()), "legend 1 is gone"),
@@ -366,7 +367,7 @@ ALARMS: list[tuple[str, str, Change, str]] = [
     ("sub_figures", "title", lambda figure: figure.subfigs[0].suptitle("links"), "title of sub-figure 1 now reads 'links'"),
     ("sub_figures", "face", lambda figure: figure.subfigs[1].set_facecolor("yellow"), "background of sub-figure 2 changed from light grey to yellow"),
     ("figure_artists", "note moved", lambda figure: figure.texts[0].set_position((0.2, 0.9)), "text 'note' moved"),
-    ("figure_artists", "note", lambda figure: figure.texts[0].set_text("other note"), "text 'note' renamed 'other note'"),
+    ("figure_artists", "note", lambda figure: figure.texts[0].set_text("other note"), "text 'note' now reads 'other note'"),
     ("figure_artists", "line", lambda figure: figure.artists[0].set_ydata([0.08, 0.08]), "line 1 moved"),
     ("figure_artists", "line colour", lambda figure: figure.artists[0].set_color("b"), "colour of line 1 changed"),
     ("figure_artists", "box", lambda figure: figure.artists[1].set_x(0.5), "shape 1 moved"),
@@ -402,6 +403,24 @@ PAIRS: list[tuple[str, Callable[[Any, Any], object], tuple[Any, Any], str]] = [
     ("twin on top", lambda ax, v: (ax.twinx().plot([1, 0]), ax.plot([0, 1]), ax.set_zorder(v)), (0, 1), "panel 'panel 1' is drawn over panel 'panel 2' now"),
     ("inset below", lambda ax, v: (ax.plot([0, 1], label="a"), ax.inset_axes((0.3, 0.3, 0.4, 0.4), zorder=v)), (5, 1), "curve 'a' is drawn over panel 'panel 2' now"),
     ("shape on top", lambda ax, v: ax.figure.add_artist(Circle((0.5, 0.5), 0.2, zorder=v)), (-1, 9), "shape 1 is drawn over panel 'panel 1' now"),
+    ("pad of a box", lambda ax, v: ax.text(0.5, 0.5, "a", bbox={"boxstyle": f"round,pad={v}"}), (0.3, 0.4), "shape of box of text 'a' is now pad=0.4"),
+    ("ticked line", lambda ax, v: ax.plot([0, 1], path_effects=[TickedStroke(angle=v)]), (60, 90), "path effects of curve 'line 1' are now .TickedStroke angle=90"),
+    ("points in a legend", lambda ax, v: ax.legend(ax.plot([0, 1], "o"), ["a"], numpoints=v), (1, 2), "number of markers on each line of legend is now 2"),
+    ("wide legend", lambda ax, v: ax.legend(ax.plot([0, 1]), ["a"], mode=v), (None, "expand"), "width of legend is now expanded"),
+    ("legend outside", lambda ax, v: ax.figure.legend(ax.plot([0, 1]), ["a"], loc=f"{v}upper right"), ("", "outside "), "place outside the axes of legend is now upper"),
+    ("height of cells", lambda ax, v: ax.table([["1"]]).scale(1, v), (1, 1.4), "height of table 1, cell 0, 0 is now"),
+    ("side of a label", lambda ax, v: (ax.set_ylabel("t"), ax.yaxis.set_label_position(v)), ("left", "right"), "side of label of the y axis is now right"),
+    ("one tick label", lambda ax, v: (ax.set_xticks([0, 1]), ax.get_xticklabels()[1].set_color(v)), ("k", "r"), "^colour of tick labels of the x axis changed from black to red: '1'$"),
+    ("shape of points", lambda ax, v: ax.scatter([1, 2], [2, 1], marker=v, color="b"), ("o", "H"), "markers of curve 'points 1' have another shape"),
+    ("square points", lambda ax, v: ax.scatter([1, 2], [2, 1], s=[20, 30], marker=v), ("o", "s"), "markers of curve 'points 1' have another shape"),
+    ("point or dot", lambda ax, v: ax.scatter([1, 2], [2, 1], s=[20, 30], marker=v), ("o", "."), "sizes of the markers of curve 'points 1' changed"),
+    ("shapes of points", lambda ax, v: ax.scatter([1, 2], [2, 1]).set_paths([MarkerStyle(one).get_path() for one in v]), ("os", "o^"), "markers of curve 'points 1' have other shapes"),
+    ("a marker of points", lambda ax, v: ax.plot([0, 1], marker=[(-1, -1), (1, v)]), (1, 0.5), "markers of curve 'line 1' have another shape"),
+    ("points of one colour", lambda ax, v: ax.scatter([1, 2], [2, 1], color=v), (("r", "r"), ("r", "b")), "colours of curve 'points 1' changed"),
+    ("area that moves", lambda ax, v: ax.fill_between([0, 1, 2], [0, v, 1]), (0.5, 0.9), "^curve 'area 1' moved"),
+    ("image on the axes", lambda ax, v: (ax.set_xlim(0, 2), ax.imshow([[0, 1]], transform=getattr(ax, v), extent=(0, 1, 0, 1))), ("transData", "transAxes"), "coordinates of image 1 is now fractions of the axes"),
+    ("dates", lambda ax, v: ax.set_xlim(np.datetime64("2024-01-01"), np.datetime64(v)), ("2024-03-01", "2024-03-02"), "^x axis now ends at 2024-03-02 .was 2024-03-01.$"),
+    ("second straight line", lambda ax, v: (ax.plot([0, 1]), ax.axline((0, 0), slope=v)), (0.5, 0.6), "^line 2 moved"),
     ("words in space", lambda ax, v: ax.figure.add_subplot(projection="3d").text(0.5, 0.5, v, "w"), (0.5, 0.6), "text 'w' moved by up to"),
 ]  # fmt: skip
 

@@ -188,3 +188,26 @@ def test_a_mark_takes_a_name_only(project: Project) -> None:
     status, said = project.run()
     assert status == 1
     assert "the mark figure_diff takes a name only: figure_diff(name='...')" in said
+
+
+NAMES = """
+import pytest
+from matplotlib.figure import Figure
+
+@pytest.mark.figure_diff
+@pytest.mark.parametrize("gain", ["a/b", "a b", "a-b", "A_B", -0.5, 0.5, "ö"])
+def test_it(gain):
+    figure = Figure()
+    figure.subplots().set_title(str(gain))
+    return figure
+"""
+
+
+def test_no_two_parameters_share_a_name(project: Project) -> None:
+    project.write(NAMES)
+    status, said = project.run("--accept-figures", "--reason", "first")
+    assert status == 0, said
+    names = [name.removesuffix(".json") for name in project.accepted() if name.endswith(".json")]
+    assert len({name.casefold() for name in names}) == 7
+    assert {"test_figures-test_it-A_B", "test_figures-test_it-0-5", "test_figures-test_it-a-b"} <= set(names)
+    assert project.run("-n", "2")[0] == 0

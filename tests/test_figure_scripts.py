@@ -150,12 +150,22 @@ def test_a_script_that_fails_is_named_and_takes_nothing_else_down(folder: Folder
 
 def test_bad_names_and_folders(folder: Folder) -> None:
     assert folder.run("diff", "nowhere/*.py")[0] == 2
-    folder.write("plot_a.b.py", SCRIPTS["plot_saved.py"])
-    folder.write("plot_a-b.py", SCRIPTS["plot_saved.py"])
-    status, _, err = folder.run("diff", "plots")
+    other = folder.path / "other"
+    other.mkdir()
+    (other / "plots").symlink_to(folder.path / "plots", target_is_directory=True)
+    for name in ("plot_a.b.py", "plot_a-b.py", "plot_a b.py"):
+        folder.write(name, SCRIPTS["plot_saved.py"])
+    status, out, _ = folder.run(
+        "diff", "plots/plot_a*.py", "other/plots/plot_a*.py", str(folder.path / "plots/plot_a b.py")
+    )
+    names = sorted(line.partition(":")[0] for line in out.splitlines() if "has no accepted state" in line)
+    assert (status, len(names), "plots/plot_a-b-1" in names) == (1, 3, True)
+    twin = folder.path.parent / "plots"
+    twin.mkdir()
+    (twin / "plot_a-b.py").write_text(SCRIPTS["plot_saved.py"])
+    status, _, err = folder.run("diff", "plots/plot_a-b.py", "../plots/plot_a-b.py")
     assert status == 2
     assert err.startswith("replicate: two figures of one name:")
-    (folder.path / "plots/plot_a-b.py").unlink()
     (folder.path / "blocked").write_text("a file")
     status, _, err = folder.run("accept", "plots", "--reason", "first", "--accepted", "blocked")
     assert status == 2

@@ -5,6 +5,7 @@ It does nothing unless a test asks for the fixture ``figure_diff`` or carries th
 
 from __future__ import annotations
 
+import re
 import shlex
 import unittest
 from collections.abc import Callable, Iterator
@@ -17,6 +18,10 @@ KEY = pytest.StashKey["Session"]()
 _RETURNED = pytest.StashKey[list[object]]()
 
 _FOLDER = "figures"
+
+# Parameters in the name of a test, such as [PI], [0.5] or [PI-fast], that need no digest to be told apart: a dot stands
+# between digits, a dash does not.
+_PLAIN = re.compile(r"\[((?:\w|(?<=\d)\.(?=\d)|(?<=\w)-(?=[^\W\d])|(?<=[^\W\d])-(?=\w))+)\]\Z", re.ASCII)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -141,8 +146,9 @@ def _default_name(item: pytest.Item) -> str:
     from replicate.baselines.store import name_of
 
     owner = getattr(item, "cls", None)
-    names = (item.path.stem, *([owner.__name__] if owner else []), item.name)
-    return name_of("-".join(names))
+    names = "-".join((item.path.stem, *([owner.__name__] if owner else []), item.name))
+    plain = _PLAIN.search(names)
+    return name_of(f"{names[: plain.start()]}-{plain[1].replace('.', '-')}" if plain else names)
 
 
 def _is_figure(value: Any) -> bool:

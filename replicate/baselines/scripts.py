@@ -39,7 +39,7 @@ def find_scripts(patterns: Sequence[str], here: Path | None = None) -> list[Path
         If a pattern names no script.
     """
     here = here or Path()
-    found: dict[Path, None] = {}
+    found: dict[Path, Path] = {}
     for pattern in patterns:
         path = here / pattern
         if path.is_dir():
@@ -53,8 +53,9 @@ def find_scripts(patterns: Sequence[str], here: Path | None = None) -> list[Path
         if not some:
             msg = f"'{pattern}' names no plotting script: needed is a .py file, a folder of them or a pattern"
             raise FigureError(msg)
-        found |= dict.fromkeys(some)
-    return list(found)
+        for script in some:
+            found.setdefault(script.resolve(), script)
+    return list(found.values())
 
 
 def run_scripts(

@@ -22,6 +22,7 @@ from replicate.staging import finish_interrupted, replace_files
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\Z")
 _LONGEST = 150
 _DIGITS = 16
+_MARK = 6
 
 
 def digest(text: str) -> str:
@@ -58,14 +59,20 @@ def checked_name(name: object) -> str:
 
 
 def name_of(text: str) -> str:
-    """Return a name of a figure that is made from any text.
+    """Return a name of a figure that is made from any text: the text itself, if it can be one.
+
+    Otherwise a digest is part of it, so that no two texts have the same name.
 
     Examples
     --------
-    >>> name_of("test_step[dead_time=0.5]")
-    'test_step-dead_time-0-5'
+    >>> name_of("test_step-PI"), name_of("test_step[a/b]"), name_of("test_step[a b]")
+    ('test_step-PI', 'test_step-a-b-8f34a2', 'test_step-a-b-d6ea1e')
     """
-    return re.sub(r"[^A-Za-z0-9_]+", "-", text).strip("-_")[:_LONGEST] or "figure"
+    if _NAME.match(text) and len(text) <= _LONGEST:
+        return text
+    mark = digest(text)[:_MARK]
+    words = re.sub(r"[^A-Za-z0-9_]+", "-", text).strip("-_")[: _LONGEST - _MARK - 1]
+    return f"{words or 'figure'}-{mark}"
 
 
 def chosen_figure(text: str) -> tuple[str, str | None]:

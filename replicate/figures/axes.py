@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from replicate.figures.axis_words import on_axis
 from replicate.figures.differences import Difference, same_number
 from replicate.figures.scaling import TOLERANCE, in_units
 
@@ -15,7 +16,20 @@ Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
 
 #: Said elsewhere, by what is compared curve by curve or part by part, or by the tick labels.
-_SILENT = {"panel", "parts", "dense", "clouds", "loose", "thinned", "units", "curves", "fitted", "over"}
+_SILENT = {
+    "xunit",
+    "yunit",
+    "panel",
+    "parts",
+    "dense",
+    "clouds",
+    "loose",
+    "thinned",
+    "units",
+    "curves",
+    "fitted",
+    "over",
+}
 _FIRST = {
     *("title", "xlabel", "ylabel", "xscale", "yscale", "xlim", "ylim", "legend", "texts", "aspect", "hidden"),
     *("points", "areas", "figure_title", "figure_texts", "figure_legend"),
@@ -29,7 +43,9 @@ _CALLED = {
     "xkind": "kind of the x axis",
     "ykind": "kind of the y axis",
     "titles": "titles (left, centre, right)",
+    "proportions": "proportions of the box",
 }
+_MANY = {"xcategories", "ycategories", "titles", "proportions"}
 
 
 def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Difference]:
@@ -128,9 +144,9 @@ _LONGEST_SYMBOL = 20
 
 def _words(name: str, before: Axes, after: Axes) -> Iterator[str]:
     one, other = before.get(name), after.get(name)
-    if name in {"xlim", "ylim"}:
+    if name in {"xlim", "ylim", "zlim"}:
         yield from _limits(name[0], before, after)
-    elif name in {"xlabel", "ylabel", "xscale", "yscale"}:
+    elif name in {"xlabel", "ylabel", "zlabel", "xscale", "yscale"}:
         yield f"{name[1:]} of the {name[0]} axis is now {_shown(other)} (was {_shown(one)})"
     elif name in {"legend", "figure_legend"}:
         yield from _entries("legend entry", one or [], other or [])
@@ -152,7 +168,8 @@ def _words(name: str, before: Axes, after: Axes) -> Iterator[str]:
     elif name == "hidden":
         yield f"axes are now {'hidden' if other else 'visible'}"
     else:
-        yield f"{_CALLED.get(name, name.replace('_', ' '))} is now {_shown(other)} (was {_shown(one)})"
+        now, was = ("are now", "were") if name in _MANY else ("is now", "was")
+        yield f"{_CALLED.get(name, name.replace('_', ' '))} {now} {_shown(other)} ({was} {_shown(one)})"
 
 
 def _polar(one: Mapping[str, Any], other: Mapping[str, Any]) -> Iterator[str]:
@@ -187,11 +204,19 @@ def _same_scale(axis: str, one: Axes, other: Axes) -> bool:
 def _limits(axis: str, before: Axes, after: Axes) -> Iterator[str]:
     one, other = before[f"{axis}lim"], after[f"{axis}lim"]
     if _same(list(one), list(reversed(other))):
-        yield f"{axis} axis now runs from {_shown(other[0])} to {_shown(other[1])}, the other way round"
+        ends = [_end(value, axis, after) for value in other]
+        yield f"{axis} axis now runs from {ends[0]} to {ends[1]}, the other way round"
         return
     for verb, was, now in zip(("begins", "ends"), one, other, strict=True):
         if not _same(was, now):
-            yield f"{axis} axis now {verb} at {_shown(now)} (was {_shown(was)})"
+            shown = _end(now, axis, after), _end(was, axis, before)
+            if shown[0] == shown[1]:  # dates within one second
+                shown = _shown(now), _shown(was)
+            yield f"{axis} axis now {verb} at {shown[0]} (was {shown[1]})"
+
+
+def _end(value: float, axis: str, axes: Axes) -> str:
+    return on_axis(value, axes, axis) if axes.get(f"{axis}kind") == "date" else _shown(value)
 
 
 def _entries(what: str, one: Sequence[str], other: Sequence[str]) -> Iterator[str]:
@@ -207,7 +232,8 @@ def _entries(what: str, one: Sequence[str], other: Sequence[str]) -> Iterator[st
     gone = [entry for entry in one if entry not in other]
     fresh = [entry for entry in other if entry not in one]
     if len(one) == len(other) and len(gone) == len(fresh):
-        yield from (f"{what} {_shown(was)} renamed {_shown(now)}" for was, now in zip(gone, fresh, strict=True))
+        verb = "now reads" if what == "text" else "renamed"
+        yield from (f"{what} {_shown(was)} {verb} {_shown(now)}" for was, now in zip(gone, fresh, strict=True))
         return
     yield from (f"{what} {_shown(entry)} is gone" for entry in gone)
     yield from (f"{what} {_shown(entry)} is new" for entry in fresh)

@@ -6,12 +6,14 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from matplotlib.collections import Collection, PathCollection
 from matplotlib.figure import Figure
 
 from replicate.errors import FigureError
 from replicate.figures.describe import said_texts, said_titles
-from replicate.figures.drawing import recorded
+from replicate.figures.drawing import parasites, recorded
 from replicate.figures.fields import read_field
+from replicate.figures.ink import unseen
 from replicate.figures.marks import Box, marks_of
 from replicate.figures.parts import Namer, Part
 from replicate.figures.readback import read_panel
@@ -44,7 +46,8 @@ def record_of(figure: Figure) -> Record:
     fitted = {"fitted": True} if engine == "PlaceHolderLayoutEngine" else {}
     with recorded(figure) as drawn:
         panels = list(_panels(figure))
-        read = {id(axes): read_panel(name, axes) for name, axes in panels}
+        nothing = unseen(drawn)
+        read = {id(axes): read_panel(name, axes, nothing) for name, axes in panels}
         outside = _outside_the_axes(figure) if panels else {}
         namers = {id(axes): Namer(axes, read[id(axes)].names, _described_texts(axes)) for _, axes in panels}
         texts = {id(text): f"text '{text.get_text()}'" for text in figure.texts} if panels else {}
@@ -98,7 +101,8 @@ def _all_axes(figure: Figure) -> list[Axes]:
     """Return all axes that can be seen, those inside others last."""
     found = [axes for axes in figure.axes if axes.get_visible()]
     for axes in found:  # grows while it is walked
-        found += [child for child in getattr(axes, "child_axes", ()) if child.get_visible() and child not in found]
+        inside = (*getattr(axes, "child_axes", ()), *parasites(axes))
+        found += [child for child in inside if child.get_visible() and child not in found]
     return found
 
 
@@ -106,6 +110,9 @@ def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer) -> str:
     """Hand a mark to the panel it was drawn in, or to the figure; return the name of its part."""
     chain: tuple[Artist, ...] = call.artists
     inner = max((i for i, artist in enumerate(chain) if id(artist) in namers), default=None)
+    guest = chain[inner + 1].axes if inner is not None and len(chain) > inner + 1 else None
+    if inner is not None and guest in parasites(chain[inner]):  # whose artists the host draws
+        return namers[id(guest)].add(call, chain[inner + 1 :])
     if inner is not None:
         axes = chain[inner]
         return namers[id(axes)].add(call, chain[inner + 1 :])
@@ -186,8 +193,14 @@ def _leave_place_to_name(part: Part, marks: list[dict[str, Any]]) -> None:
         mark.pop("outline", None)
         if not (lines and mark["draws"] == "markers"):  # which points of a line are marked is not
             mark.pop("places", None)
+        if _is_shape(part.owner):  # one shape alone is handed to the renderer as a marker
+            mark.pop("symbol", None)
         if not part.placed:
             mark.pop("at", None)
+
+
+def _is_shape(artist: Artist) -> bool:
+    return isinstance(artist, Collection) and not isinstance(artist, PathCollection)
 
 
 def _along_the_axis(marks: list[dict[str, Any]], part: Part) -> None:

@@ -145,16 +145,19 @@ def _is_aspect(value: object) -> bool:
     return _is_number(value) or _is_text(value)
 
 
+_UNITS = ("Y", "M", "h", "m", "s")
 _Field = tuple[Callable[[object], bool], str]
 
 _TEXT: _Field = (_is_text, "a text")
 _TEXTS: _Field = (_are_texts, "a list of texts")
+_UNIT: _Field = (lambda value: value in _UNITS, "one of Y, M, h, m, s")
 _LIMITS: _Field = (_are_limits, "two different numbers")
 
 _FIELDS: dict[str, _Field] = {
     **dict.fromkeys(("panel", "title", "xlabel", "ylabel", "xscale", "yscale", "figure_title", "projection"), _TEXT),
     **dict.fromkeys(("legend", "figure_legend", "figure_texts", "points", "areas"), _TEXTS),
     **dict.fromkeys(("xlim", "ylim"), _LIMITS),
+    **dict.fromkeys(("xunit", "yunit"), _UNIT),
     "hidden": (_is_flag, "true or false"),
     "texts": (_are_placed, "a list of objects, each with text, x and y"),
     "thinned": (_are_numbers_by_name, "numbers by name"),

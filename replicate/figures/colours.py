@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import Any
 
 #: Steps of 255 that nobody sees; a colour map has no finer ones.
 SAME = 4
@@ -37,9 +38,14 @@ def channels(colour: str) -> list[int]:
 def same_colour(one: str, other: str) -> bool:
     """Whether two colours look the same; what cannot be seen has no colour."""
     first, second = channels(one), channels(other)
-    if first[3] <= 1 and second[3] <= 1:
+    if not (is_seen(one) or is_seen(other)):
         return True
     return all(abs(a - b) <= SAME for a, b in zip(first, second, strict=True))
+
+
+def is_seen(colours: Any) -> bool:
+    """Whether anything can be seen of a colour, or of many of them, of which a digest may be all that is known."""
+    return channels(colours)[3] > 1 if isinstance(colours, str) else colours is not None
 
 
 def colour_words(one: str, other: str) -> tuple[str, str]:

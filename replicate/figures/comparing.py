@@ -12,8 +12,9 @@ from replicate.errors import FigureRecordError
 from replicate.figures.axes import Axes, compare_axes, matched_panels, same
 from replicate.figures.curves import CurveComparison, compare_curves
 from replicate.figures.differences import Difference, same_number
-from replicate.figures.looks import Frame
+from replicate.figures.mark_pairs import Frame
 from replicate.figures.pair import Pair
+from replicate.figures.part_names import names_of_texts
 from replicate.figures.partwise import come_and_gone_by_name, compare_parts
 from replicate.figures.record import Record
 from replicate.figures.scaling import in_units
@@ -72,6 +73,7 @@ def _compare(accepted: Record, new: Record) -> Comparison:
 
 def _figure(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Difference]:
     sizes = [side.get("size", []) for side in (one, other)]
+    parts = one.get("parts", []), other.get("parts", [])
     found = []
     if bool(one.get("fitted")) != bool(other.get("fitted")):
         found.append(Difference("axes", "whether the layout follows the size of texts has changed", "figure / fitted"))
@@ -80,7 +82,7 @@ def _figure(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Difference
     ):
         shown = [" × ".join(f"{side:g}" for side in size) for size in (sizes[1], sizes[0])]
         found.append(Difference("axes", f"the figure is now {shown[0]} in (was {shown[1]})", "figure / size"))
-    return found + compare_parts(one.get("parts", []), other.get("parts", []), {}, "figure")
+    return found + compare_parts(*parts, names_of_texts(*parts), "figure")
 
 
 def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Difference]:
@@ -92,13 +94,13 @@ def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Diffe
         if old is None or fresh is None:
             continue
         panel = str(old["panel"])
-        names = {name: was for (owner, name), was in curves.renamed.items() if owner == panel}
+        names = _names(curves, old, fresh)
         own = frozenset(name for owner, name in accepted.curves if owner == panel)
         prefix = f"'{panel}': " if several else ""
         ticks = [axis for axis in "xyz" if any(not same(old, fresh, f"{axis}{what}") for what in ("lim", "scale"))]
         found += compare_parts(
             old.get("parts", []),
-            fresh.get("parts", []),
+            _known_parts(curves, old, fresh),
             names,
             panel,
             prefix,
@@ -121,9 +123,24 @@ def _untold(
         if old is None or fresh is None or "parts" not in old or "parts" not in fresh:
             continue
         panel = str(old["panel"])
-        names = {name: was for (owner, name), was in curves.renamed.items() if owner == panel}
-        for name, words in come_and_gone_by_name(old["parts"], fresh["parts"], names, said):
-            yield Difference("look", f"'{panel}': {words}" if several else words, f"{panel} / {name}")
+        parts = old["parts"], _known_parts(curves, old, fresh)
+        names = _names(curves, old, fresh)
+        gone = {name for owner, name in accepted.curves if owner == panel}
+        come = {names.get(name, name) for owner, name in new.curves if owner == fresh["panel"]}
+        for name, words in come_and_gone_by_name(*parts, names, said):
+            if name not in gone ^ come:  # of these curves it is said already
+                yield Difference("look", f"'{panel}': {words}" if several else words, f"{panel} / {name}")
+
+
+def _names(curves: CurveComparison, old: Axes, fresh: Axes) -> dict[str, str]:
+    """Return the accepted names, by new names, of the curves and the texts of a panel that have another one now."""
+    own = {name: was for (owner, name), was in curves.renamed.items() if owner == old["panel"]}
+    return own | names_of_texts(old.get("parts", []), fresh.get("parts", []))
+
+
+def _known_parts(curves: CurveComparison, old: Axes, fresh: Axes) -> list[Mapping[str, Any]]:
+    """Return the parts of a panel without the curves of which it is said that they are new."""
+    return [part for part in fresh.get("parts", []) if (old["panel"], part["name"]) not in curves.fresh]
 
 
 def _frame(old: Axes, new: Axes, slack: float) -> Frame:

@@ -6,7 +6,6 @@ others by distance (`replicate.figures.distance`).
 
 from __future__ import annotations
 
-import re
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -16,6 +15,7 @@ from replicate.figures.axes import Axes, matched_panels
 from replicate.figures.differences import Difference, FigureChange
 from replicate.figures.distance import Distances, distances, point_distances
 from replicate.figures.envelope import compare_envelopes
+from replicate.figures.grouping import NUMBERED, grouped
 from replicate.figures.pair import Pair
 from replicate.figures.places import points_apart
 from replicate.figures.polylines import THINNING, Points
@@ -27,8 +27,6 @@ from replicate.figures.wording import moved_words
 _LITTLE = 10.0 * TOLERANCE
 # The error of thinning follows the last digits of a curve, but not by more than this factor.
 _SLACK = 2.0
-# What a curve without a label is called: nobody sees it, and one more curve shifts it.
-_NUMBER = re.compile(r"(line|lines|shape|area|points|contours) \d+")
 # Labels interrupt a contour by their width, which the font decides.
 _LOOSE = 0.02
 
@@ -38,11 +36,20 @@ Curves = Mapping[tuple[str, str], Points]
 
 @dataclass
 class CurveComparison:
-    """All curves of a figure; `renamed` has the accepted name by panel and new name of those that changed it."""
+    """All curves of a figure.
+
+    Attributes
+    ----------
+    renamed
+        The accepted name by panel and new name of those that changed it.
+    fresh
+        New curves by panel and name, of which the name is that of another curve in the accepted state.
+    """
 
     changes: list[Difference] = field(default_factory=list)
     pairs: list[Pair] = field(default_factory=list)
     renamed: dict[tuple[str, str], str] = field(default_factory=dict)
+    fresh: set[tuple[str, str]] = field(default_factory=set)
 
     @property
     def unchanged(self) -> int:
@@ -80,6 +87,14 @@ class _Panel:
         self.view = _view(old, new)
 
     def compare(self, one: dict[str, Points], other: dict[str, Points], found: CurveComparison) -> None:
+        own = CurveComparison()
+        self.say_all(one, other, own)
+        found.changes += grouped(own.changes, self.suffix)
+        found.pairs += own.pairs
+        found.renamed |= own.renamed
+        found.fresh |= own.fresh
+
+    def say_all(self, one: dict[str, Points], other: dict[str, Points], found: CurveComparison) -> None:
         pairs = {name: self.pair(name, name, one[name], other[name]) for name in one if name in other}
         found.pairs += pairs.values()
         for name in pairs:
@@ -90,7 +105,7 @@ class _Panel:
         was = self.same_elsewhere(
             {name: one[name] for name in (*differ, *gone)}, {name: other[name] for name in (*differ, *fresh)}
         )  # new name -> the accepted name of the same curve
-        done = self.numbered_anew(was, gone, one.keys(), found)
+        done = self.numbered_anew(was, one, other, found)
         for name in (*differ, *fresh):
             origin = was.get(name)
             if origin is None or name in done:
@@ -119,19 +134,21 @@ class _Panel:
                 self.say(found, "curve", f"curve '{name}'{self.suffix} {words}", name, size=size, suffix="")
 
     def numbered_anew(
-        self, was: Mapping[str, str], gone: Sequence[str], old: Collection[str], found: CurveComparison
+        self, was: Mapping[str, str], one: Collection[str], other: Collection[str], found: CurveComparison
     ) -> set[str]:
         """Rename curves that have numbers for names, and return the names that are settled: nobody sees a number."""
-        numbers = {
-            name: origin for name, origin in was.items() if _NUMBER.fullmatch(name) and _NUMBER.fullmatch(origin)
-        }
-        while numbers and not all(origin in numbers or origin in gone for origin in numbers.values()):
-            numbers = {name: origin for name, origin in numbers.items() if origin in numbers or origin in gone}
+        numbers = {name: origin for name, origin in was.items() if all(map(NUMBERED.fullmatch, (name, origin)))}
+        as_many = len(one) == len(other)  # then a curve whose name another one has now has moved, and is not new
+        while as_many and not all(origin in numbers or origin not in other for origin in numbers.values()):
+            numbers = {name: origin for name, origin in numbers.items() if origin in numbers or origin not in other}
         for name, origin in numbers.items():
             self.rename(found, name, origin)
         origins = set(numbers.values())
-        for name in numbers.keys() & set(old) - origins:
+        for name in sorted(numbers.keys() & set(one) - origins):
             self.say(found, "removed", f"curve '{name}' is missing", name)
+        for name in sorted(origins & set(other) - numbers.keys()):  # the curve that had its name has another one now
+            self.say(found, "new", f"curve '{name}' is new", name)
+            found.fresh.add((str(self.old["panel"]), name))
         return numbers.keys() | origins
 
     def rename(self, found: CurveComparison, name: str, origin: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Container
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.dates import DateConverter, _SwitchableDateConverter
 from matplotlib.projections.polar import PolarAxes
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
@@ -18,10 +20,28 @@ _DIGITS = 9
 _SIDES: tuple[Literal["left"], Literal["center"], Literal["right"]] = ("left", "center", "right")
 # Steps of a table that gives the place of a value on an axis that is neither linear nor logarithmic.
 _STEPS = 192
+_PERIODS = {
+    "Y": "Y",
+    "YE": "Y",
+    "A": "Y",
+    "M": "M",
+    "ME": "M",
+    "D": "D",
+    "h": "h",
+    "H": "h",
+    "min": "m",
+    "T": "m",
+    "s": "s",
+}
 
 
-def describe(panel: str, axes: Axes) -> dict[str, Any]:
+def describe(panel: str, axes: Axes, unseen: Container[int] = ()) -> dict[str, Any]:
     """Return the description of axes, ready for JSON.
+
+    Parameters
+    ----------
+    unseen
+        The identities of the artists of which nothing can be seen.
 
     Returns
     -------
@@ -31,7 +51,8 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         axes. Only where it applies: ``titles`` (if there are several), ``aspect``, ``hidden`` (axes that are switched
         off), ``projection``, ``units`` ("box": the coordinates of curves are fractions of the axes), ``xtable``
         (where values lie on an axis that is neither linear nor logarithmic), ``xkind`` ("date", "categories"),
-        ``xcategories``, ``polar``, ``view`` and what belongs to the third axis.
+        ``xunit`` (what dates count since 1970, if not days), ``xcategories``, ``polar``, ``view`` and what belongs to
+        the third axis.
     """
     legend = axes.get_legend() if hasattr(axes, "get_legend") else None
     said = said_titles(axes)
@@ -45,7 +66,7 @@ def describe(panel: str, axes: Axes) -> dict[str, Any]:
         "xlim": [number(limit) for limit in axes.get_xlim()],
         "ylim": [number(limit) for limit in axes.get_ylim()],
         "legend": [text.get_text() for text in legend.get_texts()] if legend and legend.get_visible() else [],
-        "texts": [_text(text, axes) for text in said_texts(axes) if text.get_visible()],
+        "texts": [_text(text, axes) for text in said_texts(axes) if text.get_visible() and id(text) not in unseen],
     }
     if len(said) > 1:
         found["titles"] = [axes.get_title(loc=side) for side in _SIDES]
@@ -70,6 +91,13 @@ def said_titles(axes: Axes) -> list[str]:
     if not hasattr(axes, "get_title"):
         return []
     return [title for side in ("center", "left", "right") if (title := axes.get_title(loc=side))]
+
+
+def said_label(artist: Artist) -> str:
+    """Return the label that somebody gave an artist, in one line; empty if nobody did."""
+    label = artist.get_label()
+    words = "" if label is None else " ".join(str(label).split())
+    return "" if words.startswith("_") else words
 
 
 def said_texts(axes: Axes) -> list[Any]:
@@ -102,13 +130,21 @@ def _axis(axes: Axes, name: str, place: int) -> dict[str, Any]:
         found[f"{name}table"] = _table(axes, place)
     converter = axis.get_converter() if hasattr(axis, "get_converter") else getattr(axis, "converter", None)
     if isinstance(converter, DateConverter | _SwitchableDateConverter):
-        found[f"{name}kind"] = "date"
+        unit = _period(axis) if type(converter).__name__ == "PeriodConverter" else "D"
+        found |= {f"{name}kind": "date"} if unit else {}
+        found |= {f"{name}unit": unit} if unit not in {"", "D"} else {}
         found[f"{name}lim"] = [float(f"{float(end):.14g}") for end in getattr(axes, f"get_{name}lim")()]
     elif isinstance(converter, StrCategoryConverter):
         found[f"{name}kind"] = "categories"
         mapping: dict[str, int] = getattr(getattr(axis, "units", None), "_mapping", {})
         found[f"{name}categories"] = [str(key) for key, _ in sorted(mapping.items(), key=lambda item: item[1])]
     return found
+
+
+def _period(axis: Any) -> str:
+    """Return what an axis of pandas' periods counts, as NumPy calls it; empty if NumPy does not know it."""
+    frequency = getattr(axis, "freq", "")  # its name, or an object that has one
+    return _PERIODS.get(str(getattr(frequency, "rule_code", frequency)).partition("-")[0], "")
 
 
 def _table(axes: Axes, place: int) -> dict[str, list[float]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ from replicate.figures.recorder import DPI, Drawn, RecordingRenderer
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 
@@ -99,11 +100,16 @@ def everything(figure: Figure) -> list[Artist]:
         if id(artist) in found:
             continue
         found[id(artist)] = artist
-        children = list(artist.get_children())
+        children = [*artist.get_children(), *parasites(artist)]
         if isinstance(artist, Text):
             children += [part for part in (artist.get_bbox_patch(), _arrow(artist)) if part is not None]
         waiting += children
     return list(found.values())
+
+
+def parasites(artist: Artist) -> Sequence[Axes]:
+    """Return the axes of `mpl_toolkits` that live on others, which draw their artists for them."""
+    return getattr(artist, "parasites", ())
 
 
 def _arrow(text: Text) -> Any:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.figures.differences import percent
 from replicate.figures.digests import Array, line_waves, rounded
 from replicate.figures.polylines import Points
 from replicate.figures.scaling import finite
@@ -150,7 +151,11 @@ def _moved(
         apart = np.nan_to_num(np.abs(other[name] - one[name]))
         worst = int(np.argmax(apart))
         if apart[worst] > TOLERANCE and (best is None or apart[worst] > best[1]):
-            best = f"{words} by at most {100.0 * apart[worst]:.2g} % of the axis,", float(apart[worst]), worst / COLUMNS
+            best = (
+                f"{words} by at most {percent(float(apart[worst]))} of the axis,",
+                float(apart[worst]),
+                worst / COLUMNS,
+            )
     return best
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from replicate.figures.colours import colour_words
+from replicate.figures.differences import percent
 from replicate.figures.digests import Array
 
 #: Values and means of blocks are the same up to this fraction of the range of the colours ...
@@ -119,7 +120,7 @@ def _values(field: Field) -> Array:
 def _at_most(one: Field, apart: Array) -> str:
     largest = float(apart.max())
     row, column = np.unravel_index(int(np.argmax(apart)), apart.shape)
-    words = f"values of {{}} differ by at most {100.0 * largest:.2g} % of the colour range"
+    words = f"values of {{}} differ by at most {percent(largest)} of the colour range"
     if apart.shape[1] == 1:
         shape = one["shape"]
         first = int((row + 0.5) / apart.shape[0] * shape[0])

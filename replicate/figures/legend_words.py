@@ -10,5 +10,8 @@ LEGEND_SIZES = {
     "borderpad": "distance between frame and entries",
     "borderaxespad": "distance to the axes",
     "columnspacing": "distance between columns",
+    "numpoints": "number of markers on each line",
+    "scatterpoints": "number of markers for each set of points",
 }
 HANDLES = "place of the handles"
+OUTSIDE = "place outside the axes"

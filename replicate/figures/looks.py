@@ -5,15 +5,14 @@ Every sentence has ``{}`` where the name of the part goes, so that parts that ch
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from replicate.figures.colours import alphas, colour_words, dash_words, same_colour
 from replicate.figures.differences import percent
-from replicate.figures.places import LOOSE, TOLERANCE, busiest, outlines_apart, points_apart
+from replicate.figures.places import TOLERANCE, busiest, outlines_apart, points_apart
 
 Mark = Mapping[str, Any]
 #: A sentence, and how much something moved as a fraction of its box.
@@ -23,105 +22,13 @@ _SIZE = 2e-3
 _SIGNS = 5e-3
 _BLOCK = 0.02
 _SYMBOL = 3e-3
+_LARGER = 5e-3
 _PICTURE = 0.015
 _MOST_TEXTS = 12
-_CALLED = {"path": "line", "markers": "markers", "text": "text", "image": "picture", "collection": "shapes"}
 
 
-@dataclass(frozen=True)
-class Frame:
-    """How places of two states are to be compared.
-
-    Attributes
-    ----------
-    slack
-        Factor on the tolerance of places; above 1 where the whole layout follows the size of texts.
-    shift, stretch
-        Where the limits of the axes are others now: what lay at ``p`` of the accepted axes and stayed with the data
-        lies at ``(p - shift) / stretch`` now.
-    zoomed
-        Whether they are.
-    """
-
-    slack: float = 1.0
-    shift: tuple[float, float] = (0.0, 0.0)
-    stretch: tuple[float, float] = (1.0, 1.0)
-
-    @property
-    def zoomed(self) -> bool:
-        """Whether the limits are others."""
-        return self != Frame(self.slack)
-
-    def accepted(self, mark: Mark) -> Mark:
-        """Return a mark of the new state where it would lie in the accepted one, had it stayed with the data."""
-        moved = dict(mark)
-        for name in ("outline", "places"):
-            if "points" in mark.get(name, {}):
-                moved[name] = {"points": [self._accepted(point) for point in mark[name]["points"]]}
-        if "at" in mark:
-            moved["at"] = [self._accepted(point) for point in mark["at"]]
-        return moved
-
-    def _accepted(self, point: Sequence[float] | None) -> list[float] | None:
-        if point is None:
-            return None
-        return [shift + part * stretch for part, shift, stretch in zip(point, self.shift, self.stretch, strict=True)]
-
-
-def mark_words(one: Sequence[Mark], other: Sequence[Mark], frame: Frame, *, loose: bool) -> Iterator[Words]:
-    """Yield how the marks of one part differ.
-
-    Parameters
-    ----------
-    loose
-        Whether places follow the size of texts.
-    """
-    tolerance = (LOOSE if loose else TOLERANCE) * frame.slack
-    kinds = [mark["draws"] for mark in (*one, *other)]
-    for kind in dict.fromkeys(kinds):
-        first, second = ([mark for mark in marks if mark["draws"] == kind] for marks in (one, other))
-        if len(first) != len(second):
-            yield from _counts(kind, *_unpaired(first, second))
-            continue
-        for before, after in zip(first, second, strict=True):
-            words = list(_look(before, after))
-            yield from ((text, None) for text in words)
-            moved = list(_place(before, after, tolerance))
-            if moved and frame.zoomed:  # what stayed with the data has not moved, nor what stayed with the axes
-                digest = any("pieces" in after.get(name, {}) for name in ("outline", "places"))
-                moved = [] if digest else list(_place(before, frame.accepted(after), tolerance))
-            yield from moved
-
-
-def _unpaired(first: Sequence[Mark], second: Sequence[Mark]) -> tuple[list[Mark], list[Mark]]:
-    """Leave out the marks that both have."""
-    left, right = list(first), list(second)
-    for mark in first:
-        for candidate in right:
-            if not list(_look(mark, candidate)) and not list(_place(mark, candidate, TOLERANCE)):
-                left.remove(mark)
-                right.remove(candidate)
-                break
-    return left, right
-
-
-def _counts(kind: str, first: Sequence[Mark], second: Sequence[Mark]) -> Iterator[Words]:
-    what = _CALLED.get(kind, kind)
-    if not first and second:
-        yield f"{{}} now has {_indefinite(what, len(second))}", None
-    elif first and not second:
-        yield f"{{}} no longer has {_indefinite(what, len(first))}", None
-    else:
-        yield f"{{}} is drawn with {len(second)} looks of its {what} where it had {len(first)}", None
-
-
-def _indefinite(what: str, count: int) -> str:
-    if count > 1:
-        return f"{count} more {what}s".replace("ss", "s")
-    return what if what.endswith("s") else f"a {what}"
-
-
-def _look(one: Mark, other: Mark) -> Iterator[str]:
+def look_words(one: Mark, other: Mark) -> Iterator[str]:
+    """Yield how two marks differ, wherever they are."""
     yield from _colours(one, other)
     for name, words in _NUMBERS.items():
         yield from _numbers(name, words, one, other)
@@ -133,7 +40,8 @@ def _look(one: Mark, other: Mark) -> Iterator[str]:
         if name in {"cap", "join"} and not (name in one and name in other):
             continue  # thin lines do not say
         if one.get(name, "") != other.get(name, ""):
-            yield f"{called} is now {other.get(name) or 'normal'} (was {one.get(name) or 'normal'})"
+            shown = [mark.get(name) or _USUAL.get(name, "normal") for mark in (other, one)]
+            yield f"{called} is now {shown[0]} (was {shown[1]})"
     if not _same_clip(one.get("clip"), other.get("clip")):
         clips = [_clips(mark.get("clip")) for mark in (other, one)]
         different = f"{{}} is clipped {clips[0]} now (was {clips[1]})"
@@ -158,6 +66,7 @@ _WORDS = {
     "join": "corner of the lines of {}",
     "sketch": "sketch style of {}",
 }
+_USUAL = {"align": "left baseline", "hatch": "none", "sketch": "none"}
 
 
 def _colours(one: Mark, other: Mark) -> Iterator[str]:
@@ -261,24 +170,42 @@ def _clips(clip: Any) -> str:
 
 
 def _symbols(one: Mark, other: Mark) -> Iterator[str]:
-    before, after = one.get("symbol"), other.get("symbol")
-    if before is None or after is None:
-        return
-    extents = [_extent(symbol) for symbol in (before, after)]
-    ratio = (extents[1] / extents[0] if extents[0] else 1.0) or 1.0
-    if outlines_apart(before, _scaled(after, 1.0 / ratio), _SYMBOL):
-        yield "markers of {} have another shape now"
-    elif abs(ratio - 1.0) > 0.01:
-        yield f"markers of {{}} are {ratio:.3g} times as large now"
+    yield from _shapes(one, other)
     scales = one.get("scale", 1.0), other.get("scale", 1.0)
+    if ("symbols" in one) != ("symbols" in other):
+        return
     if isinstance(scales[0], float | int) and isinstance(scales[1], float | int):
-        if not _close(*scales):
-            yield f"markers of {{}} are {scales[1] / (scales[0] or 1.0):.3g} times as large now"
-    elif isinstance(scales[0], dict) and isinstance(scales[1], dict):
-        if _digests_differ(*scales, relative=max(np.max(scales[0]["means"]), 1e-9)):
-            yield "sizes of the markers of {} changed"
-    elif not _close(*scales):
+        ratio = _reach(other) / _reach(one)
+        if abs(ratio - 1.0) > _LARGER:
+            yield f"markers of {{}} are {ratio:.3g} times as large now"
+        return
+    if isinstance(scales[0], dict) and isinstance(scales[1], dict):
+        same = not _digests_differ(*scales, relative=max(np.max(scales[0]["means"]), 1e-9))
+    else:
+        same = _close(*scales)
+    if not same or abs(_reach(other) / _reach(one) - 1.0) > _LARGER:
         yield "sizes of the markers of {} changed"
+
+
+def _shapes(one: Mark, other: Mark) -> Iterator[str]:
+    """Say whether markers have another shape, whatever their size is."""
+    if "symbols" in one or "symbols" in other:
+        kept = [{"symbol", "symbols"} & mark.keys() for mark in (one, other)]
+        different = kept[0] != kept[1] or _digests_differ(one["symbols"], other["symbols"])
+        if all(kept) and different:
+            yield "markers of {} have other shapes now"
+    elif "symbol" in one and "symbol" in other:
+        reach = _reach(one)
+        first, second = (_scaled(mark["symbol"], reach / (_extent(mark["symbol"]) or 1.0)) for mark in (one, other))
+        if outlines_apart(first, second, _SYMBOL):
+            yield "markers of {} have another shape now"
+
+
+def _reach(mark: Mark) -> float:
+    """Return how far a marker reaches from its place, the largest of them if they have many sizes."""
+    scale = mark.get("scale", 1.0)
+    largest = np.max(scale["means"]) if isinstance(scale, dict) else np.max(scale)
+    return (_extent(mark.get("symbol", {})) or 1.0) * (float(largest) or 1.0)
 
 
 def _extent(symbol: Mapping[str, Any]) -> float:
@@ -312,7 +239,8 @@ def _same_blocks(one: Any, other: Any) -> bool:
     return first.shape == second.shape and bool(np.abs(second - first).max() <= _BLOCK)
 
 
-def _place(one: Mark, other: Mark, tolerance: float) -> Iterator[Words]:
+def place_words(one: Mark, other: Mark, tolerance: float) -> Iterator[Words]:
+    """Yield how far apart two marks lie, if further than the tolerance."""
     apart, where = 0.0, None
     if "outline" in one and "outline" in other:
         apart = outlines_apart(one["outline"], other["outline"], tolerance)

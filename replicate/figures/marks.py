@@ -6,7 +6,7 @@ A mark says what is drawn (``draws``), how it looks and where it lies. Its field
 - ``width``, ``dash``, ``cap``, ``join``: of the line, lengths in points
 - ``hatch``, ``sketch``, ``clip`` (left out if clipped to the axes, ``none`` if not clipped)
 - ``outline``: where its lines run; ``symbol``: the shape of a marker in inches, ``places`` where it is drawn and
-  ``scale`` how large
+  ``scale`` how large; ``symbols``, where each of many points has its own
 - ``texts``, ``size``, ``angle``, ``align``, ``weight``, ``slant`` of texts and ``at``, where they are anchored;
   ``image``, the mean colours of its blocks, and the corners of a picture
 
@@ -20,11 +20,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib.collections import PathCollection
 
-from replicate.figures.digests import MOST_VALUES, Array, rounded, values_digest
+from replicate.figures.digests import MOST_VALUES, Array, line_waves, rounded, values_digest
 from replicate.figures.outlines import OUTLINE_TOLERANCE, flattened, joined, outline, scattered
 from replicate.figures.polylines import Points
 from replicate.figures.recorder import DPI, Drawn
+from replicate.figures.scaling import finite
 
 Mark = dict[str, Any]
 
@@ -126,7 +128,9 @@ def _look(drawn: Drawn, box: Box) -> Mark:
     if drawn.kind == "mesh":
         mark["size"] = list(drawn.extra["size"])
     if drawn.offsets is not None and len(drawn.paths) == 1:
-        mark |= _symbols(drawn)
+        mark |= _symbol(drawn) | _scale(drawn)
+    elif drawn.offsets is not None and isinstance(drawn.artists[-1], PathCollection):
+        mark |= _many_symbols(drawn) | _scale(drawn)
     return mark
 
 
@@ -167,23 +171,38 @@ def _clip(drawn: Drawn, box: Box) -> Mark:
     return {"clip": outline(ends[[0, 1, 2, 1, 2, 3, 0, 3, 0, 1]].reshape(-1, 2))}
 
 
-def _symbols(drawn: Drawn) -> Mark:
+def _symbol(drawn: Drawn) -> Mark:
     """Describe the shape of a marker in inches, of unit size if it has many sizes."""
     scales = drawn.scales if drawn.scales is not None and len(drawn.scales) else np.ones(1)
     points = flattened(drawn.paths[0]) / (float(scales[0]) or 1.0)
     points *= 1.0 if drawn.scales is not None else 72.0 / DPI
-    mark: Mark = {"symbol": outline(points / _INCH, tolerance=_FINE)}
-    if drawn.scales is not None:
-        mark["scale"] = _values(scales * 72.0 / DPI)
-    return mark
+    largest = float(scales.max()) * 72.0 / DPI if drawn.scales is not None else 1.0
+    return {"symbol": outline(points / _INCH, tolerance=_FINE / (largest or 1.0))}
+
+
+def _many_symbols(drawn: Drawn) -> Mark:
+    """Describe the shapes of points that have one each, as seaborn draws them, all of unit size."""
+    scales = drawn.scales if drawn.scales is not None and len(drawn.scales) else np.ones(1)
+    each = [_weighed(flattened(path) / (float(scales[i % len(scales)]) or 1.0)) for i, path in enumerate(drawn.paths)]
+    count = 0 if drawn.offsets is None else len(drawn.offsets)
+    return {"symbols": values_digest(np.array([each[i % len(each)] for i in range(count)]))}
+
+
+def _weighed(points: Points) -> Array:
+    there = finite(points)
+    both = there[:-1] & there[1:]
+    return line_waves(points[:-1][both], points[1:][both])
+
+
+def _scale(drawn: Drawn) -> Mark:
+    return {} if drawn.scales is None else {"scale": _values(drawn.scales * 72.0 / DPI)}
 
 
 def _text(drawn: Drawn) -> Mark:
     font = drawn.extra["font"]
-    mark: Mark = {
-        "edge": _colours(drawn.edges[:1] if len(drawn.edges) else np.array([[0.0, 0.0, 0.0, 1.0]])),
-        "size": round(float(font.get_size_in_points()), 2),
-    }
+    mark: Mark = {"size": round(float(font.get_size_in_points()), 2)}
+    colour = _colours(drawn.edges[:1] if len(drawn.edges) else np.array([[0.0, 0.0, 0.0, 1.0]]))
+    mark = mark if colour is None else {"edge": colour, **mark}
     weight, slant = font.get_weight(), font.get_style()
     if weight not in {"normal", "regular", 400}:
         mark["weight"] = str(weight)

@@ -6,7 +6,7 @@ compared all the same.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -23,14 +23,17 @@ from matplotlib.spines import Spine
 from matplotlib.table import Table
 from matplotlib.text import Text
 
+from replicate.figures.describe import said_label
 from replicate.figures.marks import Box
 from replicate.figures.recorder import Drawn
+from replicate.figures.style_numbers import style_numbers
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
 
 _TICKS = {"gridline": "grid lines", "label1": "tick labels", "label2": "tick labels"}
 _LONGEST = 40
+_SHRINK = 2.0  # points
 
 #: What a class of matplotlib is called where it has no label; the first that fits counts.
 _WORDS: Sequence[tuple[type, str]] = (
@@ -154,15 +157,21 @@ class Namer:
     def _name(self, artist: Artist) -> str:
         if id(artist) in self.names:
             return self.names[id(artist)]
-        label = " ".join(str(artist.get_label()).split())
-        if label and not label.startswith("_"):
+        label = said_label(artist)
+        if label:
             return label
         key = (id(artist), "")
         if key not in self._given:
             word = _word(artist) or type(artist).__name__
-            self._numbers[f"{word} #"] = count = self._numbers.get(f"{word} #", 0) + 1
-            self._given[key] = f"{word} {count}"
+            taken = self.curves.values()
+            self._given[key] = next(name for name in self._further(word) if name not in taken)
         return self._given[key]
+
+    def _further(self, word: str) -> Iterator[str]:
+        """Yield names with numbers that have not been given yet."""
+        while True:
+            self._numbers[f"{word} #"] = count = self._numbers.get(f"{word} #", 0) + 1
+            yield f"{word} {count}"
 
     def _of_legend(self, legend: Legend, chain: tuple[Artist, ...]) -> Part:
         first = legend is getattr(self.owner, "legend_", legend)
@@ -184,8 +193,9 @@ class Namer:
                 return Part(
                     f"arrow of {name}", chain[-1], loose=bool(text.get_text()), properties=_arrow_style(chain[-1])
                 )
-            style = {"style": type(box.get_boxstyle()).__name__}
-            return Part(f"box of {name}", box, loose=True, properties=style)
+            style = box.get_boxstyle()
+            shape = {"style": type(style).__name__, "shape": style_numbers(style) or "usual"}
+            return Part(f"box of {name}", box, placed=False, properties=shape)
         if not told and text in getattr(self.owner, "texts", ()):  # of a contour: width and font decide where it is
             return Part(f"label '{_shortened(text.get_text())}'", text, placed=False, turned=False)
         solid = hasattr(text, "get_position_3d")  # its data say two of three coordinates
@@ -206,21 +216,9 @@ def _arrow_style(arrow: Any) -> dict[str, Any]:
 
 def _shape(arrow: Any, styles: Sequence[Any]) -> str:
     """Return the numbers of an arrow's styles, and its distance from both ends, that are not matplotlib's own."""
-    found = []
-    for style in styles:
-        try:
-            usual = vars(type(style)())
-        except TypeError:  # a style of somebody else's, which needs arguments
-            usual = {}
-        found += [(name, value) for name, value in vars(style).items() if value != usual.get(name)]
-    found += [(f"shrink{end}", getattr(arrow, f"shrink{end}", None)) for end in "AB"]
-    usual = {"shrinkA": 2.0, "shrinkB": 2.0}
-    numbers = [
-        (name, value)
-        for name, value in found
-        if isinstance(value, int | float) and not name.startswith("_") and value != usual.get(name)
-    ]
-    return ", ".join(f"{name}={float(value):.3g}" for name, value in numbers) or "usual"
+    ends = [(f"shrink{end}", getattr(arrow, f"shrink{end}", _SHRINK)) for end in "AB"]
+    shrunk = [f"{name}={float(value):.3g}" for name, value in ends if value != _SHRINK]
+    return ", ".join(filter(None, [*map(style_numbers, styles), *shrunk])) or "usual"
 
 
 def _of_axis(axis: Axis, chain: tuple[Artist, ...]) -> Part:
@@ -230,6 +228,8 @@ def _of_axis(axis: Axis, chain: tuple[Artist, ...]) -> Part:
         place: dict[str, Any] = {"pad": round(float(axis.labelpad), 2)}
         if not getattr(axis, "_autolabelpos", True):  # set_label_coords was called
             place = {"place": [round(float(part), 4) for part in axis.label.get_position()]}
+        elif getattr(axis.axes, "name", "") == "rectilinear":
+            place["side"] = str(axis.get_label_position())
         return Part(f"label {which}", below, told=True, placed=False, properties=place)
     if below is axis.offsetText:
         return Part(f"offset text {which}", below, placed=False)
@@ -245,8 +245,20 @@ def _of_table(name: str, table: Table, chain: tuple[Artist, ...]) -> Part:
     cell = next((place for place, cell in table.get_celld().items() if cell in chain), None)
     if cell is None:
         return Part(name, table, loose=True)
-    lines = {"lines": table[cell].visible_edges} if chain[-1] is table[cell] else {}
-    return Part(f"{name}, cell {cell[0]}, {cell[1]}", chain[-1], loose=True, properties=lines)
+    return Part(
+        f"{name}, cell {cell[0]}, {cell[1]}",
+        chain[-1],
+        loose=True,
+        properties=_cell_properties(table, cell) if chain[-1] is table[cell] else {},
+    )
+
+
+def _cell_properties(table: Table, place: tuple[int, int]) -> dict[str, Any]:
+    cell = table[place]
+    found: dict[str, Any] = {"lines": cell.visible_edges, "height": round(float(cell.get_height()), 4)}
+    if place[1] not in getattr(table, "_autoColumns", ()):  # those follow the width of their texts
+        found["width"] = round(float(cell.get_width()), 4)
+    return found
 
 
 def _legend_properties(legend: Legend) -> dict[str, Any]:

@@ -2,23 +2,52 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
+from replicate.figures.colours import is_seen
 from replicate.figures.differences import Difference, FigureChange, Layer
 from replicate.figures.fieldwise import field_words
-from replicate.figures.legend_words import HANDLES, LEGEND_SIZES
-from replicate.figures.looks import Frame, Mark, mark_words
+from replicate.figures.grouping import NUMBERED, are_many, together, without_details
+from replicate.figures.legend_words import HANDLES, LEGEND_SIZES, OUTSIDE
+from replicate.figures.looks import Mark
+from replicate.figures.mark_pairs import Frame, mark_words
+from replicate.figures.part_names import names_of_numbered, names_of_sub_figures
 
 Part = Mapping[str, Any]
+#: What is said, and whether by the net alone, of which parts, and how far each has moved.
+_Sentences = dict[tuple[str, bool], dict[str, float | None]]
 
-_NAMED_TOGETHER = 3
 _PLACES = {"outline", "places", "at", "texts"}
 #: Properties that every part of their kind has; records of earlier releases do not have them.
-_ALWAYS = {"offset", "choice of markers", "shape", "lines", "clipping", "turning", HANDLES, *LEGEND_SIZES.values()}
+_ALWAYS = {
+    "offset",
+    "choice of markers",
+    "shape",
+    "lines",
+    "clipping",
+    "turning",
+    "side",
+    "height",
+    "width",
+    HANDLES,
+    OUTSIDE,
+    *LEGEND_SIZES.values(),
+}
+#: What properties are called that have shorter names in the record.
+_SAID = {
+    "along": "place along the axis",
+    "across": "horizontal place",
+    "up": "vertical place",
+    "columns": "number of columns",
+    "effects": "path effects",
+    "mode": "width",
+}
+_MANY = {"effects", "line breaks", "lines"}
+_VERB = re.compile(r"^(\{\} (?:now |no longer )?)(is|has)\b")
 _TITLES = {"title": "in the centre", "left title": "at the left", "right title": "at the right"}
-_SUB_FIGURE = " of sub-figure "
 _GAP = 0.01  # of the axes: boxes are rounded
 _PLURALS = ("labels", "marks", "lines")
 
@@ -57,21 +86,24 @@ def compare_parts(
     old = {str(part["name"]): part for part in before}
     # The entries of a legend follow the names of their curves.
     entries = {f"legend entry '{name}'": f"legend entry '{was}'" for name, was in names.items()}
-    earlier = _earlier_names(old, after)
+    frame = frame or Frame()
+    earlier = names_of_sub_figures(old, after)
     was = {**entries, **names, **earlier}
     new = {was.get(str(part["name"]), str(part["name"])): part for part in after}
+    numbered = names_of_numbered(old, new, lambda one, other: not any(_differ(one, other, frame, follows=False)))
+    new = {numbered.get(name, name): part for name, part in new.items()}
     found = list(_come_and_gone(old, new, where, prefix, curves, other_ticks))
-    sentences: dict[tuple[str, bool], dict[str, float | None]] = {}
+    sentences: _Sentences = {}
     for name, part in old.items():
-        if name in new:
+        if name in new and bool(part.get("told")) == bool(new[name].get("told")):  # else it is a curve now, or none
             net = bool(part.get("net") or new[name].get("net"))
             follows = _ticks_of(name, other_ticks) or name in moved
-            for words, size in _differ(part, new[name], frame or Frame(), follows=follows):
+            for words, size in _differ(part, new[name], frame, follows=follows):
                 parts = sentences.setdefault((words, net), {})
                 parts[name] = size if size is None else max(size, parts.get(name) or 0.0)
-    for (words, net), parts in sentences.items():
+    for words, net, parts, others in _said_once(sentences):
         sizes = [size for size in parts.values() if size is not None]
-        text = prefix + _sentence(words, list(parts), curves)
+        text = prefix + _sentence(words, list(parts), curves) + (f", and {others} others likewise" if others else "")
         layer: Layer = "net" if net else "named"
         place = f"{where} / {next(iter(parts))}"
         found.append(Difference("look", text, place, size=max(sizes, default=None), layer=layer))
@@ -81,23 +113,26 @@ def compare_parts(
     return found
 
 
-def _earlier_names(old: Mapping[str, Part], after: Sequence[Part]) -> dict[str, str]:
-    """Return what records of earlier releases call the backgrounds and titles of sub-figures, which they numbered."""
-    if any(_SUB_FIGURE in name for name in old):
-        return {}
-    inner = [part for part in after if _SUB_FIGURE in str(part["name"])]
-    grounds = [str(part["name"]) for part in inner if "texts" not in part["marks"][0]]
-    said = {str(part["name"]): part["marks"][0]["texts"][0] for part in inner if "texts" in part["marks"][0]}
-    titles = {name: f"text '{words}'" for name, words in said.items()}
-    return titles | {name: f"shape {count}" for count, name in enumerate(grounds, start=1)}
+def _said_once(sentences: _Sentences) -> Iterator[tuple[str, bool, dict[str, float | None], int]]:
+    """Yield sentences with their parts, and how many parts without a name of their own they stand for besides."""
+    groups: dict[tuple[str, bool], list[tuple[str, dict[str, float | None]]]] = {}
+    for (words, net), parts in sentences.items():
+        common = without_details(words) if all(map(NUMBERED.fullmatch, parts)) else words
+        groups.setdefault((common, net), []).append((words, parts))
+    for (_, net), group in groups.items():
+        if are_many(len(group)):
+            words, parts = group[0]
+            yield words, net, parts, sum(len(others) for _, others in group[1:])
+        else:
+            yield from ((words, net, parts, 0) for words, parts in group)
 
 
 def _sentence(words: str, names: Sequence[str], curves: frozenset[str]) -> str:
     """Put the names of parts into a sentence, with the verb that fits their number."""
     if len(names) > 1 or _plural(names[0]):
-        for one, several in (("{} is ", "{} are "), ("{} has ", "{} have "), ("{} no longer has", "{} no longer have")):
-            words = several.join(words.split(one, 1)) if words.startswith(one) else words
-    return words.replace("{}", _together([_called(name, curves) for name in names]))
+        words = _VERB.sub(lambda match: match[1] + {"is": "are", "has": "have"}[match[2]], words)
+        words = words.replace(" of its ", " of their ")
+    return words.replace("{}", together([_called(name, curves) for name in names]))
 
 
 def _plural(name: str) -> bool:
@@ -118,7 +153,8 @@ def _come_and_gone(
     )
     for parts, others, words, kind in sides:
         for name, part in parts.items():
-            if name not in others and not part.get("told") and not _ticks_of(name, other_ticks):
+            told = part.get("told") or not _shows(part)
+            if name not in others and not told and not _ticks_of(name, other_ticks):
                 layer: Layer = "net" if part.get("net") else "named"
                 text = f"{prefix}{_called(name, curves)} {'are' if _plural(name) else 'is'} {words}"
                 yield Difference(kind, text, f"{where} / {name}", layer=layer)
@@ -138,16 +174,24 @@ def come_and_gone_by_name(
     said
         The differences that were found.
     """
-    told = [
-        [name for part in parts if part.get("told") for name in [names.get(str(part["name"]), str(part["name"]))]]
-        for parts in (before, after)
-    ]
-    gone, fresh = ([name for name in one if name not in other] for one, other in (told, told[::-1]))
+    told = [[str(part["name"]) for part in parts if part.get("told") and _shows(part)] for parts in (before, after)]
+    was, now = told[0], [names.get(name, name) for name in told[1]]
+    gone, fresh = ([name for name in one if name not in other] for one, other in ((was, now), (now, was)))
     if len(gone) == len(fresh) == 1 and {*gone, *fresh} <= _TITLES.keys():
         yield gone[0], f"title is now {_TITLES[fresh[0]]} (was {_TITLES[gone[0]]})"
         return
     for parts, words in ((gone, "no longer drawn"), (fresh, "drawn now")):
         yield from ((name, f"{name} is {words}") for name in parts if not _mentioned(name, said))
+
+
+def _shows(part: Part) -> bool:
+    """Whether anything of a part can be seen."""
+    return any(
+        mark["draws"] == "image"
+        or "hatch" in mark
+        or any(is_seen(mark[name]) for name in ("edge", "face") if name in mark)
+        for mark in part["marks"]
+    ) or bool(part.get("field"))
 
 
 def _mentioned(name: str, said: str) -> bool:
@@ -165,7 +209,9 @@ def _differ(one: Part, other: Part, frame: Frame, *, follows: bool) -> Iterator[
         if name in _ALWAYS and not (name in before and name in after):
             continue  # an older record does not say
         if not _same(before.get(name), after.get(name)):
-            yield f"{name} of {{}} is now {_shown(after.get(name))} (was {_shown(before.get(name))})", None
+            verbs = ("are", "were") if name in _MANY else ("is", "was")
+            shown = f"{verbs[0]} now {_shown(after.get(name))} ({verbs[1]} {_shown(before.get(name))})"
+            yield f"{_SAID.get(name, name)} of {{}} {shown}", None
     fields = one.get("field", {}), other.get("field", {})
     yield from ((words, None) for words in field_words(*fields))
     loose = bool(one.get("loose") or other.get("loose"))
@@ -237,12 +283,6 @@ def _longest_increasing(places: Sequence[int]) -> set[int]:
 
 def _called(name: str, curves: frozenset[str]) -> str:
     return f"curve '{name}'" if name in curves else name
-
-
-def _together(names: Sequence[str]) -> str:
-    if len(names) <= _NAMED_TOGETHER:
-        return " and ".join(filter(None, (", ".join(names[:-1]), names[-1])))
-    return f"{', '.join(names[:2])} and {len(names) - 2} more"
 
 
 def _same(one: Any, other: Any) -> bool:

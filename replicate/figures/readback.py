@@ -8,7 +8,7 @@ very many scattered points have a digest.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.projections.polar import PolarAxes
 
-from replicate.figures.describe import describe
+from replicate.figures.describe import describe, said_label
 from replicate.figures.envelope import envelope
 from replicate.figures.outlines import joined, scattered
 from replicate.figures.polylines import THINNING, Points, simplify
@@ -88,21 +88,26 @@ class Panel:
     names: dict[int, str] = field(default_factory=dict)
 
 
-def read_panel(panel: str, axes: Axes) -> Panel:
+def read_panel(panel: str, axes: Axes, unseen: Container[int] = ()) -> Panel:
     """Read what one axes shows.
 
     Every line, scatter, filled area, contour and shape is a curve. It is named by its label, otherwise by its
     place ("line 2"). A row with ``nan`` for x and y is a break: the curve continues elsewhere. Artists placed
     in axes or figure coordinates only (not in data coordinates) are left out, as is what lies far outside the
     limits of the axes.
+
+    Parameters
+    ----------
+    unseen
+        The identities of the artists of which nothing can be seen: they are no curves, and no texts.
     """
     axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
-    read = Panel(description=describe(panel, axes))
+    read = Panel(description=describe(panel, axes, unseen))
     special: dict[str, Any] = {name: [] for name in ("points", "areas", "loose")}
     special |= {name: {} for name in ("thinned", "dense", "clouds")}
     used: dict[str, int] = {}
     for curve in _curves(axes):
-        if len(curve.points) == 0:
+        if len(curve.points) == 0 or id(curve.artist) in unseen:
             continue
         used[curve.name] = used.get(curve.name, 0) + 1
         unique = curve.name if used[curve.name] == 1 else f"{curve.name} ({used[curve.name]})"
@@ -144,8 +149,7 @@ def _visible(artists: Any) -> Iterator[Any]:
 
 
 def _name(artist: Artist, otherwise: str) -> str:
-    label = " ".join(str(artist.get_label()).split())
-    return otherwise if not label or label.startswith("_") else label
+    return said_label(artist) or otherwise
 
 
 def _line(line: Line2D, axes: Axes, otherwise: str) -> _Curve:

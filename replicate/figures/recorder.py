@@ -150,12 +150,11 @@ class RecordingRenderer(RendererBase):
         master = np.asarray(master_transform.get_matrix(), dtype=float)
         together = master @ matrices if len(matrices) else master[None]
         scattered = len(places) > 1 or (len(matrices) > 0 and len(places) == 1)
-        count = max(len(paths), len(matrices))
+        stamped = scattered and len(paths) == 1 and _only_scaled(together)
+        shift = np.zeros(2) if scattered or not len(places) else places[0]
         moved = []
-        for i in range(1 if scattered and len(paths) == 1 else count):
-            matrix = together[0] if scattered and len(paths) == 1 else together[i % len(together)]
-            path = paths[i % len(paths)]
-            shift = np.zeros(2) if scattered or not len(places) else places[0]
+        for i in range(1 if stamped else max(len(paths), len(matrices))):
+            path, matrix = paths[i % len(paths)], together[i % len(together)]
             moved.append(Path(path.vertices @ matrix[:2, :2].T + matrix[:2, 2] + shift, path.codes))
         scales = np.sqrt(np.abs(np.linalg.det(together[:, :2, :2]))) if scattered else None
         self._add(
@@ -283,6 +282,14 @@ def _moved(path: Path, transform: Transform | None) -> Path:
         return path
     moved = transform.transform_path(path)
     return Path(_vertices(moved.vertices), moved.codes)
+
+
+def _only_scaled(matrices: Array) -> bool:
+    """Whether transforms differ in size only, and neither turn nor stretch anything."""
+    parts = matrices[:, :2, :2]
+    sizes = np.sqrt(np.abs(np.linalg.det(parts)))
+    units = parts / np.where(sizes > 0.0, sizes, 1.0)[:, None, None]
+    return bool(np.allclose(units[sizes > 0.0], units[:1], rtol=0.0, atol=1e-6))
 
 
 def _vertices(points: Any) -> Array:

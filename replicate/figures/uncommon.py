@@ -12,29 +12,42 @@ from matplotlib.lines import Line2D
 from matplotlib.offsetbox import TextArea
 from matplotlib.text import Annotation, Text
 
-from replicate.figures.legend_words import HANDLES, LEGEND_SIZES
+from replicate.figures.legend_words import HANDLES, LEGEND_SIZES, OUTSIDE
+from replicate.figures.style_numbers import style_numbers
 
 #: matplotlib's own, so that records hold only what differs from them.
 _LINE_SPACINGS = (1.2, "normal")  # until 3.10, and since
 _LABEL_SPACING = 0.5
 _FRAME = "Round"
-_NO_MARKERS = {"None", "none", " ", "", None}
+_NO_MARKERS = {"None", "none", " ", ""}
 _LONGEST = 40
 
 
 def uncommon(artist: Any) -> dict[str, Any]:
     """Return such settings of a line, a text, a legend or an image by their names; most artists have none."""
+    effects = _effects(artist)
     match artist:
         case Text():
-            return _of_text(artist)
+            return _of_text(artist) | effects
         case Legend():
-            return _of_legend(artist)
+            return _of_legend(artist) | effects
         case AxesImage():
-            return _of_image(artist)
-        case Line2D() if artist.get_marker() not in _NO_MARKERS:
+            return _of_image(artist) | effects
+        case Line2D() if _has_markers(artist):
             every = artist.get_markevery()
-            return {"choice of markers": "all" if every is None else _shortened(str(every))}
-    return {}
+            return {"choice of markers": "all" if every is None else _shortened(str(every))} | effects
+    return effects
+
+
+def _effects(artist: Any) -> dict[str, Any]:
+    effects = artist.get_path_effects() if hasattr(artist, "get_path_effects") else None
+    said = [f"{type(effect).__name__} {style_numbers(effect)}".strip() for effect in effects or ()]
+    return {"effects": said} if said else {}
+
+
+def _has_markers(line: Line2D) -> bool:
+    marker: object = line.get_marker()  # a text, or points or a path without a hash
+    return not (marker is None or (isinstance(marker, str) and marker in _NO_MARKERS))
 
 
 def _shortened(text: str) -> str:
@@ -60,13 +73,16 @@ def _of_text(text: Text) -> dict[str, Any]:
         found["offset"] = [round(float(part), 2) for part in text.xyann]  # in points; an arrow tells it otherwise
     if text.get_rotation() % 360.0:
         found["turning"] = "about its anchor" if text.get_rotation_mode() == "anchor" else "about its box"
-    effects = [type(effect).__name__ for effect in text.get_path_effects() or ()]
-    return found | ({"effects": effects} if effects else {})
+    return found
 
 
 def _of_legend(legend: Legend) -> dict[str, Any]:
     found: dict[str, Any] = {words: round(float(getattr(legend, name)), 3) for name, words in LEGEND_SIZES.items()}
     found[HANDLES] = _side_of_handles(legend)
+    if legend.axes is None:  # a legend of a figure
+        found[OUTSIDE] = str(getattr(legend, "_outside_loc", None) or "none")
+    if getattr(legend, "_mode", None) == "expand":
+        found["mode"] = "expanded"
     if abs(legend.labelspacing - _LABEL_SPACING) > 1e-9:
         found["spacing"] = round(float(legend.labelspacing), 3)
     frame = type(legend.get_frame().get_boxstyle()).__name__  # type: ignore[attr-defined]
@@ -85,10 +101,11 @@ def _of_image(image: AxesImage) -> dict[str, Any]:
     axes: Any = image.axes
     if axes is None or image.get_transform() == axes.transData:
         return {}
-    moved = image.get_transform() - axes.transData
+    in_data = image.get_transform().contains_branch(axes.transData)
+    moved = image.get_transform() - (axes.transData if in_data else axes.transAxes)
+    found: dict[str, Any] = {} if in_data else {"coordinates": "fractions of the axes"}
     if not moved.is_affine:
-        return {"transform": type(image.get_transform()).__name__}
+        return found | {"transform": type(image.get_transform()).__name__}
     matrix = np.asarray(moved.get_matrix(), dtype=float)[:2]
-    return (
-        {} if np.allclose(matrix, np.eye(3)[:2]) else {"transform": [float(f"{part:.4g}") for part in matrix.ravel()]}
-    )
+    same = np.allclose(matrix, np.eye(3)[:2])
+    return found if same else found | {"transform": [float(f"{part:.4g}") for part in matrix.ravel()]}

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from datetime import datetime
-
 import numpy as np
 
 from replicate.figures.axes import Axes, symbol
+from replicate.figures.axis_words import on_axis
 from replicate.figures.differences import percent
 from replicate.figures.pair import Pair
 from replicate.figures.polylines import Points
@@ -66,13 +65,13 @@ def _ends(pair: Pair, found: ValueDifference, view: Array) -> list[tuple[str, fl
         domains.append((along.min(), along.max()))
     for verb, was, now in zip(("begins", "ends"), *domains, strict=True):
         if abs(now - was) > pair.tolerance:
-            ends = [_number(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (now, was)]
+            ends = [on_axis(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (now, was)]
             parts.append((f"now {verb} at {x} = {ends[0]} (was {ends[1]})", abs(float(now - was))))
     inside = (found.x > max(low for low, _ in domains)) & (found.x < min(high for _, high in domains))
     for here, there, words in ((found.before, found.after, "has a gap"), (found.after, found.before, "continues")):
         gap = found.x[found.alarm & inside & ~np.isnan(here) & np.isnan(there)]
         if len(gap):
-            ends = [_number(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (gap[0], gap[-1])]
+            ends = [on_axis(from_units(float(value), pair.axes, "x"), pair.axes, "x") for value in (gap[0], gap[-1])]
             parts.append((f"now {words} from {x} = {ends[0]} to {ends[1]}", float(gap[-1] - gap[0])))
     return parts
 
@@ -90,7 +89,7 @@ def _values(pair: Pair, found: ValueDifference) -> list[tuple[str, float]]:
             between = (found.x >= low - pair.tolerance) & (found.x <= high + pair.tolerance)
             if high - low > pair.tolerance and (alarm & between).any():
                 alarm &= ~between
-                ends = [_number(from_units(value, pair.axes, "x"), pair.axes, "x") for value in (was, now)]
+                ends = [on_axis(from_units(value, pair.axes, "x"), pair.axes, "x") for value in (was, now)]
                 words = f"its jump at {x} = {ends[0]} is now at {ends[1]} ({percent(high - low)} of the axis)"
                 jumps.append((f"{'moved: ' if not jumps else ''}{words}", high - low))
         parts += jumps[:_MOST_JUMPS]
@@ -110,7 +109,7 @@ def _at_most(pair: Pair, found: ValueDifference, worst: int, *, first: bool) -> 
     one, other = (from_units(float(values[worst]), pair.axes, "y") for values in (found.before, found.after))
     size = float(abs(found.after[worst] - found.before[worst]))
     how = f"a factor of {max(one, other) / min(one, other):.4g}" if _is_log(pair.axes) else f"{abs(other - one):.2g}"
-    at = _number(from_units(float(found.x[worst]), pair.axes, "x"), pair.axes, "x")
+    at = on_axis(from_units(float(found.x[worst]), pair.axes, "x"), pair.axes, "x")
     words = f"{'moved: ' if first else 'elsewhere '}at most {how} ({percent(size)} of the axis)"
     words += f" at {symbol(pair.axes, 'x')} = {at}"
     apart = max((part.largest for part in pair.distance), default=size)
@@ -135,22 +134,7 @@ def _at(axes: Axes, units: Points) -> str:
     """Say where a point is, in the words of its axes."""
     x, y = place_of(units.tolist(), axes)
     if axes.get("units") == "box":
-        return f"({_number(x)}, {_number(y)}) of the axes"
+        return f"({on_axis(x)}, {on_axis(y)}) of the axes"
     if "polar" in axes:
-        return f"angle = {_number(float(np.degrees(x)))}°, radius = {_number(y)}"
-    return f"{symbol(axes, 'x')} = {_number(x, axes, 'x')}, {symbol(axes, 'y')} = {_number(y, axes, 'y')}"
-
-
-def _number(value: float, axes: Axes | None = None, axis: str = "") -> str:
-    """Return a number as text; a date where the axis has dates, and a category where it is one."""
-    kind = axes.get(f"{axis}kind") if axes is not None else None
-    if axes is not None and kind == "categories":
-        names = axes.get(f"{axis}categories", [])
-        if abs(value - round(value)) < 1e-6 and 0 <= round(value) < len(names):
-            return f"'{names[round(value)]}'"
-    if kind == "date":
-        from matplotlib.dates import num2date
-
-        date: datetime = num2date(value)  # type: ignore[no-untyped-call]
-        return date.strftime("%Y-%m-%d %H:%M:%S").removesuffix(" 00:00:00")
-    return f"{value:.4g}"
+        return f"angle = {on_axis(float(np.degrees(x)))}°, radius = {on_axis(y)}"
+    return f"{symbol(axes, 'x')} = {on_axis(x, axes, 'x')}, {symbol(axes, 'y')} = {on_axis(y, axes, 'y')}"

@@ -1,0 +1,119 @@
+"""What is said of a change: that and nothing else, once, of the right thing; and of what nobody sees, nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from matplotlib.patches import Circle
+from mpl_toolkits.axes_grid1 import host_subplot
+
+from replicate.figures import Record, capture, compare
+
+Y, X = np.mgrid[-3:3:20j, -3:3:20j]
+T = np.linspace(0.0, 10.0, 101)
+
+
+def said(draw: Callable[[Any, Any], object], before: Any, after: Any) -> list[str]:
+    records = []
+    for value in (before, after):
+        figure = Figure()
+        draw(figure.subplots(), value)
+        records.append(Record.from_json(capture(figure).to_json()))
+    return compare(*records).changes
+
+
+def test_what_cannot_be_seen_is_no_curve_and_no_text() -> None:
+    def draw(axes: Any, more: object) -> None:
+        axes.plot(T, np.sin(T), label="a")
+        axes.set(xlim=(0, 10), ylim=(-1, 1))
+        if more:
+            axes.plot(T, np.cos(T), label="b", alpha=0.0)
+            axes.plot(T, np.cos(T), color="none")
+            axes.plot(T, np.cos(T), linewidth=0)
+            axes.scatter(T, np.cos(T), alpha=0.0, label="c")
+            axes.fill_between(T, np.cos(T), alpha=0.0)
+            axes.add_patch(Circle((3, 0), 0.5, fill=False, linewidth=0))
+            axes.text(3, 0.5, "words", alpha=0.0)
+
+    assert said(draw, False, True) == said(draw, True, False) == []
+
+
+def test_a_curve_that_can_be_seen_now_is_new() -> None:
+    assert said(lambda ax, v: ax.plot(T, T, label="b", alpha=v), 0.0, 1.0) == ["curve 'b' is new"]
+    assert said(lambda ax, v: ax.plot(T, T, label="b", alpha=v), 1.0, 0.0) == ["curve 'b' is missing"]
+
+
+@pytest.mark.parametrize(
+    ("what", "values", "lines"),
+    [("arrowsize", (1, 2), 1), ("color", ("b", "r"), 1), ("arrowstyle", ("-|>", "->"), 2)],
+)
+def test_the_arrows_of_a_stream_plot_are_spoken_of_together(what: str, values: Any, lines: int) -> None:
+    changes = said(lambda ax, v: ax.streamplot(X, Y, Y - 1 - X**2, 1 + X - Y**2, **{what: v}), *values)
+    assert len(changes) <= lines
+    assert " more " in changes[0]
+
+
+def test_bars_that_all_move_are_spoken_of_together() -> None:
+    changes = said(lambda ax, v: (ax.bar(range(9), np.arange(9) + v), ax.set_ylim(0, 20)), 1.0, 3.0)
+    start = "curve 'shape 1', curve 'shape 2' and 7 more differ, most of all this one: curve 'shape "
+    assert [text[: len(start)] for text in changes] == [start]
+
+
+def test_one_curve_more_is_new_though_the_others_have_other_numbers() -> None:
+    def draw(axes: Any, slopes: Any) -> None:
+        axes.set_ylim(0, 4)
+        for slope in slopes:
+            axes.plot([0, 1], [0, slope], color="k")
+
+    assert said(draw, (2, 3), (1, 2, 3)) == ["curve 'line 1' is new"]
+    assert said(draw, (1, 2, 3), (2, 3)) == ["curve 'line 1' is missing"]
+
+
+def test_what_no_reader_knows_is_numbered_anew_as_well() -> None:
+    def draw(axes: Any, order: Any) -> None:
+        axes.set(xlim=(-1, 4), ylim=(-1, 4))
+        for place in order:
+            axes.quiver([place], [place], [1], [place - 1])
+
+    assert said(draw, (0, 1, 2), (2, 0, 1)) == []
+    assert said(draw, (0, 1, 2), (0, 2)) == ["Quiver 2 is gone"]
+
+
+def test_a_text_that_reads_otherwise_is_one_change_with_its_box_and_arrow() -> None:
+    def draw(axes: Any, words: Any) -> None:
+        for place, word in enumerate(words):
+            arrow, box = {"arrowstyle": "->"}, {"boxstyle": "round"}
+            axes.annotate(word, (0.1, 0.1), (0.3 * place, 0.5), arrowprops=arrow, bbox=box)
+
+    assert said(draw, ("a", "b", "c"), ("a", "a", "c")) == ["text 'b' now reads 'a'"]
+
+
+def test_a_label_that_is_none_is_no_label() -> None:
+    bins = T[::10]
+    changes = said(lambda ax, v: ax.hist(T + v, bins=bins, histtype="step"), 0.0, 0.5)
+    assert changes
+    assert not any("None" in text for text in changes)
+
+
+def test_curves_on_guest_axes_are_read() -> None:
+    records = []
+    for factor in (1.0, 1.1):
+        figure = Figure()
+        guest: Any = host_subplot(111, figure=figure).twinx()
+        guest.plot(T, factor * T)
+        guest.set_ylim(0, 20)
+        records.append(capture(figure))
+    assert compare(*records).changes == ["curve 'line 1' in 'panel 2' moved: at most 1 (5 % of the axis) at x = 10"]
+
+
+def test_periods_are_months_and_no_days() -> None:
+    pandas = pytest.importorskip("pandas")
+
+    def draw(axes: Any, start: str) -> None:
+        pandas.Series(range(12), index=pandas.period_range(start, periods=12, freq="M")).plot(ax=axes)
+
+    assert said(draw, "2024-01", "2024-02")[0] == "x axis now begins at 2024-02 (was 2024-01)"
