@@ -72,7 +72,7 @@ def controllers(paper: str, table: str) -> dict[str, PID]:
     found = PAPERS[paper].exhibits[table]
     assert isinstance(found, Table)
     assert found.trials is not None
-    return {row: parse_controller(text) for row, (_, text) in found.trials().items()}
+    return {row: parse_controller(text) for row, (_, text) in found.trials().items() if isinstance(row, str)}
 
 
 @pytest.mark.parametrize("table", ["I-table-1", "I-table-5", "II-table-1", "IIs-table-2"])
