@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import re
 from pathlib import Path
 
@@ -11,7 +12,8 @@ import pytest
 import toy_class
 
 from replicate.errors import ReplicateError
-from replicate.handout import Sheet, own_exercises, stressed
+from replicate.handout import Form, Sheet, own_exercises, stressed
+from replicate.handout.checking import Checker
 from replicate.handout.edition import edition
 from replicate.handout.printout import markup
 
@@ -52,8 +54,6 @@ def test_the_example_is_on_the_sheets_and_in_the_key(tmp_path: Path, monkeypatch
     files = dict(toy.files(["Ada"], "1", "moodle"))
     (row,) = csv.DictReader(io.StringIO(files["toy-key.csv"].decode()))
     assert (row["exercise"], row["part"]) == ("integral-gain", "answer")
-    from replicate.handout import Form
-
     sheet = edition(toy.paper, toy.results, (), solutions=True, form=Form.read(row["form"]), sheet=toy.sheet)
     source = markup(sheet)
     assert re.findall(r"Exercise (\d)", source) == ["4"]
@@ -149,3 +149,27 @@ def test_two_exercises_of_one_name(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=tuple(own_exercises(tmp_path / "division"))))
     with pytest.raises(ReplicateError, match=r"division/exercise\.md: an exercise 'division' exists already"):
         list(toy.files(["Ada"], "1"))
+
+
+def test_a_notebook_checks_answers_with_the_program_beside_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = tuple(own_exercises(exercise(tmp_path)))
+    toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=own), file_format="ipynb")
+    files = dict(toy.files(["Ada"], "1"))
+    assert files["exercises/mine/exercise.py"].decode() == PROGRAM
+    cells = ["".join(cell["source"]) for cell in json.loads(files["toy-Ada.ipynb"])["cells"]]
+    assert any(re.search(r"check = Checker\('toy', '.*', own=\('mine',\)\)", cell) for cell in cells)
+    assert "check('mine', answers)" in cells[-1]
+
+    form = Form.of("bayhan", "1", "Ada")
+    check = Checker("bayhan", str(form), own=("mine",))
+    x = float(own[0].variation.drawn(form.draw)["x"])
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ReplicateError, match=r"'mine' is checked with the file exercises/mine/exercise\.py, which is"):
+        check("mine", {"answer": x / 7})
+    (tmp_path / "exercises" / "mine").mkdir(parents=True)
+    (tmp_path / "exercises" / "mine" / "exercise.py").write_bytes(files["exercises/mine/exercise.py"])
+    check("mine", {"answer": float(f"{x / 7:.3g}")})
+    check("mine", {"answer": 1.1 * x / 7})
+    assert capsys.readouterr().out.splitlines() == ["answer: right", "answer: off by 10 %"]

@@ -136,8 +136,8 @@ def handout(
                         written.append(_written(fresh / "handouts" / name, content))
             keep = run.kept_texts(ROOMS, DISTRIBUTIONS)
             written += write_whatif(outcome.papers, fresh / "handouts", keep=keep)  # exercises link to it
-    for path in written:
-        echo(f"handout: {run.folder / 'handouts' / path.name}")
+    for path in dict.fromkeys(path.relative_to(fresh) for path in written):
+        echo(f"handout: {run.folder / path}")
     exit_with(run.within, outcome)
 
 

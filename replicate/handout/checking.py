@@ -9,12 +9,14 @@ low: off by 180 %
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from replicate.errors import ReplicateError
-from replicate.exhibits.variants import Answer
+from replicate.exhibits.variants import Answer, Variation
 from replicate.handout.form import Form
+from replicate.handout.own_exercises import BESIDE, PROGRAM, own_variation
 from replicate.handout.placing import exercises_of
 from replicate.run.library import Library
 from replicate.run.project import find_project
@@ -38,6 +40,8 @@ class Checker:
         The id of the form; without one, the numbers that all share.
     folders
         That hold papers, besides those of the project and the bundled ones.
+    own
+        Names of a lecturer's own exercises, whose programs are in the folder ``exercises`` of the current one.
 
     Raises
     ------
@@ -45,13 +49,14 @@ class Checker:
         If there is no such paper, or the form is of another.
     """
 
-    def __init__(self, paper: str, form: str = "", folders: tuple[str, ...] = ()) -> None:
+    def __init__(self, paper: str, form: str = "", folders: tuple[str, ...] = (), own: tuple[str, ...] = ()) -> None:
         self.form = Form.read(form) if form else None
         if self.form is not None and self.form.paper != paper:
             msg = f"the form '{form}' is of the paper '{self.form.paper}', not of '{paper}'"
             raise ReplicateError(msg)
         library = Library(find_project(), tuple(Path(folder) for folder in folders), True)
         self.exercises = exercises_of(library.paper(paper))
+        self.own = own
 
     def __call__(self, exercise: str, answers: Mapping[str, float | None]) -> None:
         """Say for each answer whether it is right; what is ``None`` is not answered yet.
@@ -82,11 +87,21 @@ class Checker:
         print(*(_other_curves(self.exercises.figures[name], figure) or ["right"]), sep="\n")  # noqa: T201
 
     def _answers(self, exercise: str) -> Mapping[str, Answer]:
-        variation = self.exercises.variations.get(exercise)
+        variation = _own(exercise) if exercise in self.own else self.exercises.variations.get(exercise)
         if variation is None:
-            msg = f"no exercise '{exercise}' has numbers to check; allowed: {', '.join(self.exercises.variations)}"
+            known = ", ".join([*self.exercises.variations, *self.own])
+            msg = f"no exercise '{exercise}' has numbers to check; allowed: {known}"
             raise ReplicateError(msg)
         return variation.answers(variation.drawn(self.form.draw) if self.form else variation.original)
+
+
+@cache
+def _own(exercise: str) -> Variation:
+    program = Path(BESIDE) / exercise / PROGRAM
+    if not program.is_file():
+        msg = f"'{exercise}' is checked with the file {program.as_posix()}, which is not beside the notebook"
+        raise ReplicateError(msg)
+    return own_variation(program, exercise)
 
 
 def _other_curves(solution: Figure, stated: MatplotlibFigure) -> list[str]:

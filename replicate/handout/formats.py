@@ -34,8 +34,11 @@ def _html(documents: Iterable[Document]) -> Iterator[Files]:
 
 def _ipynb(documents: Iterable[Document]) -> Iterator[Files]:
     from replicate.handout.notebook import notebook
+    from replicate.handout.own_exercises import BESIDE, PROGRAM
 
-    return ({".ipynb": notebook(document)} for document in documents)
+    for document in documents:
+        programs = {f"{BESIDE}/{own.name}/{PROGRAM}": own.program.encode() for own in document.sheet.own}
+        yield {".ipynb": notebook(document)} | programs
 
 
 def _docx(documents: Iterable[Document]) -> Iterator[Files]:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from replicate.handout.edition import Document
+from replicate.handout.own_exercises import with_own
 from replicate.handout.pandoc import written
 from replicate.handout.placing import exercises_of
 from replicate.handout.tree import (
@@ -67,11 +68,12 @@ def _cells(document: Document) -> Iterator[tuple[str, Any]]:
     if document.form:
         head.append(_paragraph(f"{words['form']}: {document.form}"))
     yield "markdown", [*head, *([_paragraph(document.sheet.date)] if document.sheet.date else [])]
-    exercises = exercises_of(document.paper)
+    exercises = with_own(exercises_of(document.paper), document.sheet.own)
     form = f", {document.form!r}" if document.form else ""
+    own = f", own={tuple(one.name for one in document.sheet.own)!r}" if document.sheet.own else ""
     yield (
         "code",
-        f"from replicate.handout.checking import Checker\n\ncheck = Checker({document.paper.id!r}{form})",
+        f"from replicate.handout.checking import Checker\n\ncheck = Checker({document.paper.id!r}{form}{own})",
     )
     text: Blocks = []
     for block in document.blocks:
@@ -83,7 +85,7 @@ def _cells(document: Document) -> Iterator[tuple[str, Any]]:
         questions = [part for part in block["c"][1] if "solution" not in classes(part)]
         yield from _split(questions, document)
         name = attribute(block, "vary")
-        if name in exercises.variations:  # a lecturer's own are not where the notebook runs
+        if name:
             asked = exercises.variations[name].answers(exercises.variations[name].original)
             lines = "".join(f"    {part!r}: None,\n" for part in asked)
             yield "code", f"# {words['answer']}\nanswers = {{\n{lines}}}\ncheck({name!r}, answers)"

@@ -22,6 +22,7 @@ from replicate.handout.own_code import OwnCode
 from replicate.plain_text import read_text
 
 TEXT, PROGRAM = "exercise.md", "exercise.py"
+BESIDE = "exercises"  # the folder beside notebooks in which their programs are
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _OPTIONAL: dict[str, tuple[Any, Callable[[Any], bool], str]] = {
     "original": (None, lambda value: value is None or isinstance(value, Mapping), "a dictionary of inputs"),
@@ -45,12 +46,13 @@ class OwnExercise:
     ----------
     source
         What messages call its text.
-    text
-        As it is in the file.
+    text, program
+        As they are in its files.
     """
 
     source: str
     text: str
+    program: str
     variation: Variation
 
     @property
@@ -108,7 +110,18 @@ def _loaded(home: Path) -> OwnExercise:
         if not (home / needed).is_file():
             msg = f"{name}/{needed}: there is no such file; an exercise needs {TEXT} and {PROGRAM}"
             raise ReplicateError(msg)
-    program = home / PROGRAM
+    text, program = (read_text(home / file, f"{name}/{file}", ReplicateError) for file in (TEXT, PROGRAM))
+    return OwnExercise(f"{name}/{TEXT}", text, program, own_variation(home / PROGRAM, name))
+
+
+def own_variation(program: Path, name: str) -> Variation:
+    """Return what the program of an exercise defines.
+
+    Raises
+    ------
+    ReplicateError
+        If it fails or lacks what it must define; with file, line and field.
+    """
     source = f"{name}/{PROGRAM}"
     code = OwnCode(str(program), source)
     with code.running("the program"):
@@ -144,7 +157,7 @@ def _loaded(home: Path) -> OwnExercise:
         variation = replace(variation, original=drawn)
     variation.answers(drawn)
     variation.answers(variation.original)
-    return OwnExercise(f"{name}/{TEXT}", read_text(home / TEXT, f"{name}/{TEXT}", ReplicateError), variation)
+    return variation
 
 
 def _defining(field: str) -> str:
