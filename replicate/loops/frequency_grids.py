@@ -87,7 +87,7 @@ def design_grid(plant: Plant) -> Array:
     if longest:
         step = np.pi / (24.0 * longest)
         parts.append(np.asarray(np.arange(1, 24 * 12) * step, dtype=float))
-    parts += _around(_resonant(plant.poles()), _two_sided(20.0, 0.1, 10), narrowest=1e-9)
+    parts += _around(plant.resonances, _two_sided(20.0, 0.1, 10), narrowest=1e-9)
     grid = np.unique(np.concatenate(parts))
     grid = grid[grid > 0.0]
     # two turns of the plant's own phase are more than a PI controller can make use of
@@ -115,5 +115,12 @@ def _resonant(roots: ComplexArray) -> ComplexArray:
 
 
 def _around(roots: ComplexArray, spread: Array, *, narrowest: float) -> list[Array]:
-    """Return frequencies around the imaginary parts of roots; ``narrowest`` is the least half-width, relative."""
-    return [root.imag + max(abs(root.real), narrowest * abs(root)) * spread for root in roots]
+    """Return frequencies around the imaginary parts of roots; ``narrowest`` is the least half-width, relative.
+
+    A root that is narrower lies on the axis to rounding, where the gain may have no value.
+    """
+    parts = []
+    for root in roots:
+        width = max(abs(root.real), narrowest * abs(root))
+        parts.append(root.imag + width * (spread if abs(root.real) == width else spread[spread != 0.0]))
+    return parts

@@ -55,4 +55,4 @@ class Rescaled:
 
     def __call__(self, s: ComplexArray) -> ComplexArray:
         """Evaluate at complex ``s`` of any shape."""
-        return np.asarray(self.plant.delay_free(np.asarray(s) / self.time) / self.gain)
+        return np.asarray(self.plant.function(np.asarray(s) / self.time) / self.gain)

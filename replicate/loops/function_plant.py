@@ -13,18 +13,24 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.function_algebra import Rescaled
+from replicate.loops.function_resonances import resonances
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-STEP = 2e-3  # of a difference, relative to |s|
+STEP = 2e-3  # of a difference, relative to |s|,
+NEAR_RESONANCE = 0.04  # relative to the distance of a resonance,
+SMALLEST_STEP = 1e-9  # and never less, relative to |s|
 CIRCLE_POINTS = 48
-CIRCLE_RADIUS = 0.35  # of |w|; a cut or poles on the negative real axis stay well outside
+CIRCLE_RADIUS = 0.35  # of |w|; a cut or poles on the negative real axis stay well outside,
+CLEAR = 0.5  # and of the distance of a resonance
+BAND = 1e3  # factor beyond the corners on both sides within which resonances are looked for
 LOWEST, HIGHEST, PER_OCTAVE = -100, 100, 4  # octaves of frequency in which a function's corners are looked for
 ANALYTIC = 1e-4  # relative difference of a value and the mean around it that is no rounding error
 LIMIT_POINTS, LIMIT = 10, 1e-9  # of the fit for a limit at rest, and the relative difference of two that agree
 GROWS = 1.2  # factor over two decades by which a function without a limit grows
+BESIDE = 1e-15  # relative distance of the next point
 TINY = 1e-100  # modulus from which a function that overflows in its denominator goes on to zero
 BENT = 0.3  # change of slope, or of phase in rad, at which a frequency response has left its asymptote
 MOST_WAVES = 8  # changes between steeper and flatter than the asymptote, of a response that has corners
@@ -56,9 +62,17 @@ class FunctionPlant(Plant):
         with np.errstate(all="ignore"):  # values that are not finite are looked for where they matter
             values = np.array(np.asarray(self.function(s), dtype=complex) + np.zeros_like(s))
             lost = ~np.isfinite(values)
-            if lost.any() and values.ndim:
+            if lost.any():
+                values[lost] = self._beside(s[lost])
+                lost = ~np.isfinite(values)
+            if lost.any():
                 values[lost] = self._vanished(s[lost], values[lost])
             return values
+
+    def _beside(self, s: ComplexArray) -> ComplexArray:
+        """Return the values next to points, which a function without damping has where it has a pole."""
+        beside = s * (1.0 - BESIDE * 1j)
+        return np.asarray(np.asarray(self.function(beside), dtype=complex) + np.zeros_like(s))
 
     def _vanished(self, s: ComplexArray, values: ComplexArray) -> ComplexArray:
         """Return 0 for values without a number where the function is tiny on the way there, as 1/cosh(1e3) is."""
@@ -78,12 +92,23 @@ class FunctionPlant(Plant):
     def log_derivative(self, s: ArrayLike) -> ComplexArray:
         """Evaluate G'(s)/G(s), dead time included, by a sixth-order difference."""
         s = np.asarray(s, dtype=complex)
-        return np.asarray(difference(self.delay_free, s) / self.delay_free(s) - self.dead_time)
+        return np.asarray(self.difference(self.delay_free, s) / self.delay_free(s) - self.dead_time)
+
+    def difference(self, g: Callable[[ComplexArray], ComplexArray], s: ComplexArray) -> ComplexArray:
+        """Return g'(s), of a function with the resonances of this one, by a difference of the sixth order."""
+        h = np.minimum(STEP * np.abs(s), np.maximum(NEAR_RESONANCE * self._clearance(s), SMALLEST_STEP * np.abs(s)))
+        slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
+        return np.asarray(slope / (60 * h))
+
+    def _clearance(self, s: ComplexArray) -> Array:
+        """Return the distances of the nearest resonances, ``inf`` without any."""
+        both = np.concatenate([self.resonances, self.resonances.conj()])
+        return np.asarray(np.min(np.abs(s[..., None] - both), axis=-1, initial=np.inf))
 
     def taylor(self, s: ComplexArray, order: int) -> ComplexArray:
         """Return Taylor coefficients of the function at ``s`` by Cauchy's integral, shape (order + 1, len(s))."""
         turn = np.exp(2j * np.pi * np.arange(CIRCLE_POINTS) / CIRCLE_POINTS)
-        radius = CIRCLE_RADIUS * np.abs(s)
+        radius = np.minimum(CIRCLE_RADIUS * np.abs(s), CLEAR * self._clearance(s))
         around = self.delay_free(s[:, None] + radius[:, None] * turn)
         powers = np.exp(-2j * np.pi * np.outer(np.arange(CIRCLE_POINTS), np.arange(order + 1)) / CIRCLE_POINTS)
         return np.asarray((around @ powers / CIRCLE_POINTS).T / radius ** np.arange(order + 1)[:, None])
@@ -136,11 +161,25 @@ class FunctionPlant(Plant):
         return np.empty(0, dtype=complex)
 
     @cached_property
-    def corners(self) -> tuple[float, float]:
-        """Frequencies between which the function bends, from where it leaves its asymptote at rest to where it ends.
+    def resonances(self) -> ComplexArray:
+        """The function's poles close to the imaginary axis, Im > 0."""
+        if isinstance(self.function, Rescaled):
+            return self.function.plant.resonances * self.function.time
+        low, high = self.corners
+        return resonances(self.delay_free, low / BAND, high * BAND)
 
-        A function without any corner, such as a power of s, has both at one over the dead time, or at 1.
-        """
+    @property
+    def corners(self) -> tuple[float, float]:
+        """Frequencies between which the function bends; both at one over the dead time, or at 1, if it never does."""
+        at = 1.0 / self.dead_time if self.dead_time else 1.0
+        return self.bends or (at, at)
+
+    @cached_property
+    def bends(self) -> tuple[float, float] | None:
+        """Where the function leaves its asymptote at rest, and where its last one begins; None for a power of s."""
+        if isinstance(self.function, Rescaled):
+            bends = self.function.plant.bends
+            return bends and (bends[0] * self.function.time, bends[1] * self.function.time)
         exponent = np.arange(LOWEST * PER_OCTAVE, HIGHEST * PER_OCTAVE + 1) / PER_OCTAVE
         w = 2.0**exponent
         with np.errstate(all="ignore"):
@@ -167,8 +206,7 @@ class FunctionPlant(Plant):
                 if not settled.any() and not lagged.size:
                     high = int(left[0])
                 return float(w[left[0]]), float(max(w[high], w[left[0]]))
-        at = 1.0 / self.dead_time if self.dead_time else 1.0
-        return at, at
+        return None
 
     def _first_smooth(self, w: Array, value: ComplexArray) -> int:
         """Return the first frequency from which on, for two octaves, the values are not rounding errors.
@@ -192,13 +230,6 @@ class FunctionPlant(Plant):
     def __repr__(self) -> str:
         name = getattr(self.function, "__name__", None) or repr(self.function)
         return f"Plant.from_function({name}, dead_time={checks.exact(self.dead_time)})"
-
-
-def difference(g: Callable[[ComplexArray], ComplexArray], s: ComplexArray) -> ComplexArray:
-    """Return g'(s) by a difference of the sixth order."""
-    h = STEP * np.abs(s)
-    slope = 45 * (g(s + h) - g(s - h)) - 9 * (g(s + 2 * h) - g(s - 2 * h)) + g(s + 3 * h) - g(s - 3 * h)
-    return np.asarray(slope / (60 * h))
 
 
 def limit_of_roots(function: Callable[[Array], Array], reach: float) -> float:

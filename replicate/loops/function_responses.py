@@ -3,7 +3,7 @@ r"""Responses of loops around plants given by a function: how long they last, wh
 Where the function has no branch point at rest, the slowest of the poles and of the cut's beginning gives the rate of
 decay. Else the error falls like a power of time, and its integral over all time is the limit at rest of
 
-.. math:: \frac{y_\infty - s Y(s)}{s} = \frac{y_\infty (1 + CG) - (r F + d) G}{s (1 + CG)} .
+.. math:: \frac{y_\infty - s Y(s)}{s} = \frac{y_\infty + (y_\infty C - r F - d) G}{s (1 + CG)} .
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from replicate.loops import inversion
 from replicate.loops.control_signal import control_signal
 from replicate.loops.controller import PID
 from replicate.loops.function_plant import limit_of_roots
+from replicate.loops.function_poles import begin_of_cut
 from replicate.loops.loop_transfer import LoopTransfer
-from replicate.loops.pole_starts import begin_of_cut
 
 if TYPE_CHECKING:
     from replicate.loops.plant import Plant
@@ -27,10 +27,13 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 AT_REST = 1e-4  # of the rate of the slowest mode: a cut that begins closer to s = 0 begins there
-NEAR, NEARER = 1e-26, 1e-28  # of the loop's unit of frequency: where a limit at rest is taken
+NEAR, NEARER = 1e-130, 1e-140  # of the loop's unit of frequency: where a limit at rest is taken
+CANCELS = 1e-3  # share of its parts below which the error's transform has lost digits that matter
+LOST = 1e-6  # relative error of the gain of a function that has lost its digits at rest
+ROUNDING = 1e-14  # of the parts of a coefficient that cancels
 AGREE = 1e-12  # relative difference of two values that are one limit,
 FITS = 1e-9  # and of two limits of fits
-GROWS = 1.1  # factor by which an integral without a limit grows between two frequencies
+SAME_POWER, LEAST_POWER = 0.1, 0.02  # relative difference of two exponents that are one, and the least one can see
 
 
 def pace(poles: ComplexArray) -> float:
@@ -80,35 +83,44 @@ def total_error(plant: Plant, controller: PID, setpoint: float, load: float, fin
     """Return the integral of final - y over all time: ``inf`` if it has none, ``nan`` if it cannot be told."""
     if not np.isfinite(final):
         return float("nan")
+    num, den = _weight(controller, setpoint, load, final)
+
+    def parts(at: ArrayLike) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        s = np.asarray(at, dtype=complex)
+        path = plant(s)
+        weighted = np.polyval(num, s) / np.polyval(den, s) * path
+        return np.full_like(s, final), np.asarray(weighted), s * (1.0 + controller.feedback(s) * path)
 
     def error(at: ArrayLike) -> Array:
-        return _error(plant, controller, setpoint, load, final, np.asarray(at, dtype=complex))
+        constant, weighted, closed = parts(at)
+        return np.asarray(((constant + weighted) / closed).real)
 
-    near, nearer = error([NEAR, NEARER])
-    if abs(near - nearer) <= AGREE * abs(nearer):
-        return float(nearer)
+    constant, weighted, _ = parts([NEAR])
+    unlike = abs(constant + weighted)[0] > CANCELS * (abs(constant) + abs(weighted))[0]
+    if unlike and _is_at_rest(plant):
+        near, nearer = error([NEAR, NEARER])
+        if abs(near - nearer) <= AGREE * abs(nearer):
+            return float(nearer)
     fitted = [limit_of_roots(error, reach) for reach in (0.1, 0.03)]
     if abs(fitted[0] - fitted[1]) <= FITS * abs(fitted[1]):
         return fitted[1]
-    near, nearer = np.abs(error([1e-5, 1e-7]))
-    return float("inf") if nearer > GROWS * near else float("nan")
+    # what falls or grows like one power of s over all of these frequencies does so on the way to rest
+    far, near = np.log10(np.abs(error([1e-2, 1e-3, 1e-5, 1e-6]))).reshape(2, 2)
+    exponent, nearer = far[0] - far[1], near[0] - near[1]
+    if abs(exponent - nearer) > SAME_POWER * abs(nearer) or abs(nearer) < LEAST_POWER:
+        return float("nan")
+    return 0.0 if nearer > 0.0 else float("inf")
 
 
-def _error(plant: Plant, controller: PID, setpoint: float, load: float, final: float, s: ComplexArray) -> Array:
-    """Return the transform of final - y close to rest; where the set-point is reached, nothing cancels in it."""
-    path = plant(s)
-    closed = s * (1.0 + controller.feedback(s) * path)
-    if final == setpoint:  # y_inf (1 + C G) - r F G = r (1 + (C - F) G)
-        top = setpoint * (1.0 + _feedback_less_feedforward(controller, s) * path) - load * path
-    else:
-        top = final * closed / s - (setpoint * controller.feedforward(s) + load) * path
-    return np.asarray((top / closed).real)
+def _is_at_rest(plant: Plant) -> bool:
+    """Return whether the function has its limit at rest there, where one that cancels has lost all its digits."""
+    gain, there = plant.gain, complex(plant(NEAR))
+    return bool(abs(there - gain) <= LOST * abs(gain)) if np.isfinite(gain) else np.isinf(gain)
 
 
-def _feedback_less_feedforward(controller: PID, s: ComplexArray) -> ComplexArray:
-    """Evaluate C - F from one fraction, in which the integral parts cancel exactly."""
+def _weight(controller: PID, setpoint: float, load: float, final: float) -> tuple[Array, Array]:
+    """Return y_inf C - r F - d as one fraction, in which what cancels at rest cancels exactly."""
     lag = np.array([controller.derivative_filter, 1.0]) if controller.derivative_filter else np.ones(1)
-    below = np.polymul([1.0, 0.0], lag)
     slope = np.array([controller.kd, 0.0, 0.0])
 
     def parallel(b: float, c: float) -> Array:
@@ -116,12 +128,17 @@ def _feedback_less_feedforward(controller: PID, s: ComplexArray) -> ComplexArray
         return np.asarray(np.polyadd(proportional, c * slope), dtype=float)
 
     (fn, fd), (gn, gd) = controller.measurement_filter_polynomials(), controller.setpoint_filter_polynomials()
-    feedback = np.polymul(np.polymul(parallel(1.0, 1.0), fn), gd)
-    feedforward = np.polymul(np.polymul(parallel(controller.b, controller.c), gn), fd)
-    top = np.asarray(np.polyadd(feedback, -feedforward), dtype=float)
-    below = np.polymul(np.polymul(below, fd), gd)
-    shared = min(
-        polynomial.size - np.trim_zeros(polynomial, "b").size for polynomial in (top, below) if polynomial.any()
-    )
-    top, below = top[: top.size - shared], below[: below.size - shared]
-    return np.asarray(np.polyval(top, s) / np.polyval(below, s))
+    below = np.polymul(np.polymul(np.polymul([1.0, 0.0], lag), fd), gd)
+    terms = [
+        final * np.polymul(np.polymul(parallel(1.0, 1.0), fn), gd),
+        -setpoint * np.polymul(np.polymul(parallel(controller.b, controller.c), gn), fd),
+        -load * below,
+    ]
+    longest = max(term.size for term in terms)
+    terms = [np.pad(term, (longest - term.size, 0)) for term in terms]
+    top = np.sum(terms, axis=0)
+    top[np.abs(top) <= ROUNDING * np.sum(np.abs(terms), axis=0)] = 0.0
+    if not top.any():
+        return np.zeros(1), np.ones(1)
+    shared = min(polynomial.size - np.trim_zeros(polynomial, "b").size for polynomial in (top, below))
+    return top[: top.size - shared], below[: below.size - shared]

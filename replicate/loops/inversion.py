@@ -39,6 +39,7 @@ FIRST = 1e-3  # length of the first piece, in time scales
 GROWTH = 1.35
 SHORT = 1e-6  # length of a piece, in time scales, that is not halved
 SHORTEST = 1e-14  # length of a piece, in time scales, that is not halved at a kink: a power of t starts without a scale
+ARM = 3000  # points of the contour's upper arm along which poles are counted
 ALONG = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 1500)])  # shares of a side, dense at its start
 SPAN = 0.02  # smallest ratio of two times for which one contour serves
 KINKS = 12
@@ -211,8 +212,8 @@ def _why_not(loop: ClosedLoop, transform: Callable[[Any], ComplexArray], t: Arra
             "take it out and give it as dead_time, or several as a sum of plants"
         )
     shortest = float(t[t > 0.0].min())
-    contour = _Contour(3.0 / shortest, OPENINGS[0])
-    s, _ = contour(np.linspace(0.0, contour.reach(shortest), 200))
+    paths = [_Contour(3.0 / shortest, opening).around(loop, shortest) for opening in OPENINGS]
+    s = np.concatenate(paths)
     with np.errstate(all="ignore"):
         wrong = s[~np.isfinite(transform(s))]
     if wrong.size:
@@ -281,20 +282,26 @@ class _Contour:
         up, to the right, and down to the real axis. With its mirror image this path is closed: a pair inside adds two
         half turns, a real pole one.
         """
-        arm, _ = self(np.linspace(0.0, self.reach(shortest), 3000))
-        tip = arm[-1]
-        top = max(2.0 * tip.imag, 2.0 * loop.bandwidth)
-        up = tip + 1j * (top - tip.imag) * ALONG
-        bridge = np.linspace(tip.real, top, 400) + 1j * top
-        down = top + 1j * top * ALONG[::-1]
+        path = self.around(loop, shortest)
+        tip = path[ARM - 1]
         with np.errstate(all="ignore"):
-            value = 1.0 + loop.transfer(np.concatenate([arm, up, bridge, down]))
+            value = 1.0 + loop.transfer(path)
         if not np.isfinite(value).all():
             return None
         half_turns = round(abs(float(np.sum(np.angle(value[1:] / value[:-1])))) / np.pi)
         known = np.array(loop.poles, dtype=complex)
         inside = known[(known.real > np.where(known.imag < tip.imag, self.left_end(known.imag), tip.real))]
         return inside if half_turns == np.sum(np.where(inside.imag > 0.0, 2, 1)) else None
+
+    def around(self, loop: ClosedLoop, shortest: float) -> ComplexArray:
+        """Return the points of that path, those of the arm first."""
+        arm, _ = self(np.linspace(0.0, self.reach(shortest), ARM))
+        tip = arm[-1]
+        top = max(2.0 * tip.imag, 2.0 * loop.bandwidth)
+        up = tip + 1j * (top - tip.imag) * ALONG
+        bridge = np.linspace(tip.real, top, 400) + 1j * top
+        down = top + 1j * top * ALONG[::-1]
+        return np.concatenate([arm, up, bridge, down])
 
     def left_end(self, height: Array) -> Array:
         """Return the real part of the point of the upper arm at an imaginary part."""

@@ -222,11 +222,11 @@ class LoopTransfer:
         |L| is monotone beyond its last stationary point, so one evaluation is a proof.
         """
         moduli = [*self.gain_stationary.tolist(), *np.abs(self.corner_frequencies).tolist()]
-        return self._fall(max(moduli, default=1.0), level, 0)
+        return self._fall(max(moduli, default=1.0), level)
 
-    def _fall(self, start: float, level: float, octaves: int) -> float:
-        """Return a frequency from which on |L| is below a level, as seen there and over some octaves beyond."""
-        ahead = 2.0 ** np.arange(octaves + 1)
+    def _fall(self, start: float, level: float, ahead: ArrayLike = 1.0) -> float:
+        """Return a frequency w from which on |L| is below a level, as seen at ``ahead`` times w."""
+        ahead = np.asarray(ahead)
         w = start * (1.0 + 1e-9)
         for _ in range(400):
             gain = np.abs(self(1j * w * ahead))

@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from replicate.loops.errors import ImproperLoopError
-from replicate.loops.function_plant import difference
+from replicate.loops.frequency_grids import loop_grid
+from replicate.loops.function_plant import FunctionPlant
 from replicate.loops.loop_transfer import LoopTransfer, stationary_frequencies
 from replicate.loops.sum_plant import SumPlant
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
-OCTAVES = 8  # over which the gain of a plant given by a function has to stay below a level
+AHEAD = 2.0 ** (np.arange(8 * 12 + 1) / 12)  # where the gain of a plant given by a function has to stay below a level
 PER_DECADE = 200
 REST = 1e-30  # of the lowest corner: a frequency that is zero for a function
 RATIO = 64  # largest denominator of a ratio of two dead times that counts as rational
@@ -27,10 +28,19 @@ RATIO = 64  # largest denominator of a ratio of two dead times that counts as ra
 class FunctionTransfer(LoopTransfer):
     """L of a plant given by a function: N/D is the controller."""
 
+    @property
+    def _function(self) -> FunctionPlant:
+        assert isinstance(self.plant, FunctionPlant)  # noqa: S101  -- by construction
+        return self.plant
+
     def __call__(self, s: Any) -> ComplexArray:
         """Evaluate L(s) at complex ``s``."""
         s = np.asarray(s, dtype=complex)
         return np.asarray(LoopTransfer.__call__(self, s) * self.plant.delay_free(s))
+
+    def without_longest(self, s: ComplexArray) -> ComplexArray:
+        """Evaluate L(s) times exp(s dead_time)."""
+        return np.asarray(LoopTransfer.without_longest(self, s) * self.plant.delay_free(s))
 
     def characteristic(self, s: Any) -> ComplexArray:
         """Evaluate f(s) = D(s) + N(s) g(s) exp(-s dead_time)."""
@@ -44,7 +54,7 @@ class FunctionTransfer(LoopTransfer):
         def open_loop(s: ComplexArray) -> ComplexArray:
             return np.asarray(np.polyval(self.num, s) * self.plant.delay_free(s))
 
-        fed_back = difference(open_loop, s) - self.dead_time * open_loop(s)
+        fed_back = self._function.difference(open_loop, s) - self.dead_time * open_loop(s)
         slope = np.polyval(np.polyder(self.den), s) + fed_back * np.exp(-s * self.dead_time)
         return self.characteristic(s), np.asarray(slope)
 
@@ -75,15 +85,18 @@ class FunctionTransfer(LoopTransfer):
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending, found on a grid."""
-        end = self.beyond(0.5)
-        low = min([end, self.plant.corners[0], *np.abs(self.corner_frequencies).tolist()])
-        start = 1e-8 * low
-        return crossings_of_one(self, np.geomspace(start, end, int(PER_DECADE * np.log10(end / start))))
+        return crossings_of_one(self, loop_grid(self, self.beyond(0.5), per_decade=PER_DECADE))
+
+    @cached_property
+    def corner_frequencies(self) -> ComplexArray:
+        """Nonzero poles and zeros of the controller, and the function's resonances."""
+        roots = np.concatenate([*self._roots, self.plant.resonances])
+        return np.asarray(roots[np.abs(roots) > 0.0])
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which |L(i w)| is taken to stay below ``level``: checked over eight octaves."""
         start = max([self.plant.corners[0], *np.abs(self.corner_frequencies).tolist()])
-        return self._fall(start, level, OCTAVES)
+        return self._fall(start, level, AHEAD)
 
 
 @dataclass(frozen=True)
@@ -233,8 +246,6 @@ class SumTransfer(LoopTransfer):
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending, found on a grid; with feedthrough, up to its asymptote."""
-        from replicate.loops.frequency_grids import loop_grid
-
         end = self.beyond(max(0.5, 0.5 * (1.0 + self.feedthrough)))
         return crossings_of_one(self, loop_grid(self, end, per_decade=PER_DECADE))
 

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
+from replicate.loops.function_resonances import NARROW
 from replicate.loops.plant_views import PlantViews
 from replicate.loops.polynomials import horner, horner_with_slope, taylor
 from replicate.loops.set_once import SetOnce
@@ -239,6 +240,12 @@ class Plant(PlantViews, SetOnce):
         """Poles and zeros."""
         poles, zeros = (np.asarray(np.roots(part), dtype=complex) for part in (self.den, self.num))
         return poles, zeros
+
+    @property
+    def resonances(self) -> ComplexArray:
+        """The poles close to the imaginary axis, Im > 0."""
+        poles = self.poles()
+        return np.asarray(poles[(np.abs(poles.real) < NARROW * np.abs(poles)) & (poles.imag > 0.0)])
 
     @property
     def corners(self) -> tuple[float, float]:

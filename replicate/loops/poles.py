@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
+from replicate.loops.function_poles import function_starts, has_cut, missing_unstable
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
-from replicate.loops.pole_starts import asymptotic_starts, generator_eigenvalues, has_cut, starts_on_grid
+from replicate.loops.pole_starts import asymptotic_starts, generator_eigenvalues
 from replicate.loops.stability import argument_change
 from replicate.loops.zero_search import Box, Zero, zero_in_circle, zeros_in_box
 
@@ -61,10 +62,11 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         if count > FEW:
             starts = np.concatenate([starts, asymptotic_starts(transfer, count)])
     else:
-        starts = starts_on_grid(transfer)
+        starts = function_starts(transfer, count)
     if starts.size == 0 and (transfer.is_polynomial or transfer.num.size == 0):  # a static loop
         return starts
-    starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]
+    if plant.parts:
+        starts = starts[np.argsort(-starts.real)][: 4 * count + MOST_STARTS]
     starts = starts.real + 1j * np.abs(starts.imag)
     polished, converged = _newton(transfer, starts, count)
     # a multiple root has no slope for Newton: there the eigenvalue is as good as it gets
@@ -74,8 +76,10 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     if transfer.pole_at_rest:  # Newton's steps are relative to s
         points = np.append(points[np.abs(points) > 1e-9 * np.abs(points).max(initial=0.0)], 0.0)
     found = _ordered(_distinct(transfer, points, count))
-    if plant.parts and not transfer.is_polynomial and transfer.num.size:
-        found = _completed(transfer, found, count) if found else found
+    if not plant.parts:
+        found = _merged(found, missing_unstable(transfer, found).tolist())
+    elif found and not transfer.is_polynomial and transfer.num.size:
+        found = _completed(transfer, found, count)
     if not found and plant.parts:
         msg = "no closed-loop pole was found"
         raise LoopError(msg)

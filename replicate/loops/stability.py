@@ -39,6 +39,8 @@ CLOSED_FORM = 3  # coefficients of D up to which the crossovers are roots of a q
 APART = 1e-3  # relative distance of crossovers that are no double root
 PER_DECADE = 30  # of the grid on which gain crossovers are checked
 ARC_POINTS = 33
+UNDAMPED = 1e-12  # damping of a function's pole that is on the axis to rounding,
+BESIDE = 1e-8  # and the radius of the path around it, both relative to its modulus
 
 
 def unstable_poles(transfer: LoopTransfer) -> int:
@@ -60,9 +62,11 @@ def unstable_poles(transfer: LoopTransfer) -> int:
         return _from_crossovers(transfer)
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = loop_grid(transfer, end)
+    axis = np.asarray(1j * w[1:], dtype=complex)
     # f is real on the positive real axis: around s = 0, where it may branch, and up the imaginary axis
     around = w[0] * np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, ARC_POINTS))
-    turn = argument_change(transfer.characteristic, np.concatenate([around, 1j * w[1:]]))
+    along = axis if transfer.plant.parts else _beside_poles(axis, transfer.plant.resonances)
+    turn = argument_change(transfer.characteristic, np.concatenate([around, along]))
     if turn is None:
         return 1  # a zero on the axis itself
     poles = transfer.open_loop_poles
@@ -71,6 +75,16 @@ def unstable_poles(transfer: LoopTransfer) -> int:
     closing = -float(np.angle(1.0 + transfer(1j * w[-1])))
     zeros = 0.5 * poles.size - (turn + remainder + closing) / np.pi
     return max(0, round(zeros))
+
+
+def _beside_poles(axis: ComplexArray, poles: ComplexArray) -> ComplexArray:
+    """Return points of the imaginary axis with a half circle to the right of each pole of a function that is on it."""
+    for pole in poles[np.abs(poles.real) < UNDAMPED * np.abs(poles)].tolist():
+        radius = BESIDE * abs(pole)
+        around = 1j * pole.imag + radius * np.exp(0.5j * np.pi * np.linspace(-1.0, 1.0, ARC_POINTS))
+        below, above = axis[axis.imag < pole.imag - radius], axis[axis.imag > pole.imag + radius]
+        axis = np.concatenate([below, around, above])
+    return axis
 
 
 def is_stable(transfer: LoopTransfer) -> bool:

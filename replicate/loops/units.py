@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from replicate.loops.controller import PID, Filter
+from replicate.loops.function_plant import HIGHEST, LOWEST, FunctionPlant
 from replicate.loops.plant import Plant
 
 
@@ -68,9 +69,8 @@ class Units:
 
 def _corners(plant: Plant) -> list[float]:
     """Return frequencies, each as often as it counts: moduli of poles and zeros, and one over each dead time."""
-    if not plant.parts:
-        low, high = plant.corners
-        return [low, high, *([1.0 / plant.dead_time] if plant.dead_time else [])]
+    if isinstance(plant, FunctionPlant):
+        return [*(plant.bends or ()), *([1.0 / plant.dead_time] if plant.dead_time else [])]
     found = []
     for part in plant.parts:
         for polynomial in (part.num, part.den):
@@ -100,9 +100,13 @@ def _controller_corners(controller: PID) -> list[float]:
 
 
 def _crossover(plant: Plant, controller: PID) -> list[float]:
-    """Return the gain crossover of integrators alone: |k| K = w^n."""
+    """Return the gain crossover of integrators alone, |k| K = w^n, or of a function, to a factor of two."""
     size = abs(controller.k) or abs(controller.kd) or abs(controller.ki)
-    if not plant.integrators or not size or not plant.parts:
+    if not plant.parts:
+        w = 2.0 ** np.arange(LOWEST, HIGHEST + 1)
+        below = np.nonzero(size * np.abs(plant.delay_free(1j * w)) < 1.0)[0]
+        return [float(w[i]) for i in below[:1]]
+    if not plant.integrators or not size:
         return []
     return [float((size * abs(plant.parts[0].num[-1])) ** (1.0 / plant.integrators))]
 

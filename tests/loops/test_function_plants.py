@@ -161,13 +161,19 @@ def test_the_gain_is_the_limit_at_rest(function: Function, gain: float, unit: fl
         (lambda s: np.exp(-np.sqrt(s) * np.sqrt(s + 1.0)), "holds a dead time of about 1:"),
         (lambda s: np.exp(-3.0 * s) / (s + 1.0), "holds a dead time of about"),
         (lambda s: np.where(np.abs(s) > 20.0, np.nan, 1.0 / (s + 1.0)), "is not finite at"),
-        (lambda s: np.sinh(np.sqrt(s)) / np.cosh(np.sqrt(s)) / np.sqrt(s), "is not finite at"),
     ],
 )
 def test_what_cannot_be_inverted_is_refused_with_the_right_reason(function: Function, reason: str) -> None:
     loop = Loop(Plant.from_function(function), PI(0.0, 1e-7))
     with pytest.raises(LoopError, match=reason):
         loop.step(until=30.0)
+
+
+@pytest.mark.parametrize("controller", [PI(0.4), PI(0.5, 0.3), PID(0.5, 0.3, 0.1, derivative_filter=0.05)])
+def test_a_function_that_overflows_without_vanishing_is_named(controller: PID) -> None:
+    plant = Plant.from_function(lambda s: np.sinh(np.sqrt(s)) / np.cosh(np.sqrt(s)) / np.sqrt(s))
+    with pytest.raises(LoopError, match="is not finite at"):
+        Loop(plant, controller).step(until=6.0)
 
 
 # ---- integrals over all time -----------------------------------------------------------------------------------------
@@ -219,6 +225,47 @@ def test_absolute_error_of_a_response_that_decays() -> None:
         slope = mp.diff(lambda s: 1 / (s + (k * s + ki) * mp.tanh(mp.sqrt(s)) / mp.sqrt(s)), mp.mpf("1e-3"), h=1e-15)
     assert y.itae() > 0.0
     assert abs(y.itae() / float(-slope) - 1.0) < 0.1
+
+
+#: Functions that begin like a power of s other than one half; their gain at rest.
+POWERS: dict[str, tuple[Function, Function, float]] = {
+    "0.3": (lambda s: 1 / (1 + s**0.3), lambda s: 1 / (1 + s ** mp.mpf("0.3")), 1.0),
+    "0.1": (lambda s: 1 / (1 + s**0.1), lambda s: 1 / (1 + s ** mp.mpf("0.1")), 1.0),
+    "0.3 and 1": (lambda s: 1 / (1 + 2 * s**0.3 + s), lambda s: 1 / (1 + 2 * s ** mp.mpf("0.3") + s), 1.0),
+    "-0.3": (lambda s: s**-0.3, lambda s: s ** -mp.mpf("0.3"), np.inf),
+    "-0.7": (lambda s: s**-0.7, lambda s: s ** -mp.mpf("0.7"), np.inf),
+}
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 1e6])
+@pytest.mark.parametrize("name", POWERS)
+def test_integrals_of_responses_that_end_like_other_powers_of_time(name: str, unit: float) -> None:
+    function, exact, gain = POWERS[name]
+    plant = Plant.from_function(lambda s: function(s * unit))
+    loop = Loop(plant, PI(0.5, 0.3 / unit))
+    y, d = loop.step(), loop.load_step()
+    # the error's transform at rest: (1 + (b - 1) k G) / (ki G) for set-points, G / (ki G) for loads
+    assert y.ie() / unit == pytest.approx(1.0 / (0.3 * gain), rel=1e-12, abs=1e-30)
+    assert d.ie() / unit == pytest.approx(1.0 / 0.3, rel=1e-12)
+    weighted = Loop(plant, PI(0.5, 0.3 / unit, b=0.2)).step()
+    assert weighted.ie() / unit == pytest.approx(1.0 / (0.3 * gain) + 0.8 * 0.5 / 0.3, rel=1e-12)
+
+    def error(s: mp.mpc) -> mp.mpc:
+        return 1 / (s + (0.5 * s + 0.3) * exact(s))
+
+    crossings = [float(t) / unit for t in y.crossings(1.0) if t < 1e4 * unit]
+    assert y.iae() / unit == pytest.approx(absolute_error(error, y.ie() / unit, crossings), rel=1e-10)
+    for never in (Loop(plant, PI(0.5)).step(), Loop(plant, PI(0.5)).load_step()):  # falls like a power above -1
+        assert never.ie() == np.inf
+        assert never.iae() == np.inf
+
+
+def test_an_integral_that_is_zero_and_one_that_cannot_be_told() -> None:
+    y = Loop(Plant.from_function(lambda s: 1.0 / (1.0 + s**1.3)), PI(0.5)).step()
+    assert y.ie() == 0.0
+    slowest = Loop(Plant.from_function(lambda s: np.log(1.0 + 1.0 / s)), PI(0.5, 0.3)).step()
+    with pytest.raises(LoopError, match="IE cannot be computed"):  # it tends to zero like 1/log t
+        slowest.ie()
 
 
 def test_integrals_that_do_not_converge() -> None:

@@ -1,0 +1,115 @@
+r"""Closed-loop poles of loops around functions: where to look for them, and what of the negative real axis is a cut.
+
+Poles far from the imaginary axis are local minima of \|1 + 1/L\| on a polar grid; narrow ones, close to it, are the
+resonances of the sensitivity; real ones are changes of sign. The argument principle counts those in the right
+half-plane, where the function is analytic, and finds the ones that are missing there. To the left the function may have
+poles of its own, which no contour tells from zeros: a stable pole that is closer to a zero of the loop than the grid is
+fine, and far from the axis, may be missed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from replicate.loops import stability
+from replicate.loops.function_resonances import resonances
+from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.pole_starts import asymptotic_starts
+from replicate.loops.zero_search import Box, zeros_in_box
+
+Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
+
+PER_DECADE, ANGLES = 36, 60  # of the grid
+AXIS_PER_DECADE = 40
+MOST_MINIMA = 200  # of the grid that are followed, the lowest first
+SLOWEST = 1e-2  # radius at which the grid begins, in units of the lowest frequency with |L| = 1 or a corner,
+SLOWEST_REAL = 1e-6  # and where the search on the negative real axis begins
+FASTEST = 3.0  # radius at which both end, in units of the frequency beyond which |L| is small,
+LARGEST_GROWTH = 300.0  # and on the axis also the logarithm of exp(-s dead_time)
+NEAREST = 1e-9  # rad from the negative real axis at which it is seen whether a function has a cut there
+CLOSEST, IMAGINARY = 1e-13, 1e-11  # the same where a cut begins like a power of s
+REAL = 1e-6  # imaginary part, relative to the modulus, of a value that is real
+OFF_AXES = 1e-6  # distance from the axes, relative to its size, of the box in which unstable pairs are counted
+
+
+def function_starts(transfer: LoopTransfer, count: int) -> ComplexArray:
+    """Return starts, Im >= 0, for a plant given by a function."""
+    end = transfer.beyond(0.3)
+    corners = np.abs(transfer.corner_frequencies)
+    low = min([end, transfer.plant.corners[0], *corners.tolist(), *transfer.gain_crossovers.tolist()])
+    farthest = max(FASTEST * end, LARGEST_GROWTH / transfer.dead_time if transfer.dead_time else 0.0)
+    with np.errstate(all="ignore"):
+        parts = [
+            _minima_on_grid(transfer, SLOWEST * low, FASTEST * end),
+            resonances(lambda s: 1.0 / (1.0 + transfer(s)), SLOWEST * low, FASTEST * end),
+            _starts_on_axis(transfer, _logarithmic(SLOWEST_REAL * low, farthest, AXIS_PER_DECADE)),
+        ]
+    if transfer.dead_time:
+        parts.append(asymptotic_starts(transfer, count))
+    return np.concatenate(parts)
+
+
+def missing_unstable(transfer: LoopTransfer, found: list[complex]) -> ComplexArray:
+    """Return the poles with Re s > 0 and Im s > 0 if those among the poles found are not all; else none."""
+    if stability.unstable_poles(transfer) == sum(2 if p.imag else 1 for p in found if p.real >= 0.0):
+        return np.empty(0, dtype=complex)
+    top = FASTEST * transfer.beyond(0.3)
+    box = Box(OFF_AXES * top, top, OFF_AXES * top, top)
+    zeros = zeros_in_box(transfer.characteristic, transfer.characteristic_slope, box, turning=transfer.dead_time)
+    return np.array([zero.place for zero in zeros or ()], dtype=complex)
+
+
+def has_cut(transfer: LoopTransfer, s: ComplexArray) -> NDArray[np.bool_]:
+    """Return where on the negative real axis, at points ``s``, the function has a cut or a pole."""
+    with np.errstate(all="ignore"):
+        value = transfer(-np.abs(s) * np.exp(-1j * NEAREST))
+        return np.asarray(~(np.abs(value.imag) <= REAL * np.abs(value)))
+
+
+def begin_of_cut(transfer: LoopTransfer, scale: float) -> float:
+    """Return how far from s = 0 the cut on the negative real axis begins, to a tenth; 0 if at rest, ``inf`` without."""
+    radius = scale * np.geomspace(1e-12, 1e3, 400)
+    with np.errstate(all="ignore"):
+        value = transfer(-radius * np.exp(-1j * CLOSEST))
+        cut = np.isfinite(value) & (np.abs(value.imag) > IMAGINARY * np.abs(value))
+    if not cut.any():
+        return float("inf")
+    first = int(np.argmax(cut))
+    return float(radius[first - 1]) if first else 0.0
+
+
+def _logarithmic(low: float, high: float, per_decade: int) -> Array:
+    return np.geomspace(low, high, max(8, int(per_decade * np.log10(high / low))))
+
+
+def _minima_on_grid(transfer: LoopTransfer, low: float, high: float) -> ComplexArray:
+    """Return the local minima of |1 + 1/L|, which is zero at the poles and free of the scale of L, on a polar grid."""
+    s = _logarithmic(low, high, PER_DECADE)[:, None] * np.exp(1j * np.linspace(0.0, 0.98 * np.pi, ANGLES))
+    relative = np.abs(1.0 + 1.0 / transfer(s))
+    inner = relative[1:-1, :]
+    lowest = (inner <= relative[:-2, :]) & (inner <= relative[2:, :])
+    padded = np.pad(relative, ((0, 0), (1, 1)), mode="edge")[1:-1]
+    lowest &= (inner <= padded[:, :-2]) & (inner <= padded[:, 2:])
+    best = np.argsort(inner[lowest])[:MOST_MINIMA]
+    return np.asarray(s[1:-1][lowest][best])
+
+
+def _starts_on_axis(transfer: LoopTransfer, radius: Array) -> ComplexArray:
+    """Return starts on the negative real axis, where L is real: sign changes and minima of 1 + 1/L."""
+
+    def excess(x: float) -> float:
+        return float(1.0 + 1.0 / complex(transfer(complex(-x))).real)
+
+    smooth = ~has_cut(transfer, radius.astype(complex))
+    value = 1.0 + 1.0 / transfer(-radius.astype(complex)).real
+    smooth &= np.isfinite(value)
+    both = smooth[1:] & smooth[:-1]
+    found = [
+        float(brentq(excess, radius[i], radius[i + 1])) for i in np.nonzero(both & (value[1:] * value[:-1] < 0.0))[0]
+    ]
+    size = np.where(smooth, np.abs(value), np.inf)
+    low = (size[1:-1] < size[:-2]) & (size[1:-1] < size[2:]) & both[1:] & both[:-1]
+    return -np.array([*found, *radius[1:-1][low]], dtype=complex)
