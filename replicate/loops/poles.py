@@ -106,6 +106,7 @@ def _ordered(poles: list[complex]) -> list[complex]:
 def _distinct(transfer: LoopTransfer, points: ComplexArray, count: int) -> list[complex]:
     """Return each pole once: points that are one to rounding become one, near ones the multiple pole they are."""
     found: list[complex] = []
+    points = points.real + 1j * np.abs(points.imag)  # on its way to the real axis Newton's method may cross it
     # a pair that is one double pole shows only one of its two
     close = points[(points.imag > 0.0) & (2.0 * points.imag <= CLOSE * np.abs(points))]
     points = np.concatenate([points, close.conj()])
