@@ -129,6 +129,20 @@ def test_margins_and_peak_on_a_dense_grid_of_frequencies(paper: str) -> None:
         assert found["phase margin"].value == pytest.approx(phase, abs=0.05)
 
 
+def test_a_bode_plot_on_a_dense_grid_of_frequencies() -> None:
+    w = np.geomspace(1e-2, 1e1, 200_001)
+    for inputs in drawn("khan", "bode"):
+        K, T, L, k, ki = (float(inputs[key]) for key in ("K", "T", "L", "k", "ki"))
+        curve = K * np.exp(-1j * w * L) / (1 + 1j * w * T) * (k + ki / (1j * w))
+        decibels, phase = 20 * np.log10(np.abs(curve)), np.degrees(np.unwrap(np.angle(curve)))
+        found = variation("khan", "bode").answers(inputs)
+        gain = 10 ** (-np.interp(180.0, -phase, decibels) / 20)
+        assert found["gain margin"].value == pytest.approx(gain, rel=1e-4)
+        assert found["phase margin"].value == pytest.approx(180.0 + np.interp(0.0, -decibels, phase), abs=0.01)
+        assert found["Ms"].value == pytest.approx(1 / np.min(np.abs(1 + curve)), rel=1e-5)
+        assert found["Ms"].accepts(10 ** ((20 * math.log10(found["Ms"].value) + 0.45) / 20))  # read off by 0.45 dB
+
+
 @pytest.mark.parametrize("paper", ["khan", "panagopoulos"])
 def test_a_step_test_is_identified_from_its_file_alone(paper: str) -> None:
     """The method of areas: L + T is the area above the response, relative to the final value."""

@@ -16,7 +16,7 @@ from replicate.exhibits.variants import Answer, Answers, Inputs, rounded
 from replicate.loops import PI, Loop
 from replicate.papers.khan import paper
 from replicate.papers.khan.processes import PRINTED, RESTORED, case_gains, loop, plant, settling_after_load
-from replicate.teaching import sketch, step_test
+from replicate.teaching import bode_reading, sketch, step_test
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -163,3 +163,4 @@ sketch(
     pole=(-0.9, -0.2),
     gain=(0.3, 0.9),
 )
+bode_reading(exercises, "bode", {"K": 0.8, "T": 3.0, "L": 1.5, "k": 1.6, "ki": 0.5})
