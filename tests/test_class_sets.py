@@ -6,6 +6,7 @@ import csv
 import io
 import math
 import re
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -148,6 +149,25 @@ def test_a_form_is_read_back_and_names_nobody() -> None:
         Form.read("bayhan:short:1")
 
 
+def test_an_id_with_a_wrong_letter_is_refused() -> None:
+    """One of 256 ids with mistakes has check digits that fit."""
+    right = str(Form.of("bayhan", "2026W", "Ada", (2, 4)))
+    wrong = [
+        right[:place] + letter + right[place + 1 :]
+        for place in range(len(right))
+        for letter in "0123456789abcdef"
+        if letter != right[place]
+    ]
+    passed = 0
+    for text in wrong:
+        with suppress(ReplicateError):
+            passed += Form.read(text) is not None
+    assert passed < len(wrong) / 50
+    for text in (right.replace(":2.4", ""), right.replace(":2.4", ":2"), right.replace("bayhan", "khan")):
+        with pytest.raises(ReplicateError, match="which no sheet has: a letter or a digit of it is wrong"):
+            Form.read(text)
+
+
 def test_a_sheet_made_again_has_the_same_bytes_if_what_is_set_is_given_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -241,9 +261,10 @@ def test_the_handout_that_all_share_has_the_original_numbers(toy: ClassSet) -> N
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["bayhan", "--variants", "2", "--form", "bayhan:0123456789ab:1"], "do not go together"),
+        (["bayhan", "--variants", "2", "--form", str(Form.of("bayhan", "1", "Ada"))], "do not go together"),
         (["bayhan", "khan", "--variants", "2"], "about one paper"),
-        (["--form", "bayhan:0123456789ab:1", "--format", "moodle"], "about a class"),
+        (["--form", str(Form.of("bayhan", "1", "Ada")), "--format", "moodle"], "about a class"),
+        (["--form", str(Form.of("bayhan", "1", "Ada")), "--select", "2"], "--select differs from the form"),
         (["bayhan", "--variants", "2", "--select", "9"], "no exercise 9; allowed: 1 to 8"),
         (["bayhan", "--variants", "2", "--select", "2,2"], "--select is '2,2', allowed"),
         (["bayhan", "--points", "4,five"], "--points is '4,five', allowed: positive numbers"),

@@ -90,6 +90,9 @@ def handout(
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
+    if again and selected != again.select:
+        msg = "--select differs from the form, which says what is on its sheet; leave it out"
+        raise ReplicateError(msg)
     project = run.within.project
     words = language_of(language) if language else project.language if project else language_of()
     sheet = Sheet(title, date, read_points(points) if points else (), selected, words)
