@@ -42,6 +42,21 @@ def test_what_cannot_be_seen_is_no_curve_and_no_text() -> None:
     assert said(draw, False, True) == said(draw, True, False) == []
 
 
+def test_what_is_clipped_away_and_the_order_of_axes_are_not_seen() -> None:
+    def draw(axes: Any, more: object) -> None:
+        axes.set(xlim=(0, 10), ylim=(-1, 1))
+        if more:
+            axes.plot([10.5, 12], [0, 1])
+            axes.plot([50, 60], [0, 1])
+            axes.scatter([11, 12], [0, 1])
+            axes.text(50, 0, "far", clip_on=True)
+        for place in (0.1, 0.6) if more else (0.6, 0.1):
+            axes.figure.add_axes((place, 0.7, 0.2, 0.2)).set_title(f"at {place}")
+
+    assert said(draw, False, True) == said(draw, True, False) == []
+    assert said(lambda ax, v: ax.plot([2, 3], [0, 1], clip_on=v) and ax.set_xlim(0, 1), True, False)
+
+
 def test_a_curve_that_can_be_seen_now_is_new() -> None:
     assert said(lambda ax, v: ax.plot(T, T, label="b", alpha=v), 0.0, 1.0) == ["curve 'b' is new"]
     assert said(lambda ax, v: ax.plot(T, T, label="b", alpha=v), 1.0, 0.0) == ["curve 'b' is missing"]

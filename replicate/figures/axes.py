@@ -64,7 +64,9 @@ def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Differen
     # Where a panel comes or goes the others make room for it.
     silent = _SILENT if all(old and new for old, new in matched) else _SILENT | {"position"}
     names = [[str(panel["panel"]) for panel in panels] for panels in (before, after)]
-    if names[0] != names[1] and sorted(names[0]) == sorted(names[1]):
+    # In what order they were made shows where they are only in the first version of the records.
+    moved = any(old and new and not ("position" in old and same(old, new, "position")) for old, new in matched)
+    if moved and names[0] != names[1] and sorted(names[0]) == sorted(names[1]):
         shown = [", ".join(f"'{name}'" for name in order) for order in names]
         changes.append(Difference("axes", f"the panels now stand in the order {shown[1]} (was {shown[0]})", "panels"))
     for old, new in matched:
@@ -155,8 +157,9 @@ def _words(name: str, before: Axes, after: Axes) -> Iterator[str]:
     elif name == "texts":
         yield from _texts(one or [], other or [], before)
     elif name in {"points", "areas"}:
-        yield from (f"'{curve}' is drawn as {name} now" for curve in other or [] if curve not in (one or []))
-        yield from (f"'{curve}' was drawn as {name}" for curve in one or [] if curve not in (other or []))
+        both = _names_in_both(before, after)
+        yield from (f"'{curve}' is drawn as {name} now" for curve in other or [] if curve in both - {*(one or [])})
+        yield from (f"'{curve}' was drawn as {name}" for curve in one or [] if curve in both - {*(other or [])})
     elif name == "position":
         yield f"the panel is now at {_shown(other)} (was at {_shown(one)}): left, bottom, width, height of the figure"
     elif name in {"xtable", "ytable"}:
@@ -170,6 +173,12 @@ def _words(name: str, before: Axes, after: Axes) -> Iterator[str]:
     else:
         now, was = ("are now", "were") if name in _MANY else ("is now", "was")
         yield f"{_CALLED.get(name, name.replace('_', ' '))} {now} {_shown(other)} ({was} {_shown(one)})"
+
+
+def _names_in_both(before: Axes, after: Axes) -> set[str]:
+    """Return the names of parts that both states have; the curves among them have neither come nor gone."""
+    names = ({str(part["name"]) for part in axes.get("parts", [])} for axes in (before, after))
+    return next(names) & next(names)
 
 
 def _polar(one: Mapping[str, Any], other: Mapping[str, Any]) -> Iterator[str]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from replicate.figures.recorder import Array, Drawn
+from replicate.figures.stacking import extent
 
 #: Opacities up to this, of 1, cannot be seen.
 _LEAST = 1.5 / 255.0
@@ -36,8 +37,15 @@ def _leaves_ink(call: Drawn) -> bool:
     if call.kind == "image":
         return bool((call.extra["image"][..., 3] > 255.0 * _LEAST).any())
     if call.kind == "text":
-        return _opaque(call.edges)
+        return _opaque(call.edges) and not _is_clipped_away(call)
     return bool(call.hatch) or _opaque(call.faces) or (_opaque(call.edges) and any(call.widths))
+
+
+def _is_clipped_away(call: Drawn) -> bool:
+    box, clip = extent(call), call.clip_box
+    if box is None or clip is None:
+        return False
+    return any(box[side] > clip[side + 2] or box[side + 2] < clip[side] for side in (0, 1))
 
 
 def _opaque(colours: Array) -> bool:

@@ -7,7 +7,6 @@ from bisect import bisect_left
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import Any
 
-from replicate.figures.colours import is_seen
 from replicate.figures.differences import Difference, FigureChange, Layer
 from replicate.figures.fieldwise import field_words
 from replicate.figures.grouping import NUMBERED, are_many, together, without_details
@@ -15,8 +14,8 @@ from replicate.figures.legend_words import HANDLES, LEGEND_SIZES, OUTSIDE
 from replicate.figures.looks import Mark
 from replicate.figures.mark_pairs import Frame, mark_words
 from replicate.figures.part_names import names_of_numbered, names_of_sub_figures
+from replicate.figures.showing import Part, shows
 
-Part = Mapping[str, Any]
 #: What is said, and whether by the net alone, of which parts, and how far each has moved.
 _Sentences = dict[tuple[str, bool], dict[str, float | None]]
 
@@ -153,7 +152,7 @@ def _come_and_gone(
     )
     for parts, others, words, kind in sides:
         for name, part in parts.items():
-            told = part.get("told") or not _shows(part)
+            told = part.get("told") or not shows(part)
             if name not in others and not told and not _ticks_of(name, other_ticks):
                 layer: Layer = "net" if part.get("net") else "named"
                 text = f"{prefix}{_called(name, curves)} {'are' if _plural(name) else 'is'} {words}"
@@ -174,7 +173,7 @@ def come_and_gone_by_name(
     said
         The differences that were found.
     """
-    told = [[str(part["name"]) for part in parts if part.get("told") and _shows(part)] for parts in (before, after)]
+    told = [[str(part["name"]) for part in parts if part.get("told") and shows(part)] for parts in (before, after)]
     was, now = told[0], [names.get(name, name) for name in told[1]]
     gone, fresh = ([name for name in one if name not in other] for one, other in ((was, now), (now, was)))
     if len(gone) == len(fresh) == 1 and {*gone, *fresh} <= _TITLES.keys():
@@ -182,16 +181,6 @@ def come_and_gone_by_name(
         return
     for parts, words in ((gone, "no longer drawn"), (fresh, "drawn now")):
         yield from ((name, f"{name} is {words}") for name in parts if not _mentioned(name, said))
-
-
-def _shows(part: Part) -> bool:
-    """Whether anything of a part can be seen."""
-    return any(
-        mark["draws"] == "image"
-        or "hatch" in mark
-        or any(is_seen(mark[name]) for name in ("edge", "face") if name in mark)
-        for mark in part["marks"]
-    ) or bool(part.get("field"))
 
 
 def _mentioned(name: str, said: str) -> bool:

@@ -79,7 +79,7 @@ def _of_text(text: Text) -> dict[str, Any]:
 def _of_legend(legend: Legend) -> dict[str, Any]:
     found: dict[str, Any] = {words: round(float(getattr(legend, name)), 3) for name, words in LEGEND_SIZES.items()}
     found[HANDLES] = _side_of_handles(legend)
-    if legend.axes is None:  # a legend of a figure
+    if getattr(legend, "axes", None) is None:  # a legend of a figure
         found[OUTSIDE] = str(getattr(legend, "_outside_loc", None) or "none")
     if getattr(legend, "_mode", None) == "expand":
         found["mode"] = "expanded"
