@@ -317,8 +317,9 @@ def test_columns_are_aligned_at_the_decimal_point() -> None:
 @pytest.mark.parametrize(
     ("number", "printed", "text"),
     [
-        (123.456, "100", "123.46"), (0.0, "0.00", "0"), (float("nan"), "1", ""), (2.0, "2.00000", "2.000000"),
-        (1234567.0, None, "1234567"), (-float("inf"), None, "−∞"), (5e-7, "0", "5e−7"), (None, "1", ""),
+        (123.456, "100", "123.46"), (0.0, "0.00", "0"), (float("nan"), "1", ""), (2.0, "2.00000", "2"),
+        (46.6, "0.43035", "46.6"), (1234567.0, None, "1234567"), (-float("inf"), None, "−∞"),
+        (5e-7, "0", "5e−7"), (None, "1", ""),
     ],
 )  # fmt: skip
 def test_numbers_show_a_little_more_than_the_print(number: float | None, printed: str | None, text: str) -> None:

@@ -36,6 +36,6 @@ def off(printed: PrintedValue | None, number: float | None) -> str:
 def _short(value: Decimal, digits: int = 1) -> str:
     """Return a size as one would say it: whole numbers above ten, few digits below."""
     if value >= 10:
-        return f"{value:.0f}" if value < Decimal("1e6") else f"{value:.1e}"
+        return f"{value:.0f}" if value < Decimal("1e6") else f"{value:.1e}".replace("e+", "e")
     text = f"{value:.{digits}g}"
     return f"{Decimal(text).normalize():f}"

@@ -15,6 +15,7 @@ from typing import Literal
 from markupsafe import Markup
 
 from replicate.display.formulas import formulas
+from replicate.display.numbers import minus_signs
 from replicate.display.pandoc import PandocError, SlowTextError, convert
 from replicate.display.safe_html import sanitised
 from replicate.errors import TemplateError, UnreadableFormulaError, UnreadableTextError
@@ -36,6 +37,7 @@ _LIMIT_ALONE = 5.0  # seconds for one paragraph
 _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)", re.DOTALL)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
+_VERBATIM = re.compile(r"(<(?:code|pre|math)\b.*?</(?:code|pre|math)>|<[^>]*>)", re.DOTALL)
 _MARKS = re.compile("[\ue000-\ue007]")
 
 
@@ -124,7 +126,7 @@ class MarkdownBatch:
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
         document = sanitised(document).replace(' id="footnotes"', "")
-        document = formulas(document)
+        document = _with_minus_signs(formulas(document))
         parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():
@@ -162,6 +164,19 @@ def _not_a_block(text: str) -> str:
     """Escape what would make the first line of a text a list, heading, quotation or line block."""
     text = re.sub(r"^\s*(\d+)([.)]\s)", r"\1\\\2", text)
     return re.sub(r"^\s*([-+*#>|:]+\s)", r"\\\1", text)
+
+
+def _with_minus_signs(document: str) -> str:
+    """Return HTML in which numbers of the text, but not of code, addresses and formulas, have minus signs.
+
+    Examples
+    --------
+    >>> _with_minus_signs('<a href="x-1 -1">at -1</a> <code>a -1</code>')
+    '<a href="x-1 -1">at −1</a> <code>a -1</code>'
+    """
+    parts = _VERBATIM.split(document)
+    parts[::2] = [minus_signs(part) for part in parts[::2]]
+    return "".join(parts)
 
 
 def strip_elements(text: str) -> str:

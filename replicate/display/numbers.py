@@ -15,14 +15,15 @@ FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
 OVERLINE = "\N{COMBINING OVERLINE}"
 PUNCTUATION_SPACE = "\N{PUNCTUATION SPACE}"  # as wide as a decimal point
 
-_HYPHEN = re.compile(r"(?<![\w.)\]])-(?=[\d.\[])|(?<=[\d.]e)-(?=\d)")  # before a number, not between two
+_HYPHEN = re.compile(r"(?<![\w.)\]/-])-(?=[\d\[]|\.\d)|(?<=[\d.]e)-(?=\d)")  # before a number, not between two
+_EXPONENT = re.compile(r"(?<=\d)e([+-])0*(?=\d)(\d+)\b")
 _PLAIN_DIGITS = 6  # significant digits where nothing printed tells how many are of interest
 _LONG_PRINT = 5  # a print with at least so many digits is followed by one more, a shorter one by two
 _MOST_PADDING = 8  # a column that mixes 0.0000001 and 1000 is not aligned
 
 
 def shown(computed: float | None, printed: PrintedValue | None) -> str:
-    """Return a computed number with one or two digits more than the print has.
+    """Return a computed number with one or two digits more than the print has, and never more than it has itself.
 
     Parameters
     ----------
@@ -37,6 +38,8 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     '6.96812'
     >>> shown(6.96812345, PrintedValue("6.968", significant_digits=6))
     '6.968123'
+    >>> shown(-497.0, PrintedValue("-0.43035")), shown(2.0, PrintedValue("2.10"))
+    ('−497', '2')
     >>> shown(-0.5, None), shown(1e-9, PrintedValue("0.1")), shown(float("inf"), None)
     ('−0.5', '1e−9', '∞')
     """
@@ -63,7 +66,8 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     if printed is None:
         return _minus(_stripped(f"{number:.{_PLAIN_DIGITS}g}") if place < 0 else f"{number:.0f}")
     rounded = number.quantize(Decimal(1).scaleb(min(place, 0)), rounding=ROUND_HALF_EVEN)
-    return _minus(f"{rounded:f}")
+    own = number.normalize()  # a reading may round, and what it rounded away is not made up again
+    return _minus(f"{own if own == rounded else rounded:f}")
 
 
 def _scientific(number: Decimal) -> str:
@@ -92,6 +96,18 @@ def overlined(printed: str) -> str:
     plain, _, repeated = printed.partition("[")
     digits, _, rest = repeated.partition("]")
     return plain + "".join(f"{digit}{OVERLINE}" for digit in digits) + rest
+
+
+def minus_signs(text: str) -> str:
+    """Return a text in which numbers have minus signs, and exponents neither a plus sign nor zeros before them.
+
+    Examples
+    --------
+    >>> minus_signs("from -0.5 to 4.1e-04, pp. 3-5, x-1"), minus_signs("1.7e+06 or -3e10")
+    ('from −0.5 to 4.1e−4, pp. 3-5, x-1', '1.7e6 or −3e10')
+    """
+    text = _EXPONENT.sub(lambda found: f"e{MINUS if found[1] == '-' else ''}{found[2]}", text)
+    return _HYPHEN.sub(MINUS, text)
 
 
 def full(computed: float | None) -> str:

@@ -280,7 +280,14 @@ def _range(table: Table, ranges: Ranges | None, key: Key, printed: PrintedValue 
     low, high = (numbers.shown(end, printed) for end in (ranges.lower[key], ranges.upper[key]))
     point = ranges.points[table.case(*key)]
     inputs = ", ".join(f"{input_name(name)} = {numbers.shown(number, None)}" for name, number in point.items())
-    return (f"{low} to {high}" if low and high else ""), inputs
+    return _between(low, high), inputs
+
+
+def _between(low: str, high: str) -> str:
+    """Return a range as text, one number if its ends are shown alike; empty if it has none."""
+    if not low or not high:
+        return ""
+    return low if low == high else f"{low} to {high}"
 
 
 def _shortened(table: Table, verdicts: Iterable[VerdictRow]) -> list[tuple[str, str]]:
@@ -338,5 +345,5 @@ def _ranges(group: Iterable[VerdictRow]) -> dict[str, list[tuple[str, str, str]]
         one = next((one for one in verdict.values if one.reading == verdict.reading), None)
         if one is not None and (words := CERTAINTIES.get(one.certainty)):
             low, high = (numbers.shown(end, verdict.value) for end in (one.lower, one.upper))
-            found.setdefault(words, []).append((verdict.row, verdict.column, f"{low} to {high}"))
+            found.setdefault(words, []).append((verdict.row, verdict.column, _between(low, high)))
     return found

@@ -82,7 +82,7 @@ CERTAINTIES: dict[Certainty, str] = {
 CAUSES = {
     "misprint": "misprint",
     "print-or-copy": "in the paper or in the copy at hand",
-    "scan": "damaged in the copy at hand",
+    "scan": "in the copy at hand",
     "definition": "another definition",
     "method": "numerical method of the time",
     "optimiser": "optimiser stopped early",
