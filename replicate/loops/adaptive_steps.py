@@ -33,7 +33,7 @@ Array = NDArray[np.float64]
 
 STARTING = 3.5  # first piece, in units of the fastest time constant
 SMOOTHEST = 12  # order of a derivative whose jump no longer has to fall on the end of a piece
-SMALLEST_JUMP = 1e-17
+SMALLEST_JUMP = 1e-17  # of the jump that set it off: one that is rounding
 MOST_PIECES = 200_000
 
 

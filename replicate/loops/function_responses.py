@@ -66,16 +66,14 @@ def respond(
         The user's unit of time over the loop's, for messages.
     """
     plant, (setpoint, load) = transfer.plant, inputs
-    size = max(abs(setpoint), abs(load)) or 1.0  # the quadrature's tolerance is absolute
 
     def forward(s: ArrayLike) -> ComplexArray:
         s = np.asarray(s, dtype=complex)
-        drive = setpoint / size * controller.feedforward(s) + load / size
+        drive = setpoint * controller.feedforward(s) + load
         return np.asarray(drive * plant.delay_free(s) / s)
 
-    closed = inversion.ClosedLoop(transfer, forward, poles, unit)
-    breaks, y = inversion.respond(closed, end, pace(poles))
-    y = y * size
+    closed = inversion.ClosedLoop(transfer, forward, poles, pace(poles), unit)
+    breaks, y = inversion.respond(closed, end)
     return breaks, y, *control_signal(controller, breaks, y, setpoint)
 
 

@@ -33,12 +33,12 @@ ComplexArray = NDArray[np.complex128]
 OPENINGS = (0.62, 0.45, 0.3, 0.2, 0.12, 0.07, 0.04)  # rad by which the contour's arms lean to the left of vertical
 DEGREE = 18
 RESIDUE_POINTS = 64
-TOLERANCE = 1e-13
-RESOLVED = 5e-13
+TOLERANCE = 1e-13  # difference of two quadratures that agree, of the response's size,
+RESOLVED = 5e-13  # and size of the last coefficients of a piece that is resolved
 FIRST = 1e-3  # length of the first piece, in time scales
 GROWTH = 1.35
-SHORT = 1e-6  # length of a piece, in time scales, that is not halved
-SHORTEST = 1e-14  # length of a piece, in time scales, that is not halved at a kink: a power of t starts without a scale
+SHORT = 1e-6  # length of a piece that is not halved, in time scales or in times since the last kink,
+SHORTEST = 1e-14  # and at a kink, in shortest times: a power of t starts without a scale
 ARM = 3000  # points of the contour's upper arm along which poles are counted
 ALONG = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 1500)])  # shares of a side, dense at its start
 SPAN = 0.02  # smallest ratio of two times for which one contour serves
@@ -57,6 +57,8 @@ class ClosedLoop:
         The open response without the dead time, drive times plant over s, for complex arrays.
     poles
         The rightmost closed-loop poles with Im >= 0. They are counted: whether these are all is checked.
+    time_scale
+        Time constant of the slowest mode.
     unit
         The user's unit of time over the loop's, for messages.
     """
@@ -64,11 +66,22 @@ class ClosedLoop:
     transfer: LoopTransfer
     forward: Callable[[Any], ComplexArray]
     poles: ComplexArray
+    time_scale: float
     unit: float
 
     def closed(self, s: Any) -> ComplexArray:
         """Evaluate the response's transform without the dead time of its first path."""
         return np.asarray(self.forward(s) / (1.0 + self.transfer(s)))
+
+    @cached_property
+    def size(self) -> float:
+        """The response's size, before any piece is known."""
+        return float(np.abs(self.closed((1.0 + 1.0j) / self.time_scale)) / self.time_scale)
+
+    @cached_property
+    def shortest(self) -> float:
+        """The shortest time in which anything happens: of the slowest mode, or one over the bandwidth."""
+        return min(self.time_scale, 1.0 / self.bandwidth)
 
     @cached_property
     def bandwidth(self) -> float:
@@ -93,14 +106,11 @@ class ClosedLoop:
         return complex(np.mean(self.closed(pole + radius * turn) * radius * turn))
 
 
-def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, Array]:
+def respond(loop: ClosedLoop, until: float) -> tuple[Array, Array]:
     """Return (breaks, Chebyshev coefficients) of the response on [0, until]; zero during the dead time.
 
-    Parameters
-    ----------
-    time_scale
-        Time constant of the slowest mode. Pieces grow geometrically from a small fraction of it, because such
-        responses start infinitely flat and end in an algebraic tail; pieces that are not resolved are halved.
+    Pieces grow geometrically from a small fraction of the loop's time scale, because such responses start infinitely
+    flat and end in an algebraic tail; pieces that are not resolved are halved.
 
     Raises
     ------
@@ -111,28 +121,26 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
     end = until - start
     if end <= 0.0:
         return np.array([0.0, until]), np.zeros((1, DEGREE + 1))
-    edges = [0.0, min(end, FIRST * time_scale)]
+    edges = [0.0, min(end, FIRST * loop.time_scale)]
     while edges[-1] < end:
         edges.append(min(end, GROWTH * edges[-1]))
     if start:  # the response is smooth only between multiples of the dead time, ever smoother later
         kinks = start * np.arange(1, KINKS)
         edges = sorted({*edges, *kinks[kinks < end].tolist()})
-    starts = {0.0, *(start * np.arange(KINKS)).tolist()}  # where the response may start like a broken power of time
+    starts = start * np.arange(KINKS) if start else np.zeros(1)  # where it may start like a broken power of time
     pending = list(pairwise(edges))[::-1]
     to_coefficients = chebyshev.values_to_coefficients(DEGREE)
     lefts: list[float] = []
     pieces: list[Array] = []
-    # the response's size, before any piece is known
-    largest = float(np.abs(loop.closed((1.0 + 1.0j) / time_scale)) / time_scale)
+    largest = loop.size
     while pending:
         left, right = pending.pop()
         t = 0.5 * (left + right) + 0.5 * (right - left) * chebyshev.nodes(DEGREE)
-        series = to_coefficients @ _values(loop, t)
+        series = to_coefficients @ _values(loop, t, largest)
         largest = max(largest, float(np.max(np.abs(series))))
-        if (
-            np.max(np.abs(series[-2:])) > RESOLVED * largest
-            and right - left > (SHORTEST if left in starts else SHORT) * time_scale
-        ):
+        since = left - float(starts[starts <= left][-1])
+        least = SHORT * min(loop.time_scale, since) if since else SHORTEST * loop.shortest
+        if np.max(np.abs(series[-2:])) > RESOLVED * largest and right - left > least:
             middle = 0.5 * (left + right)
             pending += [(middle, right), (left, middle)]
             continue
@@ -146,12 +154,12 @@ def respond(loop: ClosedLoop, until: float, time_scale: float) -> tuple[Array, A
     return breaks, coefficients
 
 
-def _values(loop: ClosedLoop, t: Array) -> Array:
-    """Return the response at times within one piece, counted from the end of the first dead time."""
+def _values(loop: ClosedLoop, t: Array, size: float) -> Array:
+    """Return the response, of some size, at times within one piece, counted from the end of the first dead time."""
     delay = loop.transfer.dead_time
     middle = float(t[t.size // 2])
     if not delay or middle > EXPANDED * delay:
-        values = _invert(loop.closed, t, loop)
+        values = _invert(loop.closed, t, size, loop)
         if values is not None:
             return values
         if not delay or middle > MOST_EXPANDED * delay:
@@ -159,14 +167,14 @@ def _values(loop: ClosedLoop, t: Array) -> Array:
     # after n dead times the loop has been gone around n times at most: a finite sum without closed-loop poles
     total = np.zeros_like(t)
     for n in range(int(middle / delay) + 1):
-        part = _invert(loop.path(n), t - n * delay, None)
+        part = _invert(loop.path(n), t - n * delay, size, None)
         if part is None:
             raise LoopError(_why_not(loop, loop.path(n), t))
         total += part
     return total
 
 
-def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array | None:
+def _invert(transform: Callable[[Any], ComplexArray], t: Array, size: float, loop: ClosedLoop | None) -> Array | None:
     """Invert a transform at times t, or return None if no contour does.
 
     With a loop, its poles to the right of the contour are added as residues.
@@ -176,7 +184,7 @@ def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop
     while left.any():  # one contour serves times that differ by no more than a factor
         longest = float(t[left].max())
         group = left & (t >= SPAN * longest)
-        values = _invert_group(transform, t[group], loop)
+        values = _invert_group(transform, t[group], size, loop)
         if values is None:
             return None
         result[group] = values
@@ -184,7 +192,9 @@ def _invert(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop
     return result
 
 
-def _invert_group(transform: Callable[[Any], ComplexArray], t: Array, loop: ClosedLoop | None) -> Array | None:
+def _invert_group(
+    transform: Callable[[Any], ComplexArray], t: Array, size: float, loop: ClosedLoop | None
+) -> Array | None:
     longest, shortest = float(t.max()), float(t.min())
     for opening in OPENINGS:
         for scale in (3.0 / longest, 9.0 / longest):
@@ -192,7 +202,7 @@ def _invert_group(transform: Callable[[Any], ComplexArray], t: Array, loop: Clos
             outside = contour.poles_to_the_right(loop, shortest) if loop else np.empty(0, dtype=complex)
             if outside is None:
                 continue
-            values = _refined(contour, transform, t, shortest)
+            values = _refined(contour, transform, t, shortest, size)
             if values is None:
                 continue
             if loop:
@@ -239,7 +249,9 @@ def _hidden_dead_time(plant: Plant) -> float:
     return float(last[-1]) if steady and last[-1] > 0.0 else 0.0
 
 
-def _refined(contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float) -> Array | None:
+def _refined(
+    contour: _Contour, transform: Callable[[Any], ComplexArray], t: Array, shortest: float, size: float
+) -> Array | None:
     """Return the integral along the contour at times ``t``, or None if the quadrature does not converge on it."""
     reach = contour.reach(shortest)
     previous: Array | None = None
@@ -252,7 +264,7 @@ def _refined(contour: _Contour, transform: Callable[[Any], ComplexArray], t: Arr
             weights = transform(s) * ds * step / np.pi
         weights = np.where(np.isfinite(weights), weights, 0.0)
         values = np.imag(np.exp(np.outer(t, s)) @ weights)
-        size = max(1.0, float(np.max(np.abs(values))))
+        size = max(size, float(np.max(np.abs(values))))
         if previous is not None and np.max(np.abs(values - previous)) <= TOLERANCE * size:
             return np.asarray(values)
         previous = values

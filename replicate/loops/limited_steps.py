@@ -35,7 +35,7 @@ Array = NDArray[np.float64]
 
 STARTING = 3.5  # first piece, in units of the fastest time constant
 SMOOTHEST = 12  # order of a derivative whose jump no longer has to fall on the end of a piece
-SMALLEST_JUMP = 1e-17
+SMALLEST_JUMP = 1e-17  # of the jump that set it off: one that is rounding
 ON_LIMIT = 1e-12  # of the largest command: distance from the limit at which it slides along it
 MOST_PIECES = 100_000
 

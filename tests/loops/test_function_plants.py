@@ -100,6 +100,18 @@ def test_a_loop_without_poles_settles() -> None:
     assert y.overshoot() == 0.0
 
 
+@pytest.mark.parametrize("k", [1e-9, 1e3, 1e6, 1e9, 1e12])
+def test_a_response_much_faster_than_the_plant(k: float) -> None:
+    # a load at 1/(1 + sqrt s) under k: (1 - exp(a^2 t) erfc(a sqrt t))/a, a = 1 + k
+    d = Loop(Plant.from_function(lambda s: 1.0 / (1.0 + np.sqrt(s))), PI(k)).load_step()
+    with mp.workdps(40):
+        a = 1 + mp.mpf(k)
+        for t in (1e-2 / a**2, 1.0 / a**2, 100.0 / a**2, 1e-3):
+            exact = (1 - mp.exp(a**2 * mp.mpf(float(t))) * mp.erfc(a * mp.sqrt(float(t)))) / a
+            assert float(d(float(t))) == pytest.approx(float(exact), rel=1e-12)
+    assert d.peak() <= float(1 / a) * (1.0 + 1e-12)
+
+
 @pytest.mark.parametrize("k", [30.0, 60.0, -3.0])
 def test_unstable_loops_grow_as_their_poles_say(k: float) -> None:
     # k e^{-sqrt s} has the poles (ln(-k))^2; what is left of them is inverted on a contour of its own
