@@ -67,7 +67,7 @@ def language(tag: str = "en", what: str = "--language") -> Language:
         If there is no such file, or it is not as ``en.toml``.
     """
     english = templates_dir() / FOLDER / "en.toml"
-    path = Path(tag) if tag.endswith(".toml") else english.with_name(f"{tag}.toml")
+    path = Path(tag) if tag.endswith(".toml") else english.parent / f"{tag}.toml"
     if not _TAG.fullmatch(path.stem) or not path.is_file():
         msg = f"{what} is '{tag}', allowed: {languages()}"
         raise ReplicateError(msg)

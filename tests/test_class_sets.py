@@ -270,6 +270,8 @@ def test_the_handout_that_all_share_has_the_original_numbers(toy: ClassSet) -> N
         (["bayhan", "--points", "4,five"], "--points is '4,five', allowed: positive numbers"),
         (["bayhan", "--points", "4,5"], "--points has 2 numbers, the sheet has 8 exercises; give one, or 8"),
         (["bayhan", "--language", "xx"], "--language is 'xx', allowed: de, en"),
+        (["bayhan", "--language", "../de"], "--language is '../de', allowed: de, en"),
+        (["bayhan", "--roster-id", "mail"], "--roster-id is 'mail', a column of a roster, and there is none"),
         (["bayhan", "--roster", "nobody.csv"], "nobody.csv: cannot be read"),
     ],
 )

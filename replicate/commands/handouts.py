@@ -93,6 +93,9 @@ def handout(
     if again and selected != again.select:
         msg = "--select differs from the form, which says what is on its sheet; leave it out"
         raise ReplicateError(msg)
+    if roster_id and not roster:
+        msg = f"--roster-id is '{roster_id}', a column of a roster, and there is none; give --roster FILE"
+        raise ReplicateError(msg)
     project = run.within.project
     words = language_of(language) if language else project.language if project else language_of()
     sheet = Sheet(title, date, read_points(points) if points else (), selected, words)
