@@ -6,7 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib.figure
+import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 
 from replicate.errors import PaperDefinitionError, PrintedFileError
 from replicate.exhibits.read_off import LABEL, read_points, values_at, with_points
@@ -57,6 +59,47 @@ def test_values_are_those_nearest_to_the_point_within_the_error_of_x(tmp_path: P
     assert values["c"] == 2.0
 
 
+def test_a_curve_is_what_is_drawn(tmp_path: Path) -> None:
+    def scales(fig: matplotlib.figure.Figure) -> None:
+        left, right = fig.subplots(1, 2)
+        left.loglog([1.0, 100.0], [1.0, 1e-4], label="slope")
+        left.axhline(0.5, label="limit")
+        right.step([0.0, 1.0, 2.0], [0.0, 1.0, 3.0], where="post", label="stairs")
+
+    text = (
+        "a,slope,10,0.02,0,0.01\n"  # x^-2, straight on these axes
+        "b,slope,10,0.02,5,0.01\n"  # which passes 0.02 at x = 7.07
+        "c,limit,50,0.4,0,0.1\n"
+        "d,stairs,1.5,2.0,0,0.1\n"
+        "e,stairs,−0.5,2.0,0.6,0.1\n"  # a minus sign of typesetters
+        "f,stairs,1.5,0.9?,0,0.1\n"
+        "g,stairs,2.5,2.0,0.1,0.1\n"  # beyond the curve
+    )
+    values = values_at(scales, read_points(written(tmp_path, text)), (4.0, 3.0))["y"]
+    assert values["a"] == pytest.approx(10.0**-2)
+    assert values["b"] == pytest.approx(0.02)
+    assert values["c"] == pytest.approx(0.5)
+    assert (values["d"], values["e"], values["f"]) == (1.0, 0.0, 1.0)
+    assert pd.isna(values["g"])
+
+
+def test_several_curves_of_one_label_need_their_panel(tmp_path: Path) -> None:
+    def panels(fig: matplotlib.figure.Figure) -> None:
+        for number, axes in enumerate(fig.subplots(1, 2)):
+            axes.plot([0.0, 1.0], [0.0, 1.0 + number], label="line")
+            axes.set_title(f"({'ab'[number]})")
+
+    points = read_points(written(tmp_path, "a,line,0.5,1.1,0.1,0.1\n"))
+    for read in (lambda: values_at(panels, points, (4.0, 3.0)), lambda: with_points(panels, points)(Figure())):
+        with pytest.raises(
+            PaperDefinitionError, match=r"fig-1\.csv:2: point 'a': 2 curves are 'line'.*: '\(a\)', '\(b"
+        ):
+            read()
+    path = tmp_path / "fig-1.csv"
+    path.write_text(HEADER.replace("\n", ",panel\n") + "a,line,0.5,1.1,0,0.1,(b)\n", encoding="utf-8")
+    assert values_at(panels, read_points(path), (4.0, 3.0))["y"]["a"] == pytest.approx(1.0)
+
+
 def test_points_are_drawn_over_the_figure(tmp_path: Path) -> None:
     points = read_points(written(tmp_path, "a,line,0.5,1.1,0.1,0.1\n"))
     fig = matplotlib.figure.Figure()
@@ -66,7 +109,9 @@ def test_points_are_drawn_over_the_figure(tmp_path: Path) -> None:
 
 def test_a_curve_that_is_not_there(tmp_path: Path) -> None:
     points = read_points(written(tmp_path, "a,lime,0.5,1.1,0.1,0.1\n"))
-    with pytest.raises(PaperDefinitionError, match="point 'a': there is no curve 'lime'; curves: 'line', 'wall'"):
+    with pytest.raises(
+        PaperDefinitionError, match=r"fig-1\.csv:2: point 'a': there is no curve 'lime'; curves: 'line', 'wall'"
+    ):
         values_at(draw, points, (4.0, 3.0))
 
 
@@ -77,6 +122,9 @@ def test_a_curve_that_is_not_there(tmp_path: Path) -> None:
         ("a,line,0.5,1,0.1,-0.1\n", "fig-1.csv:2: column 'y_error': '-0.1' is not a number that is not negative"),
         ("a,line,1,1,0,0\na,line,1,1,0,0\n", "fig-1.csv:3: point 'a' appears twice"),
         ("", "fig-1.csv:1: holds no point"),
+        ("a,line,0,5,1,1,0,1,0,1\n", "fig-1.csv:2: has 10 cells, the header has 6; numbers have decimal points"),
+        ("a,line,0.5,1,0.1\n", "fig-1.csv:2: column 'y_error': '' is not a number"),
+        ('a,line,"0,5",1,0.1,0.1\n', "fig-1.csv:2: column 'x': '0,5' is not a number"),
     ],
 )
 def test_damaged_files(tmp_path: Path, text: str, message: str) -> None:

@@ -7,7 +7,8 @@
     p2,ZN,3.0,1.02,0.05,0.02
 
 ``curve`` is the label of the curve in our drawing. A column ``panel`` names the axes by their title where several have
-a curve of that label. Errors are those of reading the page: half the width within which the point surely lies.
+a curve of that label. A curve is what is drawn: straight between its points as the axes are scaled, or a staircase, or
+a line across the axes. Errors are those of reading the page: half the width within which the point surely lies.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
     from numpy.typing import NDArray
 
 COLUMN = "y"
@@ -52,7 +54,13 @@ class Point:
     x_error: float
     y_error: float
     panel: str = ""
+    file: str = ""
     line: int = 0
+
+    @property
+    def height(self) -> float:
+        """``y`` as a number."""
+        return float(parse_number(self.y) or 0)
 
 
 def read_points(path: Traversable | Path) -> list[Point]:
@@ -66,13 +74,21 @@ def read_points(path: Traversable | Path) -> list[Point]:
     name = display_name(path)
     text = read_text(path, name, PrintedFileError)
     reader = csv.DictReader(io.StringIO(text, newline=""))
-    columns = reader.fieldnames or ()
-    if not set(_NEEDED) <= set(columns) <= {*_NEEDED, "panel"}:
+    columns = [column.strip() for column in reader.fieldnames or ()]
+    reader.fieldnames = columns
+    if not set(_NEEDED) <= set(columns) <= {*_NEEDED, "panel"} or len(set(columns)) < len(columns):
         msg = f"{name}:1: the columns are {','.join(columns) or 'missing'}; expected: {','.join(_NEEDED)} (and panel)"
         raise PrintedFileError(msg)
     points: dict[str, Point] = {}
     for row in reader:
-        point = _point(f"{name}:{reader.line_num}", row, reader.line_num)
+        if None in row:
+            count = len(columns) + len(row[None])
+            msg = (
+                f"{name}:{reader.line_num}: has {count} cells, the header has {len(columns)}; "
+                "numbers have decimal points, and a text with a comma stands in quotes"
+            )
+            raise PrintedFileError(msg)
+        point = _point(name, reader.line_num, row)
         if point.id in points:
             msg = f"{name}:{reader.line_num}: point '{point.id}' appears twice"
             raise PrintedFileError(msg)
@@ -83,7 +99,9 @@ def read_points(path: Traversable | Path) -> list[Point]:
     return list(points.values())
 
 
-def _point(place: str, row: dict[str, str], line: int) -> Point:
+def _point(file: str, line: int, row: dict[str, str]) -> Point:
+    place = f"{file}:{line}"
+    numbers = {}
     cells = {column: (row.get(column) or "").strip() for column in (*_NEEDED, "panel")}
     for column in _NUMBERS:
         number = parse_number(cells[column])
@@ -91,19 +109,12 @@ def _point(place: str, row: dict[str, str], line: int) -> Point:
             needed = "a number that is not negative" if column.endswith("_error") else "a number"
             msg = f"{place}: column '{column}': '{cells[column]}' is not {needed}"
             raise PrintedFileError(msg)
+        numbers[column] = float(number)
     if not cells["point"]:
         msg = f"{place}: column 'point' is blank; expected: a name"
         raise PrintedFileError(msg)
-    return Point(
-        cells["point"],
-        cells["curve"],
-        float(cells["x"]),
-        cells["y"],
-        float(cells["x_error"]),
-        float(cells["y_error"]),
-        cells["panel"],
-        line,
-    )
+    of_reading = numbers["x_error"], numbers["y_error"]
+    return Point(cells["point"], cells["curve"], numbers["x"], cells["y"], *of_reading, cells["panel"], file, line)
 
 
 def with_points(draw: Draw, points: Sequence[Point]) -> Draw:
@@ -113,11 +124,11 @@ def with_points(draw: Draw, points: Sequence[Point]) -> Draw:
         draw(fig)
         labelled: set[object] = set()
         for point in points:
-            axes = _axes_of(fig, point)
+            axes, _ = _curve_of(fig, point)
             label = "_nolegend_" if axes in labelled else LABEL
             labelled.add(axes)
             axes.errorbar(
-                [point.x], [float(point.y)], yerr=point.y_error, xerr=point.x_error, fmt="ko", ms=3, lw=0.8, label=label
+                [point.x], [point.height], yerr=point.y_error, xerr=point.x_error, fmt="ko", ms=3, lw=0.8, label=label
             )
 
     return drawn
@@ -134,32 +145,39 @@ def values_at(draw: Draw, points: Sequence[Point], size: tuple[float, float]) ->
     Raises
     ------
     PaperDefinitionError
-        If there is no curve of a point's label.
+        If there is no curve of a point's label, or several.
     """
     import pandas as pd
     from matplotlib.figure import Figure
 
     fig = Figure(figsize=size)
     draw(fig)
-    rows = {point.id: _value_at(_axes_of(fig, point), point) for point in points}
+    rows = {point.id: _value_at(*_curve_of(fig, point), point) for point in points}
     return pd.DataFrame({COLUMN: rows}, index=list(rows))
 
 
-def _value_at(axes: Axes, point: Point) -> float | None:
+def _value_at(axes: Axes, line: Line2D, point: Point) -> float | None:
+    """Look for the value where the scales of the axes are linear: there a curve is straight between its points."""
+    import numpy as np
+    from matplotlib.cbook import STEP_LOOKUP_MAP
+
+    scale = axes.transScale
+    data = line.get_transform() == axes.transData
+    to_scale = scale if data else line.get_transform() - (axes.transLimits + axes.transAxes)
+    xy = np.asarray(to_scale.transform(np.asarray(line.get_xydata(), dtype=float)))
+    steps = np.column_stack(STEP_LOOKUP_MAP[line.get_drawstyle()](*xy.T))
+    (left, target), (right, _) = scale.transform(
+        [(point.x - point.x_error, point.height), (point.x + point.x_error, point.height)]
+    )
+    found = _nearest(steps, left, right, target)
+    return None if found is None else float(scale.inverted().transform((left, found))[1])
+
+
+def _nearest(xy: NDArray, left: float, right: float, target: float) -> float | None:  # type: ignore[type-arg]
+    """Return the height of a polyline, between two places of x, that is nearest to a target."""
     import numpy as np
 
-    line = next(line for line in axes.lines if line.get_label() == point.curve)
-    xy = np.asarray(line.get_xydata(), dtype=float)
-    return _nearest(xy, point)
-
-
-def _nearest(xy: NDArray, point: Point) -> float | None:  # type: ignore[type-arg]
-    """Return the height of the polyline that is nearest to the point within the reading error of x."""
-    import numpy as np
-
-    left, right = point.x - point.x_error, point.x + point.x_error
     found: float | None = None
-    target = float(point.y)
     for (x1, y1), (x2, y2) in pairwise(xy):
         if not np.isfinite([x1, y1, x2, y2]).all() or max(x1, x2) < left or min(x1, x2) > right:
             continue
@@ -174,12 +192,19 @@ def _nearest(xy: NDArray, point: Point) -> float | None:  # type: ignore[type-ar
     return found
 
 
-def _axes_of(fig: Figure, point: Point) -> Axes:
+def _curve_of(fig: Figure, point: Point) -> tuple[Axes, Line2D]:
+    """Return the one curve that has a point's label, and its axes."""
     panels = [axes for axes in fig.axes if not point.panel or axes.get_title() == point.panel]
-    for axes in panels:
-        if any(line.get_label() == point.curve for line in axes.lines):
-            return axes
+    lines = [(axes, line) for axes in panels for line in axes.lines if line.get_label() == point.curve]
+    if len(lines) == 1:
+        return lines[0]
+    place = f"{point.file}:{point.line}: point '{point.id}'"
+    if len(lines) > 1:
+        titles = ", ".join(dict.fromkeys(f"'{axes.get_title()}'" for axes, _ in lines))
+        msg = f"{place}: {len(lines)} curves are '{point.curve}'; name the panel in a column 'panel': {titles}"
+        raise PaperDefinitionError(msg)
     known = sorted({str(line.get_label()) for axes in panels for line in axes.lines} - {LABEL})
     curves = ", ".join(f"'{label}'" for label in known if not label.startswith("_")) or "none"
-    msg = f"point '{point.id}': there is no curve '{point.curve}'; curves: {curves}"
+    where = f" in the panel '{point.panel}'" if point.panel else ""
+    msg = f"{place}: there is no curve '{point.curve}'{where}; curves: {curves}"
     raise PaperDefinitionError(msg)
