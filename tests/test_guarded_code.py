@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -124,3 +125,44 @@ def test_what_a_function_yields_arrives_in_order_and_the_process_serves_again() 
         with pytest.raises(ReplicateError, match=r"^here\.py:\d+: it fails: it has ended its process$"):
             next(found)
         assert list(process.stream(numbers, 1)) == [0]
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        (PYTHON, r"lab_paper/exhibits\.py:\d+: chart 'line' did not end within 2 s; it was stopped in this line"),
+        (C, r"lab_paper/exhibits\.py:\d+: chart 'line' did not end within 2 s; it was stopped in this line"),
+        ("os._exit(0)", r"lab_paper/exhibits\.py:\d+: chart 'line' fails: it has ended its process"),
+    ],
+)
+def test_a_chart_is_stopped_and_named(
+    replicate: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, code: str, said: str
+) -> None:
+    monkeypatch.setattr("replicate.run.charts.CHART_TIMEOUT", 2.0)
+    with (folder / "exhibits.py").open("a", encoding="utf-8") as file:
+        file.write(
+            f"\n\n@paper.chart('line', 'A line', parameters={{'slope': 'm'}})\ndef line(fig, slope):\n    {code}\n"
+        )
+    status, _, errors = replicate("chart", "lab", "--slope", "2", "--out", "x.svg")
+    assert status == 2
+    assert re.fullmatch(rf"replicate: {said}\n", errors), errors
+    assert not Path("x.svg").exists()
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs a system with alarms")
+@pytest.mark.parametrize("code", [PYTHON, "import time; time.sleep(1e6)", REGEX])
+def test_a_paper_that_is_imported_for_ever_takes_no_other_with_it(
+    replicate: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, code: str
+) -> None:
+    monkeypatch.setattr("replicate.run.discovery.IMPORT_TIMEOUT", 5.0)
+    with (folder / "exhibits.py").open("a", encoding="utf-8") as file:
+        file.write(f"\n\n{code}\n")
+    replicate("init", "mine")
+    monkeypatch.chdir("mine")
+    replicate("new", "gauss")
+    status, _, errors = replicate("report", "gauss", "lab", "-j1")
+    assert status == 2
+    assert re.search(
+        r"entry point 'lab' cannot be loaded: lab_paper/exhibits\.py:\d+: it did not end within 1 s", errors
+    )
+    assert Path("build/report/gauss.html").is_file()

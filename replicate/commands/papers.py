@@ -78,7 +78,7 @@ def chart(
 
     Give them as --NAME VALUE; without any, the message lists those that the chart needs.
     """
-    from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
+    from replicate.run.charts import file_name, find_chart, guarded_chart, read_parameters
     from replicate.staging import signed, staged, write_signed
 
     within = library(papers_dir)
@@ -86,7 +86,7 @@ def chart(
     found = find_chart(owner, name)
     values = read_parameters(found, context.args)
     file = file_name(owner, found, values)
-    content = draw_chart(owner, found, values, out or Path(file))
+    content = guarded_chart(owner, found, values, out or Path(file))
     if out is None:
         folder = output_folder(within, None)
         with staged(folder, "charts", renews=lambda _: False) as fresh:  # earlier charts stay

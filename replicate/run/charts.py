@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from replicate.errors import OutputError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Chart, Figure, Paper
+from replicate.exhibits.file_names import display_name
+from replicate.run.guarded import GuardedProcess, Place, watched
+from replicate.run.limits import CHART_TIMEOUT
+from replicate.run.units import loaded
 
 FORMATS = (".svg", ".png")
 
@@ -90,6 +95,25 @@ def file_name(paper: Paper, chart: Chart, values: Mapping[str, float]) -> str:
     return f"{paper.id}-{chart.id}{settings}.svg"
 
 
+def guarded_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Path) -> bytes:
+    """Return what `draw_chart` does in a process of its own, which is ended if it takes too long.
+
+    Raises
+    ------
+    ReplicateError
+        As `draw_chart`, and if the chart does not end, or ends the process; with file and line.
+    """
+    with GuardedProcess(CHART_TIMEOUT) as process:
+        (content,) = process.stream(_draw, paper.package, chart.id, values, path)
+    drawn: bytes = content
+    return drawn
+
+
+def _draw(package: str, id: str, values: Mapping[str, float], path: Path) -> Iterator[bytes]:
+    paper = loaded(package)
+    yield draw_chart(paper, paper.charts[id], values, path)
+
+
 def draw_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Path) -> bytes:
     """Draw a chart and return the content of a file, SVG or PNG after its name.
 
@@ -105,10 +129,12 @@ def draw_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Pa
     if path.suffix.lower() not in FORMATS:
         msg = f"{path}: the name must end in {' or '.join(FORMATS)}"
         raise OutputError(msg)
+    figure = Figure(chart.id, "figure", chart.title, lambda fig: chart.draw(fig, **values), size=chart.size)
+    code = inspect.unwrap(chart.draw).__code__
+    place = Place(code.co_filename, display_name(Path(code.co_filename)), f"chart '{chart.id}'", code.co_firstlineno)
     try:
-        drawn = capture(
-            paper.id, Figure(chart.id, "figure", chart.title, lambda fig: chart.draw(fig, **values), size=chart.size)
-        )
+        with watched(place):
+            drawn = capture(paper.id, figure)
     except ValueError as error:
         msg = f"chart '{chart.id}': {error}"
         raise ReplicateError(msg) from error

@@ -12,6 +12,7 @@ import inspect
 import pkgutil
 import re
 import sys
+import sysconfig
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,13 +22,15 @@ from pathlib import Path
 from replicate.errors import TERMINATED, PaperDefinitionError, UnknownPaperError
 from replicate.exhibits import Exhibit, Paper
 from replicate.exhibits.file_names import display_name
-from replicate.run import exits
+from replicate.run import alarm, exits
+from replicate.run.alarm import OverdueError, alarmed
 from replicate.run.exits import only_ours
+from replicate.run.limits import IMPORT_TIMEOUT
 
 ENTRY_POINTS = "replicate.papers"
-_HERE = {__file__, exits.__file__}
+_HERE = {__file__, alarm.__file__, exits.__file__}
 _PAPER = str(inspect.getsourcefile(Paper))
-_IMPORTLIB = str(Path(importlib.__file__).parent)
+_STANDARD, _SITE = sysconfig.get_path("stdlib"), "site-packages"
 
 
 @dataclass(frozen=True)
@@ -104,7 +107,7 @@ def importing(what: str) -> Iterator[None]:
     The exit status is ours alone: a module that exits while it is imported must not end a run as if all were well.
     """
     try:
-        with only_ours():
+        with only_ours(), alarmed(IMPORT_TIMEOUT):
             yield
     except KeyboardInterrupt:
         raise
@@ -124,14 +127,16 @@ def importing(what: str) -> Iterator[None]:
             file, line = _raised_at(frames, error) or (what, 0)
             text = " ".join(str(error).split())
             ends = f"it tries to end the program, with status {text or 0}"
-            reason = ends if isinstance(error, SystemExit) else f"{type(error).__name__}: {text}"
+            said = text if isinstance(error, OverdueError) else f"{type(error).__name__}: {text}"
+            reason = ends if isinstance(error, SystemExit) else said
         msg = f"{what} cannot be loaded: {display_name(Path(file))}:{line}: {reason}"
         raise PaperDefinitionError(msg) from error
 
 
 def _raised_at(frames: list[traceback.FrameSummary], error: BaseException) -> tuple[str, int] | None:
     """Return file and line where an import failed: for a listed module that does not exist, the line that lists it."""
-    own = [frame for frame in frames if not frame.filename.startswith(("<frozen", _IMPORTLIB))]
+    outside = [frame for frame in frames if not frame.filename.startswith("<") and not _is_standard(frame.filename)]
+    own = [frame for frame in outside if _SITE not in frame.filename] or outside
     place = (own[-1].filename, own[-1].lineno or 0) if own else None
     if isinstance(error, ModuleNotFoundError) and error.name and (place is None or place[0] == _PAPER):
         package, _, module = error.name.rpartition(".")
@@ -142,6 +147,10 @@ def _raised_at(frames: list[traceback.FrameSummary], error: BaseException) -> tu
             listed = (number for number, line in enumerate(lines, 1) if quoted.search(line))
             return file, next(listed, 1)
     return place
+
+
+def _is_standard(file: str) -> bool:
+    return file.startswith(_STANDARD) and _SITE not in file
 
 
 def _defined_at(error: PaperDefinitionError) -> str:
