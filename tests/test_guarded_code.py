@@ -154,7 +154,7 @@ def test_a_chart_is_stopped_and_named(
 def test_a_paper_that_is_imported_for_ever_takes_no_other_with_it(
     replicate: Run, folder: Path, monkeypatch: pytest.MonkeyPatch, code: str
 ) -> None:
-    monkeypatch.setattr("replicate.run.discovery.IMPORT_TIMEOUT", 5.0)
+    monkeypatch.setattr("replicate.run.discovery.IMPORT_TIMEOUT", 3.0)
     with (folder / "exhibits.py").open("a", encoding="utf-8") as file:
         file.write(f"\n\n{code}\n")
     replicate("init", "mine")
@@ -163,6 +163,6 @@ def test_a_paper_that_is_imported_for_ever_takes_no_other_with_it(
     status, _, errors = replicate("report", "gauss", "lab", "-j1")
     assert status == 2
     assert re.search(
-        r"entry point 'lab' cannot be loaded: lab_paper/exhibits\.py:\d+: it did not end within 1 s", errors
+        r"entry point 'lab' cannot be loaded: lab_paper/exhibits\.py:\d+: it did not end within 3 s", errors
     )
     assert Path("build/report/gauss.html").is_file()
