@@ -5,7 +5,7 @@ import { dot, NODES, nodes } from "./chebyshev.js";
 import { prepare } from "./loop.js";
 import { closedRate, pieceMap, spaceOf } from "./response.js";
 
-// A loop whose control signal is limited, in small steps, between which signals are lines. Nothing where it is too fast.
+// A loop with limits, in small steps, between which signals are lines. Nothing where it is too fast.
 export function limited(plant, controller, limit, antiWindup, end, steps = CONSTANTS.atRest.steps) {
   const { k, ki, kd, b, c, filter, prefilter } = controller, { order: n, deadTime } = plant, { A, B, C, D } = spaceOf(plant), delay = deadTime ? Math.ceil(steps * deadTime / end) : 0;
   const dt = deadTime ? deadTime / delay : end / Math.max(steps, Math.ceil(5 * end * closedRate(plant, controller))), count = Math.ceil(end / dt);

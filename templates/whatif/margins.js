@@ -1,4 +1,4 @@
-// Sensitivity peak, gain, phase and delay margin of a stable loop.
+// Ms, gain, phase and delay margin of a stable loop, with their frequencies.
 
 import { CONSTANTS } from "./data.js";
 import { root } from "./chebyshev.js";
@@ -9,7 +9,8 @@ import { characteristic, loopAt, quietFrom } from "./loop.js";
 // |L| only falls.
 export function grid(plant, controller, floor) {
   const { corners } = characteristic(plant, controller), turn = 1 / plant.deadTime, w = [];
-  const all = [...sizes(corners), Math.abs(controller.ki / controller.k), turn].filter((x) => x > 0 && x < Infinity), falls = Math.max(...all) * 4;
+  const { k, ki } = controller, slow = [ki / k, ki * plant.num.at(-1) / plant.den.at(-1)].map(Math.abs);
+  const all = [...sizes(corners), ...slow, turn].filter((x) => x > 0 && x < Infinity), falls = Math.max(...all) * 4;
   const quiet = quietFrom((x) => Math.hypot(...loopAt(plant, controller, x)) > floor, falls);
   const high = plant.deadTime ? Math.min(quiet + 2.5 * Math.PI * turn, CONSTANTS.mostTurns * turn) : Math.max(quiet, falls);
   for (let x = Math.min(...all) / 1e3; x < high; x += Math.min(x * 0.03, 0.12 * turn)) w.push(x);
@@ -21,9 +22,8 @@ export function grid(plant, controller, floor) {
   return { w: Float64Array.from(w.filter((x) => x > 0)).sort(), falls };
 }
 
-const SHIFT = 1e-6; // about a peak; its value stays right to all digits
+const SHIFT = 1e-6; // about a peak
 
-// Ms, gain, phase and delay margin, with their frequencies; of a stable loop.
 export function margins(plant, controller) {
   const { w, falls } = grid(plant, controller, 0.05), at = (x) => loopAt(plant, controller, x);
   const size = ([re, im]) => 1 / Math.hypot(1 + re, im), least = { gain: [Infinity], phase: [Infinity], delay: [Infinity] };

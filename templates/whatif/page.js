@@ -16,13 +16,13 @@ import { copy, curves, download, picture, python } from "./takeaway.js";
 const GAINS = ["k", "ki", "kd", "b", "filter"];
 const MOST_GAIN = 1e9;
 
-// Later also `base`, the controller whose gains the slider has multiplied by `factor`; `row` is the printed row chosen last.
+// Also `base`, the controller whose gains the slider multiplied by `factor`; `row` is the printed row chosen last.
 const state = { row: -1, plane: "ki", pins: [] };
 const options = { mismatch: 0, limit: 0, antiWindup: true };
 const OPTIONS = [["mismatch", "mismatch", "mismatch-size"], ["limit", "saturation", "limit"]]; // which switch, which number
 
-// What changes is drawn at most once a frame: while it moves as far as a frame has time for, at rest with the gain plane
-// and all digits; then come the address and what a screen reader says.
+// What changes is drawn once a frame: while it moves as far as a frame has time for, at rest with the gain plane and all
+// digits; then come the address and what a screen reader says.
 const REST = 250, SPEECH = 600; // ms after a frame
 let frame = 0, rest = 0, speech = 0;
 
@@ -73,7 +73,7 @@ function writeAddress() {
 
 // Take what a field says; nonsense leaves everything as it was, and the field says why.
 function tell(id, reason) {
-  if (reason || $(id).ariaInvalid) say($(id).getAttribute("aria-describedby"), reason);
+  if (reason || $(id).ariaInvalid) say($(id).getAttribute("aria-describedby"), reason.slice(0, 200));
   $(id).ariaInvalid = reason ? "true" : null;
 }
 const clear = (id) => tell(id, "");
@@ -97,7 +97,7 @@ function checked(controller, plant = state.plant) {
   if (controller.filter < 0) refuse("the derivative filter must not be negative");
   const jumps = controller.kd && !controller.filter && ((plant.deadTime && plant.relativeDegree < 2) || (controller.c && !controller.prefilter));
   if (jumps) controller = { ...controller, filter: Math.abs(controller.kd / (controller.k || 1)) / 10 };
-  if (Number.isNaN(unstablePoles(plant, controller))) refuse("so high a gain is not drawn here");
+  if (Number.isNaN(unstablePoles(plant, controller))) refuse("so high a gain is not drawn here, nor numbers so far apart");
   say("note", jumps ? "The derivative part would jump without limit: a filter of kd/(10 k) is added." : "");
   return controller;
 }
@@ -146,7 +146,7 @@ on("plant", "change", () => take("plant", () => usePlant($("plant").value)));
 on("controller", "change", () => take("controller", () => useController(parseController($("controller").value))));
 
 function number(id) {
-  const { value, min, max, dataset } = $(id), text = value.trim().replace("−", "-"), name = dataset.name || id;
+  const { value, min, max, dataset: { name = id } } = $(id), text = value.trim().replace("−", "-");
   if (text === "" || !Number.isFinite(Number(text))) refuse(`${name}: '${text}' is not a number${text.includes(",") ? "; write a point" : ""}`);
   if (Number(text) < (min || -Infinity) || Number(text) > (max || Infinity)) refuse(`${name}: ${text} is not possible; allowed: ${min} to ${max}`);
   return Number(text);

@@ -16,6 +16,7 @@ export const divide = ([a, b], [c, d]) => { const scale = c * c + d * d; return 
 export function roots(polynomial, fraction = 1e-15) {
   const p = trimmed(polynomial), found = [];
   while (p.length > 1 && p.at(-1) === 0) { p.pop(); found.push([0, 0]); }
+  if (p.length === 2) return [...found, [-p[1] / p[0], 0]];
   const n = p.length - 1, radius = Math.pow(Math.abs(p[n] / p[0]), 1 / n);
   const z = Array.from({ length: n }, (_, i) => [radius * Math.cos(2 * Math.PI * i / n + 0.4), radius * Math.sin(2 * Math.PI * i / n + 0.4)]);
   for (let round = 0, moved = 1; round < 500 && moved > fraction; round++) {
