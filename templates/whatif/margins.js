@@ -26,14 +26,14 @@ const SHIFT = 1e-6; // about a peak
 
 export function margins(plant, controller) {
   const { w, falls } = grid(plant, controller, 0.05), at = (x) => loopAt(plant, controller, x);
-  const size = ([re, im]) => 1 / Math.hypot(1 + re, im), least = { gain: [Infinity], phase: [Infinity], delay: [Infinity] };
+  const { k, kd, filter } = controller, direct = plant.relativeDegree ? 0 : Math.abs(plant.num[0] * (kd ? k + kd / filter : k)); // |L| far out
+  const size = ([re, im]) => 1 / Math.hypot(1 + re, im), least = { gain: [direct ? 1 / direct : Infinity], phase: [Infinity], delay: [Infinity] };
   const found = (name, value, x) => { if (value < least[name][0]) least[name] = [value, x]; };
-  const direct = plant.relativeDegree ? 0 : Math.abs(plant.num[0] * controller.k); // |L| far out
-  const atOnce = controller.kd && !controller.filter && plant.relativeDegree < 2; // |S| does not tend to one
+  const atOnce = kd && !filter && plant.relativeDegree < 2; // |S| does not tend to one
   let ms = atOnce ? 0 : 1 / (1 - direct), msAt = NaN;
   const peak = (value, x) => { if (value > ms) [ms, msAt] = [value, x]; };
   if (!controller.ki) {
-    const still = controller.k * plant.num.at(-1) / plant.den.at(-1); // L(0)
+    const still = k * plant.num.at(-1) / plant.den.at(-1); // L(0)
     peak(1 / Math.abs(1 + still), 0);
     if (still < 0 && still > -1) found("gain", -1 / still, 0);
   }
@@ -41,7 +41,7 @@ export function margins(plant, controller) {
     next = i + 1 < w.length ? at(w[i + 1]) : here;
     const [re, im] = here, [nextRe, nextIm] = next, loud = Math.max(Math.hypot(re, im), direct);
     if (w[i] > falls && loud < 1 && 1 / (1 - loud) <= ms && least.gain[0] <= 1 / loud) break; // what follows is less
-    if (before && size(here) >= size(before) && size(here) >= size(next) && size(here) > 0.9 * ms) {
+    if (before && size(here) >= size(before) && size(here) >= size(next)) {
       const x = root((y) => size(at(y * (1 + SHIFT))) - size(at(y * (1 - SHIFT))), w[i - 1], w[i + 1] || w[i]);
       for (const y of [w[i], x]) peak(size(at(y)), y);
     }
