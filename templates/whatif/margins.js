@@ -26,7 +26,7 @@ const SHIFT = 1e-6; // about a peak
 
 export function margins(plant, controller) {
   const { w, falls } = grid(plant, controller, 0.05), at = (x) => loopAt(plant, controller, x);
-  const { k, kd, filter } = controller, direct = plant.relativeDegree ? 0 : Math.abs(plant.num[0] * (kd ? k + kd / filter : k)); // |L| far out
+  const { k, kd, filter } = controller, direct = plant.relativeDegree ? 0 : Math.abs(plant.num[0] * (kd ? k + kd / filter : k));
   const size = ([re, im]) => 1 / Math.hypot(1 + re, im), least = { gain: [direct ? 1 / direct : Infinity], phase: [Infinity], delay: [Infinity] };
   const found = (name, value, x) => { if (value < least[name][0]) least[name] = [value, x]; };
   const atOnce = kd && !filter && plant.relativeDegree < 2; // |S| does not tend to one
