@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 
 from replicate.exhibits import Paper
 from replicate.whatif import NAME, Row, whatif_page, write_whatif
+from replicate.whatif.reference import optimal
 
 Run = Callable[..., tuple[int, str, str]]
 PLANT = ("--plant", "e^{-s}/(s+1)")
@@ -72,3 +74,11 @@ def test_the_page_is_the_same_each_time() -> None:
     page = whatif_page(rows, "What if?")
     assert page == whatif_page(rows, "What if?")
     assert "<two>" not in page
+
+
+def test_a_plant_of_higher_order_has_the_rule_of_its_stability_limit() -> None:
+    marked = {rule["name"]: rule for rule in optimal("1/(s+1)^4")}
+    k, ki = 0.45 * 4.0, 0.45 * 4.0 * 1.2 / (2.0 * math.pi)  # Ku = 4 and Tu = 2 pi: the phase of (1 + i)^4 is pi
+    assert [marked["ZN"]["k"], marked["ZN"]["ki"]] == pytest.approx([k, ki])
+    assert list(marked) == ["Ms 1.4", "Ms 2.0", "ZN"]
+    assert [rule["name"] for rule in optimal("e^{-s}/(s+1)")] == ["Ms 1.4", "Ms 2.0"]  # the page knows ZN itself

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from replicate.loops import Loop, design_pi
+from replicate.loops import PI, PID, Loop, Plant, design_pi
 from replicate.loops.errors import LoopError
 from replicate.loops.notation import parse_controller, parse_plant
+from replicate.loops.tune import ziegler_nichols
 
 #: The loop with which the page tests itself: second order, with dead time, derivative filter and set-point weight.
 REFERENCE = ("e^{-0.7s}/((s+1)(0.5s+1))", "k=1.1,ki=0.9,kd=0.3,derivative_filter=0.05,b=0.8")
@@ -44,18 +48,27 @@ def reference() -> dict[str, Any]:
 
 
 def optimal(plant: str) -> list[dict[str, Any]]:
-    """Return the PI controllers of largest integral gain for two sensitivity peaks, for the gain plane of a plant.
+    """Return the PI controllers that only Python computes for the gain plane of a plant.
+
+    Those of largest integral gain for two sensitivity peaks, and, where the step response method of Ziegler and Nichols
+    does not apply, the one of their other method.
 
     Parameters
     ----------
     plant
-        In the notation of `replicate.loops`. A peak that no controller reaches is left out.
+        In the notation of `replicate.loops`. A controller that does not exist is left out.
     """
+    process = parse_plant(plant)
+    designs: dict[str, Callable[[], PI | PID]] = {f"Ms {ms}": partial(_largest, process, ms) for ms in DESIGNED}
+    if process.den.size > 2 or process.num.size > 1 or not process.dead_time:
+        designs["ZN"] = partial(ziegler_nichols, process, method="ultimate")
     found = []
-    for ms in DESIGNED:
-        try:
-            controller = design_pi(parse_plant(plant), ms=ms).controller
-        except (LoopError, ValueError):  # no such controller
-            continue
-        found.append({"name": f"Ms {ms}", "k": controller.k, "ki": controller.ki, "kd": controller.kd})
+    for name, design in designs.items():
+        with contextlib.suppress(LoopError, ValueError):  # no such controller
+            controller = design()
+            found.append({"name": name, "k": controller.k, "ki": controller.ki, "kd": controller.kd})
     return found
+
+
+def _largest(plant: Plant, ms: float) -> PI:
+    return design_pi(plant, ms=ms).controller
