@@ -94,6 +94,26 @@ def test_the_kernel_is_as_exact_as_python(page: Any) -> None:
     assert stable > LOOPS / 3
 
 
+@pytest.mark.parametrize(
+    ("plant", "controller"),
+    [
+        ("0.666e^{-4.46s}", "k=1.476,ki=0.0396"),  # a peak for each turn of the dead time, the largest not far out
+        ("1.77e^{-4s}", "k=0.0323,ki=0.00823,kd=0.01875,derivative_filter=0.06"),  # the largest infinitely far out
+        ("1/(s+1)^15", "k=0,ki=0.0005"),  # crosses one far below all that is fast or slow in it
+        ("9/(s^3+s^2+9s+9)", "k=-0.3,ki=0.2"),  # poles on the imaginary axis
+    ],
+)
+def test_margins_of_loops_that_chance_seldom_brings(page: Any, plant: str, controller: str) -> None:
+    found = page.evaluate(
+        "([plant, given]) => whatif.measure(whatif.prepare(whatif.parsePlant(plant)), whatif.parseController(given))",
+        [plant, controller],
+    )
+    loop = Loop(parse_plant(plant), parse_controller(controller))
+    margins = loop.margins()
+    expected = [float(loop.sensitivity_peak()), margins.gain, margins.phase, margins.delay]
+    assert [found[name] for name in ("ms", "gain", "phase", "delay")] == pytest.approx(expected, rel=1e-7)
+
+
 def metrics_of(loop: Loop) -> dict[str, float]:
     """Return what Python reads from the responses; nothing where there is no such number."""
     step, load, control = loop.step(), loop.load_step(), loop.respond().control
