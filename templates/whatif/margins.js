@@ -17,7 +17,7 @@ export function grid(plant, controller, floor) {
   w.push(high);
   for (const [re, im] of corners) {
     const width = Math.max(Math.abs(re), 1e-4 * im), gap = (j) => Math.sinh(j / 20) * width;
-    if (im > 2 * width) for (let j = 0.5; gap(j) < 0.3 * im; j++) w.push(im - gap(j), im + gap(j)); // never at a pole
+    if (im > 2 * width) for (let j = 0.5; gap(j) < 0.3 * im; j++) w.push(im - gap(j), im + gap(j));
   }
   return { w: Float64Array.from(w.filter((x) => x > 0)).sort(), falls };
 }

@@ -73,7 +73,7 @@ function writeAddress() {
 
 // Take what a field says; nonsense leaves everything as it was, and the field says why.
 function tell(id, reason) {
-  if (reason || $(id).ariaInvalid) say($(id).getAttribute("aria-describedby"), reason.slice(0, 200));
+  if (reason || $(id).ariaInvalid) say($(id).getAttribute("aria-describedby"), reason.replace(/('[^']{40})[^']*/g, "$1…"));
   $(id).ariaInvalid = reason ? "true" : null;
 }
 const clear = (id) => tell(id, "");
