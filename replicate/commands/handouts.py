@@ -11,6 +11,7 @@ import typer
 from replicate.commands.computing import Computing, computing
 from replicate.commands.options import Papers, exit_with
 from replicate.errors import ReplicateError
+from replicate.plain_text import steering
 from replicate.terminal.streams import echo
 
 
@@ -93,6 +94,7 @@ def handout(
     if again and selected != again.select:
         msg = "--select differs from the form, which says what is on its sheet; leave it out"
         raise ReplicateError(msg)
+    _check_texts({"--seed": seed, "--title": title, "--date": date})
     if roster_id and not roster:
         msg = f"--roster-id is '{roster_id}', a column of a roster, and there is none; give --roster FILE"
         raise ReplicateError(msg)
@@ -145,6 +147,14 @@ def handout(
     for path in dict.fromkeys(path.relative_to(fresh) for path in written):
         echo(f"handout: {run.folder / path}")
     exit_with(run.within, outcome)
+
+
+def _check_texts(given: dict[str, str]) -> None:
+    """Refuse texts that would steer what shows them."""
+    for option, text in given.items():
+        if found := steering(text):
+            msg = f"{option} holds the character {found}, which sheets must not get; leave it out"
+            raise ReplicateError(msg)
 
 
 def _check_class_options(kinds: list[str], papers: int, one_in_a_bank: bool, given: list[str] | None) -> None:
