@@ -2,7 +2,8 @@
 
 A search that finds no such inputs may have missed them. Where a reading can rule out, with certainty, that a quantity
 takes a value of some interval anywhere in a part of the box, the search becomes a proof: a part is excluded if one of
-the quantities that ought to hold together cannot; any other part is halved along its longest side.
+the quantities that ought to hold together cannot; any other part is halved along its longest side. A part that is still
+open after several halvings ends the attempt: it says soon that there is no proof.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ Rule = Callable[[str, Box, Ends], bool]
 """From a case, a box of its inputs and an interval: whether certainly no inputs of the box give such a value."""
 
 _MOST_PARTS = 64
+_MOST_HALVINGS = 8  # of all sides together
 
 
 def excluded(rules: Mapping[str, Rule], case: str, box: Box, targets: Mapping[str, Ends]) -> bool:
@@ -41,17 +43,17 @@ def excluded(rules: Mapping[str, Rule], case: str, box: Box, targets: Mapping[st
     True
     """
     whole = {name: high - low for name, (low, high) in box.items()}
-    waiting: list[dict[str, Ends]] = [dict(box)]
+    waiting: list[tuple[dict[str, Ends], int]] = [(dict(box), 0)]
     for _ in range(_MOST_PARTS):
         if not waiting:
             return True
-        part = waiting.pop()
+        part, halvings = waiting.pop()
         if any(rule(case, part, targets[quantity]) for quantity, rule in rules.items() if quantity in targets):
             continue
         longest = max(part, key=lambda name: (part[name][1] - part[name][0]) / whole[name] if whole[name] else 0.0)
         low, high = part[longest]
         middle = (low + high) / 2
-        if not low < middle < high:
+        if halvings == _MOST_HALVINGS or not low < middle < high:
             return False
-        waiting += [part | {longest: (low, middle)}, part | {longest: (middle, high)}]
+        waiting += [(part | {longest: half}, halvings + 1) for half in ((low, middle), (middle, high))]
     return False

@@ -1,4 +1,4 @@
-r"""What is certain of all loops whose gains lie in a box: bounds on error integrals, frequencies that are no peak.
+r"""What is certain of all loops whose gains lie in a box: bounds on error integrals and peaks, where no peak is.
 
 A controller's transfer function is linear in k, ki, kd, and so is the loop transfer function. Two statements hold for
 every point of a box of gains, with no search.
@@ -20,7 +20,8 @@ Where the lag is an interval as well, F becomes :math:`F (1 + E)` with
 
 *The peak of the sensitivity.* It is where :math:`|1 + L|^2` is smallest, so that the derivative
 :math:`2 \operatorname{Re} \overline{(1 + L)} L'` vanishes. Where interval arithmetic shows that it does not, for all
-gains of the box and all frequencies of an interval, the peak is not there.
+gains of the box and all frequencies of an interval, the peak is not there. The complementary sensitivity has its peak
+where :math:`|1 + 1/L|` is smallest.
 
 References
 ----------
@@ -170,15 +171,51 @@ def sensitivity_at_least(plant: Plant, box: GainBox, frequency: float) -> float:
     return (1.0 - _OWN_ERROR) / farthest
 
 
-def no_peak_between(plant: Plant, box: GainBox, low: float, high: float) -> bool:
+def complementary_at_least(plant: Plant, box: GainBox, frequency: float) -> float:
+    """Return a number below which the peak of the complementary sensitivity is for no controller of a box.
+
+    Parameters
+    ----------
+    frequency
+        Any; best one near the peaks, in radians per unit of time. At rest T is 1 under integral action.
+
+    Raises
+    ------
+    ValueError
+        If the box has a filter.
+
+    Examples
+    --------
+    >>> plant = Plant([1.0], [1.0, 3.0, 3.0, 1.0])
+    >>> box = GainBox(Interval(0.861, 0.863), Interval(0.46, 0.462))
+    >>> peak = Loop(plant, PID(0.862, 0.461)).complementary_peak()
+    >>> 0.99 * peak.value < complementary_at_least(plant, box, peak.frequency) <= peak.value
+    True
+    """
+    if not frequency:
+        return 1.0 if box.ki.low > 0.0 else 0.0
+    w = intervals.exactly(frequency)
+    square = box.k.square() + (box.kd * w - box.ki / w).square()  # of |C|
+    return (
+        float(np.sqrt(square.low)) * abs(complex(plant(1j * frequency))) * sensitivity_at_least(plant, box, frequency)
+    )
+
+
+def no_peak_between(
+    plant: Plant, box: GainBox, low: float, high: float, *, complementary: bool = False, parts: int = _PARTS
+) -> bool:
     """Say whether, for all controllers of a box, the sensitivity certainly has no peak from `low` to `high`.
 
     Parameters
     ----------
     plant
-        Rational, without dead time.
+        Rational times a dead time.
     low, high
         Frequencies, in radians per unit of time.
+    complementary
+        Whether the complementary sensitivity is meant.
+    parts
+        Of the interval of frequencies, each of which is judged by itself.
 
     Raises
     ------
@@ -193,30 +230,32 @@ def no_peak_between(plant: Plant, box: GainBox, low: float, high: float) -> bool
     >>> no_peak_between(plant, box, 1.02 * w0, 1.03 * w0), no_peak_between(plant, box, 0.99 * w0, 1.01 * w0)
     (True, False)
     """
-    if not plant.is_rational or plant.dead_time:
-        msg = "the plant is not rational; allowed: numerator and denominator, no dead time"
+    if not plant.is_rational:
+        msg = "the plant is not rational; allowed: numerator, denominator and a dead time"
         raise ValueError(msg)
-    ends = np.linspace(low, high, _PARTS + 1)
-    return all(_keeps_sign(plant, box, Interval(float(a), float(b))) for a, b in pairwise(ends))
+    ends = np.linspace(low, high, parts + 1)
+    return all(_keeps_sign(plant, box, Interval(float(a), float(b)), complementary) for a, b in pairwise(ends))
 
 
-def _keeps_sign(plant: Plant, box: GainBox, w: Interval) -> bool:
-    """Say whether the derivative of ``|1 + L|^2`` certainly does not vanish in an interval of frequencies.
+def _keeps_sign(plant: Plant, box: GainBox, w: Interval, complementary: bool) -> bool:
+    """Say whether the derivative of ``|1 + L|^2`` (of ``|1 + 1/L|^2``) certainly does not vanish in an interval.
 
-    With L = n/d it is -2 Im(a conj(b)) / |d|^4, a = n' d - n d', b = (n + d) d. The imaginary part is bounded by its
-    value at the middle of the box and its derivatives with respect to the gains and the lag, which loses less than
-    intervals in their places do.
+    With L = n/d it is -2 Im(a conj(b)) / |d|^4, a = n' d - n d', b = (n + d) d; for 1/L n and d are exchanged. The
+    imaginary part is bounded by its value at the middle of the box and its derivatives with respect to the gains and
+    the lag, which loses less than intervals in their places do.
     """
-    s = intervals.on_the_axis(w)
     num, den = _exact(plant.num), [*_exact(plant.den), NOTHING]
     gains = (box.kd, box.k, box.ki)
-    middle = _Rational.of(
+
+    def rational(n: Sequence[Interval], d: Sequence[Interval]) -> _Rational:
+        return _Rational.of(n, d, w, plant.dead_time, exchanged=complementary)
+
+    middle = rational(
         intervals.product(num, [intervals.exactly(gain.middle) for gain in gains]),
         _lagged(den, intervals.exactly(box.lag.middle), box.order),
-        s,
     )
     found = (middle.a * middle.b.conjugate()).imag
-    whole = _Rational.of(intervals.product(num, gains), _lagged(den, box.lag, box.order), s)
+    whole = rational(intervals.product(num, gains), _lagged(den, box.lag, box.order))
     changes = [
         (gain, intervals.product(num, [_ONE if place == other else NOTHING for other in range(3)]), [NOTHING])
         for place, gain in enumerate(gains)
@@ -225,7 +264,7 @@ def _keeps_sign(plant: Plant, box: GainBox, w: Interval) -> bool:
         changes.append((box.lag, [NOTHING], intervals.product(_lagged(den, box.lag, box.order - 1), [_ONE, NOTHING])))
     for side, n, d in changes:
         times = Interval(-side.reach, side.reach) * intervals.exactly(float(box.order) if side is box.lag else 1.0)
-        found = found + whole.slope(_Rational.of(n, d, s)).imag * times
+        found = found + whole.slope(rational(n, d)).imag * times
     return not found.holds(0.0)
 
 
@@ -239,9 +278,19 @@ class _Rational:
     dd: ComplexInterval
 
     @classmethod
-    def of(cls, num: Sequence[Interval], den: Sequence[Interval], s: ComplexInterval) -> _Rational:
-        values = [intervals.polynomial(part, s) for part in (num, den)]
-        return cls(*values, *(intervals.polynomial(intervals.derivative(part), s) for part in (num, den)))
+    def of(
+        cls, num: Sequence[Interval], den: Sequence[Interval], w: Interval, dead_time: float, *, exchanged: bool
+    ) -> _Rational:
+        s = intervals.on_the_axis(w)
+        (n, d), (dn, dd) = (
+            [intervals.polynomial(part, s) for part in parts]
+            for parts in ((num, den), (intervals.derivative(num), intervals.derivative(den)))
+        )
+        if dead_time:
+            length, angle = intervals.exactly(dead_time), w * intervals.exactly(dead_time)
+            turn = ComplexInterval(intervals.cosine(angle), -intervals.sine(angle))
+            n, dn = n * turn, (dn - n * ComplexInterval(length, NOTHING)) * turn
+        return cls(d, n, dd, dn) if exchanged else cls(n, d, dn, dd)
 
     @property
     def a(self) -> ComplexInterval:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, nextafter
+from math import cos, exp, inf, nextafter, sin
+
+_LIBRARY_ERROR = 1e-15  # more than that of a sine or cosine of the mathematical library
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,12 @@ class Interval:
         """Return the negative."""
         return Interval(-self.high, -self.low)
 
+    def square(self) -> Interval:
+        """Return the square, which is never negative."""
+        low, high = sorted((abs(self.low), abs(self.high)))
+        found = _outward(0.0 if self.holds(0.0) else low * low, high * high)
+        return Interval(max(found.low, 0.0), found.high)
+
 
 @dataclass(frozen=True)
 class ComplexInterval:
@@ -97,6 +105,26 @@ class ComplexInterval:
 def exactly(number: float) -> Interval:
     """Return the interval of one number."""
     return Interval(number, number)
+
+
+def exponential(number: Interval) -> Interval:
+    """Return an interval that holds e to the power of all numbers."""
+    return Interval(exp(number.low), exp(number.high)) * Interval(1.0 - _LIBRARY_ERROR, 1.0 + _LIBRARY_ERROR)
+
+
+def cosine(angle: Interval) -> Interval:
+    """Return an interval that holds the cosine of all angles; its slope is at most one."""
+    return _around(cos(angle.middle), angle.reach)
+
+
+def sine(angle: Interval) -> Interval:
+    """Return an interval that holds the sine of all angles; its slope is at most one."""
+    return _around(sin(angle.middle), angle.reach)
+
+
+def _around(value: float, reach: float) -> Interval:
+    away = reach + _LIBRARY_ERROR
+    return Interval(max(value - away, -1.0), min(value + away, 1.0))
 
 
 def on_the_axis(w: Interval) -> ComplexInterval:

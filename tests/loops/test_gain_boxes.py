@@ -136,6 +136,8 @@ def test_no_peak_of_a_box_is_lower_than_the_bound() -> None:
     assert bound <= min(peaks) < 1.05 * bound
 
 
-def test_a_plant_with_dead_time_is_refused() -> None:
+def test_a_plant_that_is_a_function_is_refused() -> None:
     with pytest.raises(ValueError, match="not rational"):
-        no_peak_between(Plant([1.0], [1.0, 1.0], dead_time=1.0), box((0.5, 0.3, 0.0), (0.0, 0.0, 0.0)), 1.0, 1.1)
+        no_peak_between(
+            Plant.from_function(lambda s: np.exp(-np.sqrt(s))), box((0.5, 0.3, 0.0), (0.0, 0.0, 0.0)), 1.0, 1.1
+        )

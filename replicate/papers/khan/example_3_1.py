@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.exhibits.exclusion import Box, Ends, Rule
 from replicate.loops import PI, Loop
+from replicate.loops.gain_boxes import NOTHING, GainBox
+from replicate.loops.intervals import Interval, exactly
+from replicate.loops.response_boxes import ResponseBox, setpoint_errors
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import overshoot_fit
 from replicate.papers.khan.processes import plant
@@ -65,12 +69,37 @@ def example_3_1_formulas() -> pd.DataFrame:
     return _example_3_1(overshoot_fit(0.0, GAIN * H))
 
 
+def _errors(box: Box, gain: str) -> ResponseBox | None:
+    return setpoint_errors(plant(0.0, H), GainBox(Interval(*box[gain]) / exactly(TAU), NOTHING))
+
+
+def _settles_otherwise(gain: str) -> Rule:
+    def rule(_: str, box: Box, ends: Ends) -> bool:
+        errors = _errors(box, gain)
+        return errors is not None and errors.never_settles_between(*ends, 0.02)
+
+    return rule
+
+
+def _rises_otherwise(gain: str) -> Rule:
+    def rule(_: str, box: Box, ends: Ends) -> bool:
+        errors = _errors(box, gain)
+        return errors is not None and not (errors.first_below(0.1) - errors.first_below(0.9)).meets(*ends)
+
+    return rule
+
+
 @example_3_1.reading(
     "printed-gain",
     "for the printed gains",
     "What $K$ rounds to 0.28 is open, and so are $L_P$ and the exact overshoot, and the responses for all gains that "
     "round to the printed $L_{PB}$ and $L_{PH}$.",
     inputs=("K", "L_PB", "L_PH"),
+    rules_out={
+        "Bryant_ts": _settles_otherwise("L_PB"),
+        "Haalman_ts": _settles_otherwise("L_PH"),
+        "Bryant_tr": _rises_otherwise("L_PB"),
+    },
 )
 def from_printed_gain(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what follows from the printed gains."""

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from replicate.exhibits.exclusion import Box, Ends, Rule
 from replicate.exhibits.printed import Near
+from replicate.loops.intervals import Interval, exactly, exponential
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
 from replicate.papers.khan.sweep import stability_limit, sweep
@@ -75,12 +77,48 @@ def example_2_1_fraction() -> pd.DataFrame:
     return _example_2_1(5.0 / 3.0)
 
 
+def _part_of_box(name: str, box: Box) -> Interval:
+    """Return an interval that holds one part of (2) or (3) for all coefficients of a box."""
+    a, b, c, d = (Interval(*box[place]) for place in COEFFICIENTS[name])
+    ph = Interval(*box[P]) * exactly(H)
+    return a + b * ph + c * exponential(ph / d if name in {"A1", "B1"} else ph * d)
+
+
+def _estimates_of_parts(parts: Mapping[str, Interval]) -> dict[str, Interval]:
+    """Return intervals that hold the estimates, as `last_step`."""
+    h = exactly(H)
+    rise = parts["A2"] * exponential(-h / parts["B2"]) + parts["C2"] * exponential(-h / parts["D2"])
+    return {"overshoot_estimate": parts["A1"] + parts["B1"] * h, "tr_estimate": h * rise}
+
+
+def _rules(quantities: Callable[[Box], Mapping[str, Interval]], names: Iterable[str]) -> dict[str, Rule]:
+    """Return rules for quantities whose intervals over a box are known."""
+
+    def rule(name: str) -> Rule:
+        def misses(_: str, box: Box, ends: Ends) -> bool:
+            return not quantities(box)[name].meets(*ends)
+
+        return misses
+
+    return {name: rule(name) for name in names}
+
+
+def _of_coefficients(box: Box) -> dict[str, Interval]:
+    parts = {name: _part_of_box(name, box) for name in COEFFICIENTS}
+    return {"ph": Interval(*box[P]) * exactly(H)} | parts | _estimates_of_parts(parts)
+
+
+def _of_parts(box: Box) -> dict[str, Interval]:
+    return _estimates_of_parts({name: Interval(*box[name]) for name in COEFFICIENTS})
+
+
 @example_2_1.reading(
     "printed-coefficients",
     "any coefficients of (2) and (3) that round to the printed ones",
     "The authors had their fits with more digits than they print. $p$ is any number that rounds to 1.6667, such as "
     "5/3.",
     inputs=(P, *(place for places in COEFFICIENTS.values() for place in places)),
+    rules_out=_rules(_of_coefficients, ("ph", *COEFFICIENTS, "overshoot_estimate", "tr_estimate")),
 )
 def example_2_1_from_coefficients(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Evaluate (2) and (3) with other coefficients."""
@@ -98,6 +136,7 @@ def example_2_1_from_coefficients(_: str, given: Mapping[str, float]) -> dict[st
     "from the example's own intermediate values",
     "$t_r$ and the overshoot from the coefficients that the example prints, to see whether its last step is right.",
     inputs=("A1", "B1", "A2", "B2", "C2", "D2"),
+    rules_out=_rules(_of_parts, ("overshoot_estimate", "tr_estimate")),
 )
 def example_2_1_from_print(_: str, given: Mapping[str, float]) -> dict[str, float]:
     """Take the last step of the example with its printed intermediate values."""

@@ -5,16 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from replicate.exhibits.exclusion import Box, Ends, Rule
-from replicate.loops import Plant
-from replicate.loops.gain_boxes import GainBox, iae_bounds, no_peak_between
+from replicate.loops import Loop, Plant
+from replicate.loops.gain_boxes import GainBox, complementary_at_least, iae_bounds, no_peak_between
 from replicate.loops.intervals import Interval, exactly
+from replicate.loops.response_boxes import load_responses
 
 Loops = Callable[[str, Box], tuple[Plant, GainBox]]
 """From a case and a box of its printed inputs to the plant and a box that holds its controllers."""
 
 
 def rules(loops: Loops, *quantities: str) -> dict[str, Rule]:
-    """Return the rules for some of IE, w0, IE/IAE and IAE, the quick ones first."""
+    """Return the rules for some of IE, w0, Mp, IE/IAE and IAE, the quick ones first."""
 
     def ie(case: str, box: Box, ends: Ends) -> bool:
         _, gains = loops(case, box)
@@ -22,7 +23,7 @@ def rules(loops: Loops, *quantities: str) -> dict[str, Rule]:
 
     def w0(case: str, box: Box, ends: Ends) -> bool:
         plant, gains = loops(case, box)
-        return plant.dead_time == 0.0 and no_peak_between(plant, gains, *ends)
+        return no_peak_between(plant, gains, *ends)
 
     def quotient(case: str, box: Box, ends: Ends) -> bool:
         plant, gains = loops(case, box)
@@ -31,8 +32,36 @@ def rules(loops: Loops, *quantities: str) -> dict[str, Rule]:
     def iae(case: str, box: Box, ends: Ends) -> bool:
         return not iae_bounds(*loops(case, box)).meets(*ends)
 
-    known: dict[str, Rule] = {"IE": ie, "w0": w0, "IE/IAE": quotient, "IAE": iae}
+    def mp(case: str, box: Box, ends: Ends) -> bool:
+        plant, gains = loops(case, box)
+        peak = Loop(plant, gains.middle).complementary_peak()
+        return complementary_at_least(plant, gains, peak.frequency) > ends[1]
+
+    known: dict[str, Rule] = {"IE": ie, "w0": w0, "Mp": mp, "IE/IAE": quotient, "IAE": iae}
     return {quantity: rule for quantity, rule in known.items() if quantity in quantities}
+
+
+def settling(loops: Loops, level: float, *, one_sided: bool = False, from_dead_time: bool = False) -> dict[str, Rule]:
+    """Return the rule for the settling time of a load response.
+
+    Parameters
+    ----------
+    level
+        Of the unit step: what the response stays below.
+    one_sided
+        Whether what happens below zero counts.
+    from_dead_time
+        Whether the time counts from the end of the dead time.
+    """
+
+    def ts(case: str, box: Box, ends: Ends) -> bool:
+        plant, gains = loops(case, box)
+        found, start = load_responses(plant, gains), plant.dead_time if from_dead_time else 0.0
+        return found is not None and found.never_settles_between(
+            ends[0] + start, ends[1] + start, level, one_sided=one_sided
+        )
+
+    return {"ts": ts}
 
 
 def side(box: Box, name: str) -> Interval:

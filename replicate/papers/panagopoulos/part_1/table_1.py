@@ -28,7 +28,7 @@ from replicate.papers.panagopoulos.part_1.frequency_grid import (
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
-from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
+from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -133,7 +133,8 @@ def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
     "With the printed gain and integral time",
     note="What follows from the printed $k$ and $T_i$, by the rules of the reading before.",
     inputs=("k", "Ti"),
-    rules_out=certain.rules(_loops, "IE", "IE/IAE"),
+    rules_out=certain.rules(_loops, "IE", "Mp", "IE/IAE")
+    | certain.settling(_loops, BAND, one_sided=True, from_dead_time=True),
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what a printed controller does."""

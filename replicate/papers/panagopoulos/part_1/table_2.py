@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from replicate.loops import PI, Loop
-from replicate.papers.panagopoulos import paper
+from replicate.exhibits.exclusion import Box
+from replicate.loops import PI, Loop, Plant
+from replicate.loops.gain_boxes import GainBox
+from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
@@ -58,11 +60,16 @@ def authors() -> pd.DataFrame:
     return _table("w_0")
 
 
+def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
+    return PLANTS[ROWS[row][0]], GainBox(certain.side(box, "k"), certain.side(box, "ki"))
+
+
 @table_2.reading(
     "printed-gains",
     "With the printed gains",
     note="$\\omega_0$ and $M_p$ of the loop with the printed $k$ and $k_i$.",
     inputs=("k", "ki"),
+    rules_out=certain.rules(_loops, "Mp"),
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute the two peaks of a printed controller."""

@@ -8,16 +8,18 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import rank
-from replicate.exhibits.exclusion import Box
+from replicate.exhibits.exclusion import Box, Ends
 from replicate.loops import PI, Loop, Plant, Signal
 from replicate.loops.gain_boxes import GainBox
+from replicate.loops.intervals import Interval, exactly
+from replicate.loops.response_boxes import setpoint_errors
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import design, weight
 from replicate.papers.panagopoulos.part_1.frequency_grid import weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
-from replicate.papers.panagopoulos.part_1.settling import one_sided, two_sided
+from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
 from replicate.papers.panagopoulos.part_1.simple_models import METHODS, area_method, ziegler_nichols
 
 if TYPE_CHECKING:
@@ -148,13 +150,26 @@ def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
     return PLANTS[ROWS[row][0]], GainBox(certain.side(box, "k"), certain.side(box, "ki"))
 
 
+def _overshoot_misses(row: str, box: Box, ends: Ends) -> bool:
+    """Say whether the overshoot certainly misses an interval; the rule is for the rows with b = 1."""
+    if ROWS[row][1] == "New":
+        return False
+    errors = setpoint_errors(*_loops(row, box))
+    # the error at the peak is -excess; the overshoot is relative to the peak
+    lowest = errors.trough() if errors else Interval(-math.inf, math.inf)
+    excess = -lowest
+    return excess.low > 0.0 and not (exactly(100.0) * excess / (exactly(1.0) + excess)).meets(*ends)
+
+
 @table_5.reading(
     "printed-gains",
     "With the printed gains",
     note="What follows from the printed $k$ and $k_i$, by the rules of the reading before; the new design has the "
     "set-point weight of that reading, the others have $b = 1$.",
     inputs=("k", "ki"),
-    rules_out=certain.rules(_loops, "IAE"),
+    rules_out=certain.rules(_loops, "IAE")
+    | certain.settling(_loops, BAND, one_sided=True, from_dead_time=True)
+    | {"o": _overshoot_misses},
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what a printed controller does."""

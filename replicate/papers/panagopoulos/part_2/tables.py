@@ -13,11 +13,12 @@ from replicate.exhibits.exclusion import Box
 from replicate.loops import PID, Loop, Plant
 from replicate.loops.gain_boxes import GainBox
 from replicate.papers.panagopoulos import certain, paper
+from replicate.papers.panagopoulos.part_2 import certain_setpoint
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
 from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment, loop_of
 from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, ROW_LABELS, ROWS, split
-from replicate.papers.panagopoulos.part_2.properties import COLUMNS, LABELS, Properties
+from replicate.papers.panagopoulos.part_2.properties import BAND, COLUMNS, LABELS, Properties
 from replicate.papers.panagopoulos.part_2.setpoint import GRIDS_TRIED, Resonance, filter_corrected, weight
 
 if TYPE_CHECKING:
@@ -114,6 +115,7 @@ def _trials(table: Table) -> dict[str, tuple[str, str]]:
 def _add_readings(table: Table) -> None:
     # The scan of the superseded table has lost one derivative time.
     lost = {LOST_TD: ("k", "Ti", "b")} if table.id == SUPERSEDED else {}
+    followed = certain.rules(_loops, "IE", "w0", "Mp", "IE/IAE") | certain.settling(_loops, BAND)
     table.reading(
         "as-written",
         "The optimum of the stated problem",
@@ -135,7 +137,7 @@ def _add_readings(table: Table) -> None:
         ),
         inputs=GAINS,
         inputs_of=lost,
-        rules_out=certain.rules(_loops, "IE", "w0", "IE/IAE"),
+        rules_out=followed | certain_setpoint.rules("as printed"),
     )(_from_gains)
     table.reading(
         "filter-corrected",
@@ -144,6 +146,7 @@ def _add_readings(table: Table) -> None:
         "$\\omega_{mp}^2$.",
         inputs=GAINS,
         inputs_of=lost,
+        rules_out=certain.rules(_loops, "IE", "w0", "Mp") | certain_setpoint.rules("corrected"),
     )(_with_filter(Resonance.of, complete=False))
     table.reading(
         "filter-coarse-grid",
@@ -153,6 +156,7 @@ def _add_readings(table: Table) -> None:
         inputs=GAINS,
         inputs_of=lost,
         tried={name: len(values) for name, values in GRIDS_TRIED.items()} | {"power of $\\omega_{mp}$ in (16)": 2},
+        rules_out=followed | certain_setpoint.rules("coarse grid"),
     )(_with_filter(Resonance.on_coarse_grid, complete=table.id == SUPERSEDED))
     table.reading(
         "paper-1-settling",
