@@ -211,3 +211,25 @@ def test_no_two_parameters_share_a_name(project: Project) -> None:
     assert len({name.casefold() for name in names}) == 7
     assert {"test_figures-test_it-A_B", "test_figures-test_it-0-5", "test_figures-test_it-a-b"} <= set(names)
     assert project.run("-n", "2")[0] == 0
+
+
+AWAITED = """
+from matplotlib.figure import Figure
+
+class TestOuter:
+    class TestInner:
+        def test_it(self, figure_diff):
+            figure = Figure()
+            figure.subplots()
+            figure_diff(figure)
+
+async def test_awaited(figure_diff):
+    raise ValueError
+"""
+
+
+def test_what_is_to_be_awaited_is_not_taken_as_passed(project: Project) -> None:
+    project.write(AWAITED)
+    status, said = project.run("--accept-figures", "--reason", "first")
+    assert (status, "1 failed, 1 passed" in said) == (1, True), said
+    assert "test_figures-TestOuter-TestInner-test_it.json" in project.accepted()

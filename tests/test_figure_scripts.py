@@ -16,13 +16,17 @@ fig, ax = plt.subplots()
 ax.plot([0, 1, 2], [0, 1, 0], label="ZN")
 fig.savefig("saved.png")
 fig.savefig("saved.pdf")
+fig.canvas.print_figure("saved.svg")
 plt.close(fig)
 """,
     "plot_shown.py": """
 import matplotlib
 matplotlib.use("TkAgg")
 import matplotlib.pyplot as plt
-plt.plot([1, 2])
+for last in (4, 3, 2):
+    plt.cla()
+    plt.plot([1, last])
+    plt.pause(9)
 plt.show()
 plt.plot([2, 1])
 """,
@@ -37,6 +41,7 @@ if __name__ == "__main__":
     "plot_forked.py": """
 import os
 import matplotlib.pyplot as plt
+plt.figure(figsize=(900, 900))
 plt.plot([1, 3])
 if os.fork() == 0:
     plt.figure()
@@ -131,6 +136,10 @@ def test_accept_compare_change(folder: Folder) -> None:
         ("import os\nos.abort()\n", "plots/plot_bad.py: ended before its end, with status -6"),
         ("import matplotlib.pyplot as plt\nplt.plot([1])\nplt.close()\n", "plots/plot_bad.py: draws nothing"),
         ("import time\ntime.sleep(99)\n", "plots/plot_bad.py: is stopped, it took longer than 8 seconds"),
+        (
+            "import matplotlib.pyplot as plt\nplt.plot([1])\n(place,) = plt.ginput(1)\n",
+            "plots/plot_bad.py:3: ValueError: not enough values to unpack",
+        ),
     ],
 )
 def test_a_script_that_fails_is_named_and_takes_nothing_else_down(folder: Folder, text: str, said: str) -> None:

@@ -20,6 +20,7 @@ Status = Literal["same", "changed", "new", "gone", "accepted", "failed"]
 DIFFERS = {"changed", "new", "gone"}
 
 _PICTURE_DPI = 60
+_MOST_INCHES = 100.0  # each way: of a larger figure there is no picture
 _COLOURS = 64
 
 
@@ -152,6 +153,8 @@ def _small_picture(figure: Figure) -> bytes:
     from PIL import Image
 
     large, small = io.BytesIO(), io.BytesIO()
+    if max(figure.get_size_inches()) > _MOST_INCHES:
+        return b""
     figure.savefig(large, format="png", dpi=_PICTURE_DPI, facecolor=figure.get_facecolor(), metadata={"Software": None})
     with Image.open(large) as picture:
         few = picture.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)

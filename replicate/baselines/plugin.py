@@ -5,6 +5,7 @@ It does nothing unless a test asks for the fixture ``figure_diff`` or carries th
 
 from __future__ import annotations
 
+import inspect
 import re
 import shlex
 import unittest
@@ -146,7 +147,8 @@ def _default_name(item: pytest.Item) -> str:
     from replicate.baselines.store import name_of
 
     owner = getattr(item, "cls", None)
-    names = "-".join((item.path.stem, *([owner.__name__] if owner else []), item.name))
+    classes = owner.__qualname__.split(".") if owner else []
+    names = "-".join((item.path.stem, *classes, item.name))
     plain = _PLAIN.search(names)
     return name_of(f"{names[: plain.start()]}-{plain[1].replace('.', '-')}" if plain else names)
 
@@ -171,7 +173,11 @@ def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> Iterator[None]:
     def call(*arguments: Any, **options: Any) -> None:
         returned.append(original(*arguments, **options))
 
-    pyfuncitem.obj = call
+    async def await_call(*arguments: Any, **options: Any) -> None:
+        returned.append(await original(*arguments, **options))
+
+    # What is to be awaited has to look so: else pytest would take it as passed.
+    pyfuncitem.obj = await_call if inspect.iscoroutinefunction(original) else call
     try:
         result = yield
     finally:

@@ -63,6 +63,7 @@ def _watch(keeper: Keeper) -> None:
     """Stand between the script and the screen."""
     import matplotlib as mpl
     import matplotlib.pyplot as plt
+    from matplotlib.backend_bases import FigureCanvasBase
     from matplotlib.figure import Figure
 
     plt.switch_backend("agg")
@@ -77,12 +78,24 @@ def _watch(keeper: Keeper) -> None:
             keeper.keep(figure)
         return result
 
+    original_print = FigureCanvasBase.print_figure
+
+    def print_figure(canvas: Any, *arguments: Any, **options: Any) -> Any:
+        result = original_print(canvas, *arguments, **options)
+        if sys._getframe(1).f_globals.get("__name__") != "matplotlib.figure":  # noqa: SLF001  -- that is `savefig`
+            keeper.keep(canvas.figure)
+        return result
+
     def show(*_: Any, block: bool | None = None, **__: Any) -> None:
         keeper.keep_open()
         if block is not False:  # who looks at a window closes it
             plt.close("all")
 
     Figure.savefig = savefig  # type: ignore[assignment, method-assign]
+    FigureCanvasBase.print_figure = print_figure  # type: ignore[assignment, method-assign]
+    # Nobody clicks, and what is shown during a pause is a frame of a film.
+    FigureCanvasBase.start_event_loop = lambda *_, **__: None  # type: ignore[method-assign]
+    plt.pause = lambda *_, **__: None
     plt.show = show
     Figure.show = lambda figure, *_, **__: keeper.keep(figure)  # type: ignore[method-assign]
 
