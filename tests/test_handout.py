@@ -453,3 +453,13 @@ def test_what_a_program_changes_around_it_is_left_in_its_process(make: Make) -> 
     here = Path.cwd()
     assert "done" in markup(make(f"{HEAD}```{{.python .run}}\n{program}\n```\n"))
     assert ("TOY" in os.environ, Path.cwd(), bool(sys.path)) == (False, here, True)
+
+
+@pytest.mark.parametrize(
+    "joined", ["What is it?\n::: solution", "What is it?{% if true %} Say.{% endif %}\n\n::: solution"]
+)
+def test_a_solution_that_would_be_words_of_the_question_is_refused(make: Make, joined: str) -> None:
+    text = f"# A toy\n\n## Exercises\n\n::: exercise\n## One\n{joined}\nIt is this.\n:::\n:::\n"
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:\d+: ':::' is part of a paragraph; leave a line blank"):
+        make(text, solutions=False)
+    make(text.replace("::: solution", "\n::: solution"), solutions=False)

@@ -6,6 +6,7 @@ import json
 import re
 import tempfile
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 
 from replicate.display.pandoc import PandocError, convert
@@ -29,6 +30,8 @@ _FOREIGN = {
     "Image": "an image from a file",
 }
 _MARK = "\ue007"  # between two texts
+_FENCE = ":::"
+_WORD_FENCE = '"c":":::'  # in pandoc's JSON: the begin of a block that it took for words of the paragraph before
 
 
 def read(texts: Sequence[Lines], source: str) -> list[Blocks]:
@@ -55,6 +58,8 @@ def read(texts: Sequence[Lines], source: str) -> list[Blocks]:
         try:
             tree = convert(files, "json", _FORMAT, *_OPTIONS, "--file-scope")
         except PandocError:
+            tree = ""
+        if not tree or _WORD_FENCE in tree:
             return [_read(lines, source) for lines in texts]  # one of them says where
     found: list[Blocks] = []
     for block in json.loads(tree)["blocks"]:
@@ -71,7 +76,7 @@ def _read(lines: Lines, source: str) -> Blocks:
     """Read Markdown into pandoc's tree."""
     text = "\n".join(line for line, _ in lines)
     try:
-        tree = json.loads(convert(text, "json", _FORMAT, *_OPTIONS, limit=_LIMIT_ALONE))
+        tree = convert(text, "json", _FORMAT, *_OPTIONS, limit=_LIMIT_ALONE)
     except PandocError as error:
         words = " ".join(str(error).split())
         found = re.search(r"\[WARNING\] (.*?)(?: Failing because|$)", words)
@@ -79,9 +84,23 @@ def _read(lines: Lines, source: str) -> Blocks:
         line = lines[min(int(at[1]), len(lines)) - 1][1] if at else 1
         msg = f"{source}:{line}: pandoc cannot read the text: {found[1] if found else words}"
         raise TemplateError(msg) from error
-    blocks: Blocks = tree["blocks"]
+    if _WORD_FENCE in tree:  # a solution that is no block would be on the sheet of those who are to find it
+        place = f"{source}:{_joined_fence(lines)}"
+        msg = f"{place}: '{_FENCE}' is part of a paragraph; leave a line blank before a block begins"
+        raise TemplateError(msg)
+    blocks: Blocks = json.loads(tree)["blocks"]
     _check(blocks, lines, source)
     return blocks
+
+
+def _joined_fence(lines: Lines) -> int:
+    """Return the line of the first block that begins right below a text; 1 if there is none."""
+    found = (
+        number
+        for (before, _), (line, number) in pairwise(lines)
+        if line.lstrip().startswith(_FENCE) and line.strip(" :") and before.strip() and not before.startswith(_FENCE)
+    )
+    return next(found, 1)
 
 
 def _check(blocks: Blocks, lines: Lines, source: str) -> None:
