@@ -19,7 +19,7 @@ from replicate.loops.margins import Margins
 from replicate.loops.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
 from replicate.loops.proven_pole import proven_pole_with_others
-from replicate.loops.responses import responses
+from replicate.loops.responses import held, responses
 from replicate.loops.set_once import SetOnce
 from replicate.loops.signal import Response, Signal
 from replicate.loops.slow_signal import SlowSignal
@@ -31,6 +31,7 @@ ComplexArray = NDArray[np.complex128]
 
 TAIL = 1e13  # time constants of the slowest mode after which an algebraic tail no longer counts
 LONG = 1e-7  # of such a horizon, from which on rounding errors would show in its integrals
+FAR = 1e3  # horizon, in units of the loop's time, from which on it pays to ask when the response is at rest
 CLEAR = 1e-6  # distance of a pole from the imaginary axis, relative to its modulus, that leaves no doubt
 SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rounding, exp(-34) = 2e-15
 
@@ -338,7 +339,10 @@ class Loop(LoopViews, SetOnce):
             found = self.poles(count=8) * self._units.time
             inputs = (setpoint, load)
             return function_responses.respond(self._transfer, self._controller, found, inputs, end, self._units.time)
-        [(breaks, y, u)] = responses(self._plant, [self._controller], end, setpoint=setpoint, load=load)
+        rests = end > FAR and self._stable and self._landmarks.size
+        moving = min(end, self.horizon() / self._units.time) if rests else end
+        [(breaks, y, u)] = responses(self._plant, [self._controller], moving, setpoint=setpoint, load=load)
+        breaks, y, u = held(breaks, y, u, end)
         return breaks, y, breaks, u
 
     def __repr__(self) -> str:

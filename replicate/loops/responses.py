@@ -31,3 +31,12 @@ def responses(
         if found is not None:
             return found
     return [adaptive_steps.respond(plant, c, until, setpoint=setpoint, load=load) for c in controllers]
+
+
+def held(breaks: Array, output: Array, control: Array, until: float) -> tuple[Array, Array, Array]:
+    """Return a response that has come to rest with one piece more, in which it stays where it is, up to ``until``."""
+    if breaks[-1] >= until:
+        return breaks, output, control
+    rest = np.zeros((2, 1, output.shape[1]))
+    rest[:, 0, 0] = output[-1].sum(), control[-1].sum()  # the values at the end of the last piece
+    return np.append(breaks, until), np.concatenate([output, rest[0]]), np.concatenate([control, rest[1]])

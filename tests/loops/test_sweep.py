@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -220,6 +220,8 @@ def test_a_frame_has_a_row_for_each_loop_with_the_labels_given() -> None:
     assert frame["reason"].tolist() == ["", "the loop is unstable"]
     assert np.isnan(frame["ms"].to_numpy()[1])
     assert frame["rightmost_pole"].to_numpy()[1].real > 0.0
+    series = sweep(FOPTD, pd.Series([PI(0.3, 0.2), PI(0.4, 0.2)], index=["x", "y"]), metrics="ms").to_frame()
+    assert series.index.tolist() == [(0, "x"), (0, "y")]
     pairs = sweep(plants, PI(0.3, 0.2), metrics="ms", pairing="pairwise").to_frame()
     assert pairs.index.tolist() == [("a", 0), ("b", 0)]
 
@@ -265,6 +267,14 @@ def test_the_peak_of_a_load_that_only_lowers_the_output_is_at_the_start(until: f
         np.testing.assert_allclose([peak.value, result["load_peak"][0, i]], 0.0, atol=1e-12)
 
 
+def test_a_horizon_far_beyond_rest_changes_nothing() -> None:
+    names, gains = ["overshoot", "peak_time", "settling_time", "iae", "load_iae"], np.full((5, 2), [0.6, 0.5])
+    natural, far = sweep(FOPTD, gains, metrics=names), sweep(FOPTD, gains, metrics=names, until=1e9)
+    for name in names:
+        np.testing.assert_allclose(far[name], natural[name], rtol=1e-9)
+    assert Loop(FOPTD, PI(0.6, 0.5)).step(until=1e9)(1e9) == pytest.approx(1.0, abs=1e-13)
+
+
 NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
     "no plants": (lambda: sweep([], [PI(1.0)]), "the sweep has no plants"),
     "no controllers": (lambda: sweep(FOPTD, np.empty((0, 2))), "the sweep has no controllers"),
@@ -273,7 +283,13 @@ NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
     "unknown metric": (lambda: sweep(FOPTD, PI(1.0), metrics=["overshot"]), "unknown metric 'overshot': allowed"),
     "no metric": (lambda: sweep(FOPTD, PI(1.0), metrics=[]), "metrics must name at least one"),
     "pairs": (lambda: sweep([FOPTD] * 2, [PI(1.0)] * 3, pairing="pairwise"), "not 2 plants and 3 controllers"),
+    "metrics are a number": (lambda: sweep(FOPTD, PI(1.0), metrics=cast("Any", 3)), "metrics must be names"),
     "pairing": (lambda: sweep(FOPTD, PI(1.0), pairing="all"), "pairing must be 'grid' or 'pairwise'"),
+    "pairings": (lambda: sweep(FOPTD, PI(1.0), pairing=cast("Any", ["grid"])), "pairing must be 'grid' or 'pairwise'"),
+    "masked": (
+        lambda: sweep(FOPTD, np.ma.array([[0.5, 0.4], [0.5, 0.3]], mask=[[False, True], [False, False]])),
+        r"controllers\[0\]: the controller's ki must be a finite number, not nan",
+    ),
     "band": (lambda: sweep(FOPTD, PI(1.0), band=0.0), "the settling band must be"),
     "until": (lambda: sweep(FOPTD, PI(1.0), until=np.nan), "the horizon until must be"),
     "flat array": (lambda: sweep(FOPTD, np.array([1.0, 2.0])), r"one row for each, shape \(n, numbers\), not \(2,\)"),

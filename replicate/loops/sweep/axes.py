@@ -124,6 +124,9 @@ def _axis(
     if isinstance(given, Mapping):
         msg = f"the {name}s of a sweep must be {rows}, not a {type(given).__name__}"
         raise LoopError(msg)
+    labels = list(given.index) if hasattr(given, "index") and hasattr(given, "to_numpy") else None
+    if isinstance(given, np.ma.MaskedArray):
+        given = np.ma.filled(given.astype(float), np.nan)  # what is masked is no number
     if isinstance(given, np.ndarray):
         if given.dtype != object and given.ndim != 2:
             msg = f"an array of {name}s must have one row for each, shape (n, numbers), not {given.shape}"
@@ -136,7 +139,8 @@ def _axis(
             msg = f"the {name}s of a sweep must be {rows}, not {checks.shown(given)}"
             raise LoopError(msg) from None
     return Axis(
-        name, range(len(members)), lambda i: member(members[i]), numbers=_numbers(members, len(numbers)), valid=valid
+        name, range(len(members)) if labels is None else labels, lambda i: member(members[i]),
+        numbers=_numbers(members, len(numbers)), valid=valid,
     )  # fmt: skip
 
 

@@ -56,7 +56,11 @@ def checked_metrics(names: str | Iterable[str]) -> tuple[str, ...]:
     LoopError
         If there is none, or one is unknown; the message lists those that are allowed.
     """
-    given = [names] if isinstance(names, str) else list(names)
+    try:
+        given = [names] if isinstance(names, str) else list(names)
+    except TypeError:
+        msg = f"metrics must be names of metrics, not {checks.shown(names)}: allowed are {', '.join(ALLOWED)}"
+        raise LoopError(msg) from None
     if not given:
         msg = f"metrics must name at least one of {', '.join(ALLOWED)}"
         raise LoopError(msg)
