@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import os
+import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import CancelledError
 from contextlib import contextmanager
@@ -66,15 +67,18 @@ class LocalProcesses:
         waiting = dict(enumerate(items))
         for attempt in range(1, _ATTEMPTS + 1):
             parallel = joblib.Parallel(self.jobs, return_as="generator_unordered", batch_size=1)
+            found = parallel(joblib.delayed(_numbered)(function, *each) for each in list(waiting.items()))
             try:
-                for number, made in parallel(
-                    joblib.delayed(_numbered)(function, *each) for each in list(waiting.items())
-                ):
+                for number, made in found:
                     yield waiting.pop(number), made
             except TerminatedWorkerError as error:
                 if attempt == _ATTEMPTS:
                     msg = f"worker processes were ended {attempt} times; perhaps for want of memory: try fewer --jobs"
                     raise ReplicateError(msg) from error
+            finally:
+                with warnings.catch_warnings():  # whoever stops early says why
+                    warnings.filterwarnings("ignore", r"\d+ tasks which were still being processed", UserWarning)
+                    found.close()
             if not waiting:
                 return
 
