@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from replicate.loops import stability
+from replicate.loops.bracketed import bracketed_root
 from replicate.loops.function_resonances import resonances
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.pole_starts import asymptotic_starts
@@ -108,7 +108,7 @@ def _starts_on_axis(transfer: LoopTransfer, radius: Array) -> ComplexArray:
     smooth &= np.isfinite(value)
     both = smooth[1:] & smooth[:-1]
     found = [
-        float(brentq(excess, radius[i], radius[i + 1])) for i in np.nonzero(both & (value[1:] * value[:-1] < 0.0))[0]
+        bracketed_root(excess, radius[i], radius[i + 1]) for i in np.nonzero(both & (value[1:] * value[:-1] < 0.0))[0]
     ]
     size = np.where(smooth, np.abs(value), np.inf)
     low = (size[1:-1] < size[:-2]) & (size[1:-1] < size[2:]) & both[1:] & both[:-1]

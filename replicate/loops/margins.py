@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from replicate.loops.bracketed import bracketed_root
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.records import Record
@@ -129,10 +129,7 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
     def imaginary(x: float) -> float:
         return float(complex(transfer(1j * x)).imag)
 
-    found = [
-        brentq(imaginary, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200)
-        for i in np.nonzero(turned & negative)[0]
-    ]
+    found = [bracketed_root(imaginary, w[i], w[i + 1]) for i in np.nonzero(turned & negative)[0]]
     roots = np.sort(np.concatenate([np.array(found), exact]))
     roots = roots[transfer(1j * roots).real < 0.0] if roots.size else roots
     # without integral action the curve starts on the real axis, where a pole can pass through s = 0

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from replicate.loops.bracketed import bracketed_root
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.function_plant import FunctionPlant
@@ -272,4 +272,4 @@ def crossings_of_one(transfer: LoopTransfer, w: Array) -> Array:
 
     level = np.log(np.abs(transfer(1j * w)))
     changes = np.nonzero(level[:-1] * level[1:] < 0.0)[0]
-    return np.array([brentq(excess, w[i], w[i + 1], xtol=1e-300, rtol=8.9e-16) for i in changes])
+    return np.array([bracketed_root(excess, w[i], w[i + 1]) for i in changes])

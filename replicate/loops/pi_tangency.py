@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq, root
+from scipy.optimize import root
 
+from replicate.loops.bracketed import bracketed_root
 from replicate.loops.circles import Circle
 from replicate.loops.pi_result import PIDesign
 from replicate.loops.plant import Plant
@@ -47,7 +48,7 @@ def smooth_optimum(plant: Plant, circle: Circle, w: Array, near: float) -> PIDes
     def condition(x: float) -> float:
         return float(smooth_condition(plant, circle, np.array(x)))
 
-    frequency = float(brentq(condition, w[index], w[index + 1], xtol=1e-300, rtol=8.9e-16, maxiter=200))
+    frequency = bracketed_root(condition, w[index], w[index + 1])
     k, ki = smooth_gains(plant, circle, frequency)
     return PIDesign(k, ki, float("nan"), frequency, (frequency,), "smooth", "optimal")
 

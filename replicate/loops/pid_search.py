@@ -184,7 +184,7 @@ class Search:
     def _climbed(self, x: Array, grids: Sequence[LoopJet]) -> Array | None:
         """Return where sequential quadratic programming leads to, seeing some frequencies only."""
         problem = self.problem
-        scale = np.array([max(abs(x[0]), 1e-3 * x[1]), x[1], max(x[2], 0.3 * x[0] ** 2 / x[1])])
+        scale = np.array([max(abs(x[0]), 1e-3 * x[1]), x[1], max(x[2], 0.3 * x[0] ** 2 / abs(x[1]))])
         limit = problem.largest_kd / scale[2]
         known: dict[bytes, tuple[Array, Array]] = {}
 

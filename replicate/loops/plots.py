@@ -200,7 +200,8 @@ def plot_gain_plane(
     plane = gain_plane(plant, k, ki)
     stable = np.isfinite(plane.ms)
     ax.contourf(plane.k, plane.ki, stable.astype(float), levels=[0.5, 1.5], colors=["0.93"])
-    if any(np.nanmin(plane.ms) < level < np.nanmax(plane.ms) for level in levels):
+    known = plane.ms[stable]
+    if known.size and any(known.min() < level < known.max() for level in levels):
         inside = np.where(stable, plane.ms, np.inf)
         lines = ax.contour(plane.k, plane.ki, np.minimum(inside, 10.0 * max(levels)), levels=sorted(levels))
         ax.clabel(lines, fmt="%.3g")

@@ -22,8 +22,8 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
+from replicate.loops.bracketed import bracketed_root
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.loop_transfer import LoopTransfer
@@ -148,7 +148,7 @@ def _all_crossovers(transfer: LoopTransfer) -> Array:
         if inside.size % 2:
             found += inside.tolist()
         else:
-            found.append(float(brentq(excess, w[i], w[i + 1], xtol=1e-300)))
+            found.append(bracketed_root(excess, w[i], w[i + 1]))
     return np.unique(found)
 
 

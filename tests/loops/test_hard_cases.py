@@ -241,3 +241,13 @@ def test_a_wrong_argument_is_named_in_one_line(name: str) -> None:
     with pytest.raises(LoopError, match=words) as caught:
         ask()
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-9, 2.0**20])
+def test_a_gain_crossover_on_the_grid_to_rounding(unit: float) -> None:
+    # |L| = 1 to rounding at a frequency of the grid, seen on one side of one computed alone and on the other in a row
+    plant = Plant([-unit, 1.0], [unit**2, 2.0 * unit, 1.0], 0.5 * unit)
+    for k in np.linspace(0.1, 1.0, 10):
+        for ki in np.linspace(0.1, 1.0, 10):
+            loop = Loop(plant, PI(k, ki / unit))
+            assert loop.is_stable() == (loop.rightmost_pole().real < 0.0)

@@ -75,3 +75,8 @@ def test_the_gain_plane_is_stable_below_the_ultimate_gain(ax: Axes) -> None:
     assert np.isfinite(plane.ms[0]).tolist() == [True, True, True, False]
     assert plane.ms[1, 0] == Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.3, 0.4)).sensitivity_peak()
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("k", "ki")
+
+
+def test_the_gain_plane_of_a_plant_that_no_gains_on_it_stabilise(ax: Axes) -> None:
+    plane = plots.plot_gain_plane(ax, Plant([1.0], [1.0, -1.0], 5.0), [0.5, 1.0], [0.1, 0.2])
+    assert np.isnan(plane.ms).all()
