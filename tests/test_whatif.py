@@ -44,6 +44,10 @@ def test_a_file_of_somebody_else_stays(replicate: Run, tmp_path: Path) -> None:
         ("1/(s+1)^16", "k=1", "of order 15 at most"),
         ("(s+1)/(s+2)", "k=1", "answers at once"),
         ("1/(s+1)", "k=1,measurement_filter=0.1", "draws no measurement filter"),
+        ("1/(s+1)", "k=1e308", "with a number beyond 1e+09"),
+        ("1e300/(s+1)", "k=1", "whose numbers lie so far apart"),
+        ("e^{-1e-308s}/(s+1)", "k=1,ki=1", "whose numbers lie so far apart"),
+        ("s/(s+1)^2", "k=1,ki=1", "lets nothing through at rest"),
     ],
 )
 def test_what_cannot_be_drawn_is_refused_in_one_line(

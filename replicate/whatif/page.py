@@ -20,22 +20,24 @@ from replicate.figures.style import dark_curves
 from replicate.loops.errors import LoopError
 from replicate.loops.tune import marked_rules
 from replicate.resources import templates_dir
-from replicate.whatif.rows import Row, rows_of, why_not_drawn
+from replicate.whatif.rows import FAR_APART, MOST_GAIN, Row, rows_of, why_not_drawn
 from replicate.whatif.script import script
 
 NAME = TRIALS
 
 #: Constants of the script: degree of a piece, fastest pole times length of the first piece, last coefficients of a
 #: smooth piece, dead times after which jumps are too smooth to be seen, up to which angle of the dead time, in radians,
-#: a frequency response is looked at; then the sensitivity peaks whose contours are drawn, and the settling band. Last,
-#: for a loop at rest and one that is moved: what is left of a response at its end, its pieces at most, and the steps
-#: of a limited response.
+#: a frequency response is looked at, what the page draws (`replicate.whatif.rows`); then the sensitivity peaks whose
+#: contours are drawn, and the settling band. Last, for a loop at rest and one that is moved: what is left of a response
+#: at its end, its pieces at most, and the steps of a limited response.
 CONSTANTS = {
     "nodes": 24,
     "decayPerPiece": 8,
     "rounding": 1e-13,
     "laps": 16,
     "mostTurns": 2000,
+    "mostGain": MOST_GAIN,
+    "farApart": FAR_APART,
     "levels": [1.2, 1.4, 1.6, 2.0],
     "band": 0.02,
     "atRest": {"settle": 1e-11, "pieces": 12000, "steps": 12000},

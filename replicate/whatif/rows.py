@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from replicate.display.addresses import trial_label
 from replicate.exhibits import Paper, Table
 from replicate.exhibits.trials import listed
+from replicate.loops import Plant
 from replicate.loops.notation import parse_controller, parse_plant
 
 
@@ -21,6 +24,8 @@ class Row:
 
 
 MOST_POLES = 15
+MOST_GAIN = 1e9  # the largest number of a controller
+FAR_APART = 1e12  # the fastest over the slowest of a loop
 
 
 def why_not_drawn(row: Row) -> str:
@@ -34,11 +39,42 @@ def why_not_drawn(row: Row) -> str:
     plant, controller = parse_plant(row.plant), parse_controller(row.controller)
     if not plant.is_rational or plant.den.size > MOST_POLES + 1:
         return f"the page draws rational plants with one dead time, of order {MOST_POLES} at most, not {row.plant}"
-    if plant.num.size == plant.den.size and not plant.dead_time:
-        return f"the page does not draw a plant that answers at once, as {row.plant} does"
-    if controller.measurement_filter or not isinstance(controller.setpoint_filter, (int, float)):
-        return f"the page draws no measurement filter, and a number as setpoint_filter, not {row.controller}"
-    return ""
+    gains = (controller.k, controller.ki, controller.kd, controller.b, controller.c, controller.derivative_filter)
+    prefilter = controller.setpoint_filter
+    refused = [
+        (
+            plant.num.size == plant.den.size and not plant.dead_time,
+            f"the page does not draw a plant that answers at once, as {row.plant} does",
+        ),
+        (
+            controller.ki and not plant.num[-1],
+            f"the page does not draw integral action on a plant that lets nothing through at rest, as {row.plant}",
+        ),
+        (
+            controller.measurement_filter or not isinstance(prefilter, (int, float)),
+            f"the page draws no measurement filter, and a number as setpoint_filter, not {row.controller}",
+        ),
+        (
+            max(abs(number) for number in (*gains, prefilter) if isinstance(number, (int, float))) > MOST_GAIN,
+            f"the page draws no controller with a number beyond {MOST_GAIN:g}, not {row.controller}",
+        ),
+        (
+            not _spread(plant, controller.k) < FAR_APART,
+            f"the page draws no loop whose numbers lie so far apart as those of {row.plant} with {row.controller}",
+        ),
+    ]
+    return next((reason for wrong, reason in refused if wrong), "")
+
+
+def _spread(plant: Plant, gain: float) -> float:
+    """Return the fastest over the slowest in a loop: poles, zeros, dead time, and where the gain falls below one."""
+    with np.errstate(all="ignore"):
+        high = np.abs(gain * plant.num[0] / plant.den[0])
+        crossover = high ** (1.0 / (plant.den.size - plant.num.size)) if plant.den.size > plant.num.size else 0.0
+        roots = [root for p in (plant.num, plant.den) for root in np.roots(p / p[0])]
+        sizes = np.array([*np.abs(roots), crossover, 1.0 / plant.dead_time if plant.dead_time else 0.0])
+        sizes = sizes[sizes > 0.0]
+        return float(np.max(sizes) / np.min(sizes)) if sizes.size else 1.0
 
 
 def rows_of(papers: Iterable[Paper]) -> list[Row]:

@@ -14,7 +14,6 @@ import { $, drawNyquist, drawPlane, drawResponses, drawTable, drawPoints, PINS, 
 import { copy, curves, download, picture, python } from "./takeaway.js";
 
 const GAINS = ["k", "ki", "kd", "b", "filter"];
-const MOST_GAIN = 1e9;
 
 // Also `base`, the controller whose gains the slider multiplied by `factor`; `row` is the printed row chosen last.
 const state = { row: -1, plane: "ki", pins: [] };
@@ -93,7 +92,7 @@ const on = (id, type, react) => $(id).addEventListener(type, react);
 const refuse = (reason) => { throw new NotationError(reason); };
 
 function checked(controller, plant = state.plant) {
-  for (const [name, value] of Object.entries(controller)) if (!(Math.abs(value) <= MOST_GAIN)) refuse(`${name} is beyond any limit: at most ${MOST_GAIN.toExponential(0)}`);
+  for (const [name, value] of Object.entries(controller)) if (!(Math.abs(value) <= CONSTANTS.mostGain)) refuse(`${name} is beyond any limit: at most ${CONSTANTS.mostGain}`);
   if (controller.filter < 0) refuse("the derivative filter must not be negative");
   const jumps = controller.kd && !controller.filter && ((plant.deadTime && plant.relativeDegree < 2) || (controller.c && !controller.prefilter));
   if (jumps) controller = { ...controller, filter: Math.abs(controller.kd / (controller.k || 1)) / 10 };

@@ -17,7 +17,7 @@ export function unstablePoles(plant, controller) {
   const scales = [...sizes(corners), 1 / delay].filter(Number.isFinite), far = delayed.length === free.length ? Math.abs(delayed[0] / free[0]) : 0;
   const loud = (w) => Math.hypot(...divide(onAxis(delayed, w), onAxis(free, w))) > 0.25 * (1 + 3 * far);
   const guess = 4 * Math.max(1e-9, ...scales), quiet = quietFrom(loud, guess), end = 4 * Math.max(guess, quiet);
-  if (!(quiet * delay < 10 * CONSTANTS.mostTurns && Math.max(quiet, ...scales) < 1e12 * Math.min(...scales))) return NaN;
+  if (!(quiet * delay < 10 * CONSTANTS.mostTurns && Math.max(quiet, ...scales) < CONSTANTS.farApart * Math.min(...scales))) return NaN;
   const turned = (from, to) => { const [re, im] = divide(to, from); return Math.atan2(im, re); };
   let total = 0, w = 0, here = value(0), step = Math.min(...scales, end) / 8;
   while (w < end) {
