@@ -57,7 +57,7 @@ class Tally:
         """Return how the numbers were shortened, given the count of the whole table as well."""
         own = self._balance()
         deciding = own if abs(own) >= _CLEAR else table._balance()
-        return "truncated" if deciding > 0 else "rounded"
+        return "truncated" if deciding >= _CLEAR else "rounded"
 
 
 def tallies(table: Table, matches: Mapping[Key, Match]) -> dict[str, Tally]:
