@@ -23,6 +23,7 @@ _MOST_ROUNDS = 8
 _GAIN = 0.7  # what a step takes off an exhibit, at a guess; the page is weighed again
 _ALIKE = 0.3  # an exhibit much lighter than the heaviest waits until the page has been weighed again
 _MOST_CELLS = 1500  # of a table whose rows are left out
+_FEWEST_ROWS = 10  # of a table that is left out in halves
 
 
 @dataclass(frozen=True)
@@ -108,12 +109,13 @@ def _lighter_table(table: TableView) -> TableView | None:
     if table.every_card and table.verdicts:
         return replace(table, every_card=False)
     room = max(1, _MOST_CELLS // max(1, len(table.columns) * len(table.readings)))
-    if table.left_out or len(table.rows) <= room:
+    if table.left_out:
+        room = max(_FEWEST_ROWS, len(table.rows) // 2)
+    if len(table.rows) <= room:
         return None
-    first = [row for row, _ in table.rows]
-    kept = set(sorted(first, key=lambda row: row not in table.differing)[:room])
+    kept = set(sorted((row for row, _ in table.rows), key=lambda row: row not in table.differing)[:room])
     rows = [entry for entry in table.rows if entry[0] in kept]
-    return replace(table, rows=rows, left_out=len(table.rows) - len(rows))
+    return replace(table, rows=rows, left_out=table.left_out + len(table.rows) - len(rows))
 
 
 def _lighter_figure(figure: FigureView) -> FigureView | None:
