@@ -233,7 +233,7 @@ def test_a_damaged_file_is_named(accepted: Path, data: Path) -> None:
         ('"panel": "panel 1"', '"panel": "panel 2"', "does not describe panel 'panel 1', where curve 'output' is"),
         ('"panels": [', '"panels": [' + "[" * 5000, "toy/fig-1.json"),
         ('"version": 2', '"version": 3', "was written by a newer version: its format is 3, this one reads up to 2"),
-        ('"version": 2', '"version": "2"', "is no record of a figure"),
+        ('"version": 2', '"version": "2"', "is not a record of a figure"),
     ],
 )
 def test_a_description_that_no_figure_has_is_damage(accepted: Path, data: Path, old: str, new: str, said: str) -> None:

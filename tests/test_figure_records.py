@@ -126,7 +126,7 @@ def test_the_first_version_is_read() -> None:
     ("text", "said"),
     [
         ("", "is not valid JSON"),
-        ("{}", "is no record of a figure"),
+        ("{}", "is not a record of a figure"),
         ('{"format": "figure record", "version": 3}', "was written by a newer version: its format is 3"),
         ('{"format": "figure record", "version": 2, "figure": {}, "panels": {}}', "expected: a list of objects"),
         ('{"format": "figure record", "version": 2, "figure": [], "panels": []}', "'figure' must be an object"),

@@ -170,7 +170,7 @@ def test_a_full_disk_is_one_line(tmp_path: Path) -> None:
             "derivative_filter = [-0.1]",
             "s.toml:6: controllers[0]: the controller's derivative_filter",
         ),
-        ("points = 3", "points = 0", "s.toml:7: k is no range: expected"),
+        ("points = 3", "points = 0", "s.toml:7: k is not a range; expected"),
         ("(s+1)^3", "(s+1^3", "s.toml:2: plants[1]: "),
         ('plants = ["e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3"]', "plants = []", "s.toml:2: plants must be a text"),
         ('plants = ["e^{-s}/(s+1)", "e^{-0.5s}/(s+1)^3"]', "", "s.toml:1: 'plants' is missing"),

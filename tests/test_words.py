@@ -104,7 +104,7 @@ def test_words_that_were_never_accepted_or_are_damaged(tmp_path: Path) -> None:
     (line,) = compare(present, accepted).lines
     assert "what is said of it has no accepted state: toy/table-1.json is missing" in line
     for text, why in (
-        (good.replace("{", "", 1), "is no JSON"),
+        (good.replace("{", "", 1), "is not valid JSON"),
         ("[]", "needed: an object"),
         (good.replace('"version": 1', '"version": 2'), "needed: an object"),
         (json.dumps({**json.loads(good), "words": {"title": 1}}), "needed: an object"),

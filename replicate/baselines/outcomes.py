@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Status = Literal["same", "changed", "new", "gone", "accepted", "failed"]
 
-#: Statuses that an author has to look at; a failed one is no difference, but a broken run.
+#: Statuses that an author has to look at; a failed one is not a difference but a broken run.
 DIFFERS = {"changed", "new", "gone"}
 
 _PICTURE_DPI = 60

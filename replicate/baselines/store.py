@@ -175,7 +175,7 @@ class Store:
             entry = json.loads(lines[-1]) if lines else {}
             return str(entry["accepted"])
         except (ValueError, KeyError, TypeError, RecursionError):
-            why = f"{log}:{len(lines)}: is no acceptance, needed: an object with 'accepted' in each line"
+            why = f"{log}:{len(lines)}: is not an acceptance; needed: an object with 'accepted' in each line"
             raise FigureRecordError(why) from None
 
     @staticmethod

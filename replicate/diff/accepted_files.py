@@ -73,7 +73,7 @@ def read_record(path: Path) -> Record:
     Raises
     ------
     AcceptedStateError
-        If the file is no record, or a newer version wrote it.
+        If the file is not a record, or a newer version wrote it.
     """
     try:
         return Record.from_json(_text(path))

@@ -46,7 +46,7 @@ class CellRow:
 
 @dataclass(frozen=True)
 class DiffView:
-    """A changed exhibit as the template sees it; one that is no figure, or one too many, has no `drawings`."""
+    """A changed exhibit as the template sees it; one that is not a figure, or one too many, has no `drawings`."""
 
     diff: ExhibitDiff
     label: str

@@ -89,7 +89,7 @@ def read_words(path: Path) -> Words:
         raise AcceptedStateError(msg) from error
     except (ValueError, RecursionError) as error:
         line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
-        msg = f"{where}{line}: is no JSON: {error}"
+        msg = f"{where}{line}: is not valid JSON: {error}"
         raise AcceptedStateError(msg) from error
     words = content.get("words") if isinstance(content, dict) else None
     fits = isinstance(content, dict) and content.get("format") == FORMAT and content.get("version") == VERSION

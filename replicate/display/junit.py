@@ -2,7 +2,7 @@
 
 One test per printed value and claim: it fails where the value is unexplained and no ledger entry says what
 was tried, is skipped where nothing can be computed, and passes otherwise, since a known and explained
-difference is no news. One test per exhibit that raised, and one for each other problem.
+difference is not news. One test per exhibit that raised, and one for each other problem.
 """
 
 from __future__ import annotations

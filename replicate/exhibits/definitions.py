@@ -17,7 +17,7 @@ from replicate.plain_text import steering
 _ID = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,98}[A-Za-z0-9_-])?", re.ASCII)
 _ALLOWED = "letters and digits first, then also '-', '_' and '.', at most 100 and no '.' at the end"
 
-#: Names of pages of a report that are no paper's.
+#: Names of a report's own pages, which no paper may have.
 PAGES = frozenset({"index", "methods", "errata", "whatif"})
 
 

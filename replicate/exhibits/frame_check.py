@@ -30,8 +30,8 @@ def checked_frame(table: Table, made: object, printed: Collection[Key]) -> pd.Da
     Raises
     ------
     PaperDefinitionError
-        If it is no data frame, has other rows or columns than the table, one of them twice, or something that is not a
-        number where the paper prints one.
+        If it is not a data frame, has other rows or columns than the table, one of them twice, or something other than
+        a number where the paper prints one.
 
     Examples
     --------

@@ -247,7 +247,7 @@ def _grid(
             raise PrintedFileError(msg)
     for line, cells in records:
         if (cells[0].startswith("#") and len(cells) == 1) or cells[0].lower() == "sep=":
-            msg = f"{name}:{line}: '{cells[0]}' is no row; a CSV has no comments: remove the line"
+            msg = f"{name}:{line}: '{cells[0]}' is not a row; a CSV has no comments: remove the line"
             raise PrintedFileError(msg)
     if "" in header[1:]:
         msg = f"{name}:{header_line}: column {header.index('', 1) + 1} has no name; remove the comma too many"

@@ -116,7 +116,7 @@ def _owner(call: Drawn, namers: dict[int, Namer], whole: Namer) -> str:
     if inner is not None:
         axes = chain[inner]
         return namers[id(axes)].add(call, chain[inner + 1 :])
-    # Sub-figures are no parts themselves.
+    # Sub-figures are not parts themselves.
     below = [artist for artist in chain[1:] if not hasattr(artist, "subplots")]
     return whole.add(call, tuple(below))
 

@@ -16,7 +16,7 @@ _NEEDED = {"panel", "xlim", "ylim"}
 
 
 def check_record(figure: object, panels: object) -> None:
-    """Refuse what is no description of a figure.
+    """Refuse what does not describe a figure.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def _check_fields(entry: Mapping[str, Any], where: str) -> None:
 
 
 def refuse(why: str, line: int | None = None) -> NoReturn:
-    """Raise the error that says why a text is no record."""
+    """Raise the error that says why a text is not a record."""
     raise FigureRecordError(why, line) from None
 
 

@@ -1,7 +1,7 @@
 """How large a drawing may be, and what becomes of crowds: thousands of marks are pixels inside the SVG.
 
 A figure beyond the limits is refused at once, before it is drawn: nobody could look at it, and a run would hang. Within
-them, a picture is drawn in well under a minute. Marks that no eye could tell apart are no shapes of their own in the
+them, a picture is drawn in well under a minute. Marks that no eye could tell apart are not shapes of their own in the
 SVG; texts, axes and curves stay sharp.
 """
 

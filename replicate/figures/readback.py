@@ -76,7 +76,7 @@ class Panel:
         Rows ``(panel, curve, x, y)`` in drawing order.
     description
         Everything else that has a name, ready for JSON, as in `replicate.figures.describe`; ``points`` and
-        ``areas`` (names of the curves that are no lines), ``thinned`` (by name, how far a curve of very many points
+        ``areas`` (names of the curves that are not lines), ``thinned`` (by name, how far a curve of very many points
         may lie from what was drawn, as a fraction of the axes), ``dense`` (their envelopes), ``clouds`` (digests of
         very many scattered points) and ``loose`` (curves that labels interrupt), where there are any.
     names
@@ -223,7 +223,7 @@ def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Cur
         yield _thinned_curve(collection, name, "line" if lines else "area", points, axes)
 
 
-# Filled areas; matplotlib derives arrows, barbs and much more from polygons, which are no areas.
+# Filled areas; matplotlib derives arrows, barbs and much more from polygons, which are not areas.
 # `fill_between` has a class of its own since matplotlib 3.10.
 _OUTLINED = {"PolyCollection", "FillBetweenPolyCollection"}
 

@@ -78,7 +78,7 @@ class Record:
         if version == 1 and isinstance(content, list):
             content = {"figure": {}, "panels": content}
         elif version != VERSION or content.get("format") != FORMAT:
-            refuse(f"is no record of a figure: 'format' must be '{FORMAT}' and 'version' at most {VERSION}")
+            refuse(f"is not a record of a figure: 'format' must be '{FORMAT}' and 'version' at most {VERSION}")
         figure = content.get("figure")
         check_record(figure, content.get("panels"))
         panels, curves = [], {}

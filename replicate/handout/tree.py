@@ -123,7 +123,7 @@ def attribute(element: Element, key: str) -> str:
 
 
 def plain(content: Sequence[Element]) -> Element:
-    """Return a block of inline content that is no paragraph."""
+    """Return a block of inline content that is not a paragraph."""
     return {"t": "Plain", "c": list(content)}
 
 

@@ -234,7 +234,7 @@ def _measured(controller: PID, y: _Row, own: slice, a: Array, b: Array) -> tuple
         measured = _Row(fd * y.x, fd * y.v, 0.0)
         measured.x[own] = fc
         return measured, None
-    if np.any(y.v):  # the output jumps: its slope is no state of the chain
+    if np.any(y.v):  # the output jumps: its slope is not a state of the chain
         measured, slope = y, None
         for index in range(own.start, own.stop):  # a chain of equal first-order lags
             slope = (measured - _Row.state(index, n, inputs)) * (1.0 / lag)

@@ -4,7 +4,7 @@ LoopError(ValueError)
 ├── ImproperLoopError      the loop contains a pure differentiator without a causal solution
 ├── UnstableLoopError      a quantity was asked for that only a stable loop has
 ├── NotSettledError        the response has not settled inside its horizon
-├── NotationError          a text is no plant or controller
+├── NotationError          a text is not a plant or controller
 └── TuningRuleError        a tuning rule is incomplete, cannot be read, or lacks a parameter
 
 A design that finds no controller is not an error: it returns a result whose status says so.

@@ -54,7 +54,7 @@ def respond_to(
     Raises
     ------
     LoopError
-        If something is no input, or a sine is given without a horizon.
+        If something is not an input, or a sine is given without a horizon.
     UnstableLoopError
         If no horizon is given and the loop is unstable.
 

@@ -149,7 +149,7 @@ class LoopViews:
         ----------
         limits
             The least and the largest control signal, before any load; 0, its value at rest, must be between them.
-            ``inf`` and ``-inf`` are no limit.
+            ``inf`` and ``-inf`` mean no limit.
         anti_windup
             ``"none"``; ``"back-calculation"``: :math:`\dot I = k_i e + (u - v)/T_t`, v being the command and u the
             control signal; or ``"clamping"``: the integral part is held while v is beyond a limit and the error would

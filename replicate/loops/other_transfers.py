@@ -152,7 +152,7 @@ class SumTransfer(LoopTransfer):
         return total
 
     def characteristic(self, s: Any) -> ComplexArray:
-        """Evaluate f(s) = D(s) + sum N_i(s) exp(-s L_i), without the zeros that are no poles of the loop."""
+        """Evaluate f(s) = D(s) + sum N_i(s) exp(-s L_i), without the zeros that are not poles of the loop."""
         s = np.asarray(s, dtype=complex)
         whole = np.polyval(self.den, s) + self._fed_back(s)
         for pole in self._removable:
@@ -193,7 +193,7 @@ class SumTransfer(LoopTransfer):
 
     @property
     def pole_at_rest(self) -> bool:
-        """Whether s = 0 is a closed-loop pole that is no pole of the common denominator alone."""
+        """Whether s = 0 is a closed-loop pole, but not one of the common denominator alone."""
         return 0.0 not in self._removable and not self.den[-1] + sum(num[-1] for num in self.nums if num.size)
 
     @property

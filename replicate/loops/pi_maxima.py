@@ -56,7 +56,7 @@ def local_maxima(plant: Plant, circle: Circle, w: Array) -> list[Maximum]:
         neighbours = tuple(float(w[g.bound]) for g in (gap, *connected))
         opened = [j for j in (i - 1, i + 1) if 0 <= j < gains.size and gap.top > gaps.uppermost[j]]
         open_end = (float(gains[opened[-1]]), 2.0 * gap.top) if opened else None
-        if i == gains.size - 1 and connected:  # the end of the gain grid is no maximum either
+        if i == gains.size - 1 and connected:  # the end of the gain grid is not a maximum either
             open_end = (float(gains[i]), middle)
         found.append(Maximum(float(gains[i]), gap.top, middle, float(w[gap.bound]), neighbours, open_end))
     return found

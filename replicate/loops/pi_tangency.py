@@ -79,7 +79,7 @@ def corner_optimum(plant: Plant, circle: Circle, k: float, ki: float, w1: float,
             result += [abs(offset) ** 2 / circle.radius**2 - 1.0, frequency * (np.conj(offset) * slope).real]
         return np.array(result)
 
-    with np.errstate(all="ignore"):  # a start that is no corner may wander off; the residual tells
+    with np.errstate(all="ignore"):  # a start that is not a corner may wander off; the residual tells
         solution = root(equations, np.array([k, ki, w1, w2]) / scale, method="hybr", options={"xtol": 1e-15})
     if not np.max(np.abs(solution.fun)) <= 1e-9:
         return None

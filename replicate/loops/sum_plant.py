@@ -1,8 +1,8 @@
 r"""A plant with several dead times, :math:`G(s) = \sum_i N_i(s) e^{-sL_i} / D(s)`, and the algebra of plants.
 
 All terms share one denominator, the least common multiple of theirs, so that the plant has the fewest states. A pole
-that all terms cancel together, as s = 0 of :math:`(1-e^{-s})/s`, is no pole; near it the plant is evaluated by Cauchy's
-integral, which does not cancel.
+that all terms cancel together, as s = 0 of :math:`(1-e^{-s})/s`, is not a pole; near it the plant is evaluated by
+Cauchy's integral, which does not cancel.
 """
 
 from __future__ import annotations

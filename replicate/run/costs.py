@@ -1,7 +1,7 @@
 """What each unit of work cost the last time, so that the longest is begun first and all workers end together.
 
 Kept in the user's own cache folder, not with the results: times differ from run to run, results do not. Nothing depends
-on it but the order of work; a file that cannot be read or written is no loss.
+on it but the order of work; a file that cannot be read or written costs nothing but order.
 """
 
 from __future__ import annotations

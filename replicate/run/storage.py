@@ -72,7 +72,7 @@ def from_text(text: str | bytes) -> Result:
     Raises
     ------
     ValueError
-        If the text is no result: not JSON, a field missing or one too many, a value of another type.
+        If the text is not a result: not JSON, a field missing or one too many, a value of another type.
 
     Examples
     --------

@@ -91,7 +91,7 @@ def _folder(folder: Path, sweep: SweepFile, file_format: str) -> Iterator[None]:
         except FileNotFoundError:
             foreign = sorted(entry.name for entry in folder.iterdir() if entry.name != ".replicate")
             if foreign:
-                msg = f"{folder}: holds {foreign[0]}, which is no sweep's: name another folder with --out"
+                msg = f"{folder}: holds {foreign[0]}, which belongs to no sweep: name another folder with --out"
                 raise OutputError(msg) from None
             keep_file(path, (json.dumps(about, indent=1) + "\n").encode())
         except (OSError, ValueError, RecursionError) as error:

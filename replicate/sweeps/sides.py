@@ -94,7 +94,7 @@ def _range(column: str, given: dict[str, Any], refuse: Refuse) -> NDArray[np.flo
     unknown = set(given) - {"from", "to", "points", "scale"}
     whole = isinstance(points, int) and not isinstance(points, bool) and points >= 1
     if unknown or not _is_number(first) or not _is_number(last) or not whole or scale not in SCALES:
-        refuse(column, f"{column} is no range: expected {RANGE}")
+        refuse(column, f"{column} is not a range; expected {RANGE}")
     if scale == SCALES[0]:
         return np.linspace(first, last, points)
     if not (first > 0 and last > 0):

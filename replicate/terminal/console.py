@@ -1,6 +1,6 @@
 """The consoles of the command line.
 
-Colours follow the terminal and ``NO_COLOR``. Where the output is no terminal, lines are 100 columns wide
+Colours follow the terminal and ``NO_COLOR``. Where the output is not a terminal, lines are 100 columns wide
 unless ``COLUMNS`` says otherwise.
 """
 
@@ -45,7 +45,7 @@ class _Visible:
 
 
 def print_whole(grid: Grid, console: Console) -> None:
-    """Print a table as wide as it is: a number that is cut short is no number."""
+    """Print a table as wide as it is: a number cut short would be another number."""
     width = console.width
     wide = console.options.update(max_width=_ENDLESS)
     console.width = max(width, console.measure(grid, options=wide).maximum)

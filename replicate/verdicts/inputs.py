@@ -34,7 +34,7 @@ class Inputs:
     printed
         By exhibit id: the printed numbers by (row, column).
     unused
-        A line for each file of printed numbers that is no exhibit's.
+        A line for each file of printed numbers that belongs to no exhibit.
     """
 
     printed: Printed = field(default_factory=dict)

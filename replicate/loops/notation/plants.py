@@ -30,7 +30,7 @@ def parse_plant(text: str) -> Plant:
     Raises
     ------
     NotationError
-        If the text is no transfer function, is improper, or predicts; the line names the column.
+        If the text is not a transfer function, is improper, or predicts; the line names the column.
 
     Examples
     --------

@@ -16,7 +16,7 @@ MOST_DEGREE = 60
 
 
 class NotRationalError(ValueError):
-    """An expression is no sum of rational functions times dead times; ``args`` hold column and reason."""
+    """An expression is not a sum of rational functions times dead times; ``args`` hold column and reason."""
 
     def __init__(self, column: int, reason: str, *, fatal: bool = True) -> None:
         super().__init__(reason)

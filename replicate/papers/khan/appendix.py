@@ -89,7 +89,7 @@ def optimum(p: float) -> tuple[float, float, float]:
     Raises
     ------
     ValueError
-        If the zero that is found is no minimum, or its loop is not stable.
+        If the zero that is found is not a minimum, or its loop is not stable.
     """
     start = np.array(case_gains("ISE-I" if p < 0.2 else "ISE-II", p, 1.0))
 
