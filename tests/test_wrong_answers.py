@@ -194,7 +194,7 @@ def test_what_says_nothing_is_named_by_every_command(
         ("printed/table-1.csv", "3.8", '"3,8"', """notation=Notation(decimal=",") would accept it"""),
         ("printed/table-1.csv", "1.93", "<1.93", "notation=Notation(bounds=True) would accept it"),
         ("printed/table-1.csv", ",", "\t", "gauss/printed/table-1.csv:1: cells are separated by tabs; allowed: commas"),
-        ("printed/table-1.csv", "row,", "# by me\nrow,", "gauss/printed/table-1.csv:1: '# by me' is not a row; a CSV h"),
+        ("printed/table-1.csv", "row,", "# by me\nrow,", "gauss/printed/table-1.csv:1: '# by me' is not a row; a CSV "),
         ("printed/table-1.csv", "row,", "sep=,\nrow,", "gauss/printed/table-1.csv:1: 'sep=' is not a row; a CSV has n"),
         ("printed/table-1.csv", "\n", ",\n", "gauss/printed/table-1.csv:1: column 4 has no name; remove the comma too"),
         ("printed/table-1.csv", "1.93\n", "1.93,\n", "gauss/printed/table-1.csv:2: row 'A' has 4 cells, the header ha"),

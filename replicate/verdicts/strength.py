@@ -33,6 +33,7 @@ _FEWEST_NEIGHBOURS = 3  # cells of one quantity, which can tell of it
 _SAME = 1e-9  # relative: readings that give the same number
 _MEETS = frozenset({"equal", "consistent"})
 PARTS = 100  # of a digit: how finely digits are counted
+_MOST_PLACES = 100_000  # of a distribution: more than a thousand digits are counted less finely
 
 
 @dataclass(frozen=True)
@@ -190,19 +191,17 @@ def as_many_digits(met: Sequence[float], possible: Sequence[float]) -> float:
     >>> round(as_many_digits([2.0], [2.0, 2.0]), 6), round(as_many_digits([4.0], [4.0, 1.0]), 6)
     (0.0199, 0.0001)
     """
-    goal = sum(_parts(digits) for digits in met)
-    places = np.arange(goal + 1)
+    parts = min(PARTS, _MOST_PLACES / max(sum(met), 1.0))
+    goal = sum(round(parts * digits) for digits in met)
     reached = np.zeros(goal + 1)  # the probability of so many parts of digits, in the last place of at least so many
     reached[0] = 1.0
     for digits in possible:
-        chance = 10.0**-digits
-        moved = np.minimum(places + _parts(digits), goal)
-        reached = (1.0 - chance) * reached + np.bincount(moved, chance * reached, goal + 1)
+        chance, step = 10.0**-digits, min(round(parts * digits), goal)
+        happened = chance * reached
+        reached *= 1.0 - chance
+        reached[step:] += happened[: goal + 1 - step]
+        reached[goal] += happened[goal + 1 - step :].sum()
     return min(float(reached[goal]), 1.0)
-
-
-def _parts(digits: float) -> int:
-    return round(PARTS * digits)
 
 
 def _repeated(chance: float, choices: int) -> float:
