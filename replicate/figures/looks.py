@@ -172,8 +172,8 @@ def _clips(clip: Any) -> str:
 def _symbols(one: Mark, other: Mark) -> Iterator[str]:
     yield from _shapes(one, other)
     scales = one.get("scale", 1.0), other.get("scale", 1.0)
-    if ("symbols" in one) != ("symbols" in other):
-        return
+    if {"symbol", "symbols"} & one.keys() != {"symbol", "symbols"} & other.keys():
+        return  # said already, or kept in another way by an earlier version
     if isinstance(scales[0], float | int) and isinstance(scales[1], float | int):
         ratio = _reach(other) / _reach(one)
         if abs(ratio - 1.0) > _LARGER:
