@@ -6,10 +6,10 @@ they are the piece's own control signal, read from its polynomial. Together with
     X = 1 (x) X_0 + h/2 (S X A^T + sum_i S v_i B_i^T + S 1 E^T r),    u = U_x X + sum_i U_i v_i + U_r r
 
 this is one linear system on Chebyshev-Lobatto nodes, a fixed map for each length h. A jump of the response returns
-after every sum of dead times, smoother each time by the integrations on its way: while it can matter, pieces end
-there. In between their length doubles where the solution is smooth, also beyond the dead times, and is halved where its
-last Chebyshev coefficients are not at rounding level. A short dead time in a slow loop, or a fast lag, thus costs a few
-dozen pieces and not as many as fit into the horizon.
+after every sum of dead times, smoother each time by the integrations on its way: while it can matter as it arrives,
+pieces end there, however smooth it leaves the plant. In between their length doubles where the solution is smooth,
+also beyond the dead times, and is halved where its last Chebyshev coefficients are not at rounding level. A short dead
+time in a slow loop, or a fast lag, thus costs a few dozen pieces and not as many as fit into the horizon.
 
 Reference: Bellman and Cooke, "Differential-Difference Equations" (1963), chapters 3 and 5.
 """
@@ -32,7 +32,7 @@ from replicate.loops.resolution import START, Resolution, as_good_as_it_gets, co
 Array = NDArray[np.float64]
 
 STARTING = 3.5  # first piece, in units of the fastest time constant
-SMOOTHEST = 12  # order of a derivative whose jump no longer has to fall on the end of a piece
+SMOOTHEST = 12  # order of a derivative whose jump, when it arrives, no longer has to fall on the end of a piece
 SMALLEST_JUMP = 1e-17  # of the jump that set it off: one that is rounding
 MOST_PIECES = 200_000
 
@@ -146,7 +146,7 @@ class _March:
                 found.append(time)
             for i, delay in enumerate(self.delays):
                 weight = size * abs(float(self.row.v[i])) if around[i] == 0 else size
-                if delay and order + around[i] < SMOOTHEST and weight > SMALLEST_JUMP and time + delay < until:
+                if delay and order < SMOOTHEST and weight > SMALLEST_JUMP and time + delay < until:
                     heapq.heappush(pending, (time + float(delay), order + around[i], weight))
             known[time] = (order, size)
             if len(found) > MOST_PIECES:

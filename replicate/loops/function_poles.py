@@ -101,7 +101,11 @@ def _starts_on_axis(transfer: LoopTransfer, radius: Array) -> ComplexArray:
     """Return starts on the negative real axis, where L is real: sign changes and minima of 1 + 1/L."""
 
     def excess(x: float) -> float:
-        return float(1.0 + 1.0 / complex(transfer(complex(-x))).real)
+        # 1 + 1/L where L is large, and without its poles where L is zero: (1 + L) L / (1 + L^2)
+        size = float(complex(transfer(complex(-x))).real)
+        if abs(size) > 1.0:
+            return (1.0 + 1.0 / size) / (1.0 + 1.0 / size**2)
+        return (1.0 + size) * size / (1.0 + size**2)
 
     smooth = ~has_cut(transfer, radius.astype(complex))
     value = 1.0 + 1.0 / transfer(-radius.astype(complex)).real

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 import scipy.signal
 
+from loops.references import de_hoog
 from replicate.loops import PI, PID, Loop, LoopError, Plant, design_pi
 
 FOPTD = Plant.foptd(1.0, 1.0, 1.0)
@@ -89,6 +90,26 @@ def test_a_short_dead_time_in_a_slow_loop() -> None:
     assert load.iae() == pytest.approx(1.0 / 500.0, rel=1e-10)
     # the integral of t y of a load step is -Y'(0) with Y = G/(1 + L)/s = (1 + s L + ..)/(ki (1 + s) (1 + s/k)...)
     assert load.itae() == pytest.approx((1.0 + 1.0 / 500.0) / 500.0, rel=1e-9)
+
+
+@pytest.mark.parametrize("order", [11, 12, 13, 20])
+def test_a_step_reaches_many_lags_on_time(order: int) -> None:
+    # so many integrations make whatever passes them smooth; the pieces must still end where the steps arrive
+    k, ki, dead_time = 0.2, 0.012, 0.0225
+    loop = Loop(Plant([1.0], np.poly([-1.0] * order), dead_time), PI(k, ki))
+
+    def plant(s: mp.mpc) -> mp.mpc:
+        return mp.exp(-s * mp.mpf(dead_time)) / (s + 1) ** order
+
+    def controller(s: mp.mpc) -> mp.mpc:
+        return mp.mpf(k) + mp.mpf(ki) / s
+
+    load, step = loop.load_step(until=100.0), loop.step(until=100.0)
+    for t in (9.0, 30.0):
+        expected = de_hoog(lambda s: plant(s) / s / (1 + plant(s) * controller(s)), t)
+        assert load(t) == pytest.approx(float(expected), rel=1e-10)
+        expected = de_hoog(lambda s: plant(s) * controller(s) / s / (1 + plant(s) * controller(s)), t)
+        assert step(t) == pytest.approx(float(expected), rel=1e-10)
 
 
 @pytest.mark.parametrize("lag", [1e-3, 1e-6, 1e-9])
