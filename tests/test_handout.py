@@ -415,8 +415,8 @@ def test_letters_of_other_scripts_are_set(make: Make, words: str) -> None:
 
 
 def test_a_letter_that_no_font_has_is_named_with_its_line(make: Make) -> None:
-    document = make(TEXT.replace("Why?", "Why, 中?"))
-    with pytest.raises(TemplateError, match=r"toy/handout\.md:4: no font at hand has the letter '中' \(U\+4E2D"):
+    document = make(TEXT.replace("Why?", "Why, 𓀀?"))
+    with pytest.raises(TemplateError, match=r"toy/handout\.md:4: no font at hand has the letter '𓀀' \(U\+13000"):
         pdf(document)
 
 
