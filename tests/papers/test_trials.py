@@ -8,6 +8,7 @@ import re
 import pytest
 
 from replicate.exhibits import Paper, Table
+from replicate.exhibits.trials import listed
 from replicate.loops import PID
 from replicate.loops.notation import parse_controller, parse_plant
 from replicate.run.library import Library
@@ -25,19 +26,17 @@ def test_each_paper_has_rows_to_try_out(id: str) -> None:
     found = tables(PAPERS[id])
     assert found
     for table in found:
-        assert table.trials is not None
-        rows = table.trials()
+        rows = {trial.row for trial in listed(table.trials)}
         assert rows, table.id
-        assert set(rows) <= set(table.rows), table.id
+        assert rows <= set(table.rows), table.id
 
 
 @pytest.mark.parametrize("id", PAPERS)
 def test_the_page_can_read_each_loop(id: str) -> None:
     for table in tables(PAPERS[id]):
-        assert table.trials is not None
-        for row, (plant_text, controller_text) in table.trials().items():
-            where = f"{table.id}, {row}: {plant_text}, {controller_text}"
-            plant, controller = parse_plant(plant_text), parse_controller(controller_text)
+        for trial in listed(table.trials):
+            where = f"{table.id}, {trial}"
+            plant, controller = parse_plant(trial.plant), parse_controller(trial.controller)
             assert plant.is_rational, where
             assert len(plant.parts) == 1, where
             assert plant.num.size <= plant.den.size <= MOST_POLES + 1, where
@@ -54,13 +53,12 @@ def test_the_page_can_read_each_loop(id: str) -> None:
 def test_exercises_lead_to_loops_that_exist(id: str) -> None:
     text = (PAPERS[id].folder() / "handout.md").read_text(encoding="utf-8")
     exercises = text.partition("## Exercises")[2]
-    calls = re.findall(r"try_it\('([^']+)', '([^']+)'\)", exercises)
+    calls = re.findall(r"try_it\('([^']+)', '([^']+)'(?:, '([^']+)')?\)", exercises)
     assert len(set(calls)) >= 2
-    for table, row in calls:
+    for table, row, case in calls:
         found = PAPERS[id].exhibits[table]
         assert isinstance(found, Table)
-        assert found.trials is not None
-        assert row in found.trials()
+        assert (row, case) in {(trial.row, trial.case) for trial in listed(found.trials)}
 
 
 def printed(paper: str, table: str) -> dict[str, dict[str, str]]:
@@ -71,8 +69,7 @@ def printed(paper: str, table: str) -> dict[str, dict[str, str]]:
 def controllers(paper: str, table: str) -> dict[str, PID]:
     found = PAPERS[paper].exhibits[table]
     assert isinstance(found, Table)
-    assert found.trials is not None
-    return {row: parse_controller(text) for row, (_, text) in found.trials().items() if isinstance(row, str)}
+    return {trial.row: parse_controller(trial.controller) for trial in listed(found.trials)}
 
 
 @pytest.mark.parametrize("table", ["I-table-1", "I-table-5", "II-table-1", "IIs-table-2"])
