@@ -77,7 +77,7 @@ def test_a_latex_document_asks_for_the_figures_beside_it(sheet: Document) -> Non
 
 def test_a_typst_document_is_one_file_that_typst_sets(sheet: Document) -> None:
     source = typ(sheet)
-    made = typst.compile(source, font_paths=fonts(), pdf_standards=["ua-1"])  # type: ignore[misc]
+    made = typst.compile(source, font_paths=fonts(), pdf_standards=["ua-1"])
     assert isinstance(made, bytes)
     assert b'image("' not in source
     assert b"#import" not in source
