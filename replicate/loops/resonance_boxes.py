@@ -38,6 +38,7 @@ _ONE = exactly(1.0)
 _RATIO = 1.25  # of the ends of the first intervals of frequencies
 _SPAN = 1e3  # of the frequencies, up to that beyond which the loop gain is small
 _MOST_INTERVALS = 160  # that are looked at
+_NARROWEST = 2e-3  # relative width of an interval that is still divided
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,8 @@ class ResonanceBox:
                 return True
             w = waiting.pop()
             if not (excludes(w, self.excess(w)) or self.size(w).high < self._least or self._no_peak(w)):
+                if w.high - w.low < _NARROWEST * w.high:
+                    return False  # what is left open is the width of the box, not that of the interval
                 waiting += [Interval(w.low, w.middle), Interval(w.middle, w.high)]
         return False
 
