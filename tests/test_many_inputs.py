@@ -112,7 +112,7 @@ def test_card_and_note_say_what_the_inputs_leave_open_and_how_certain_that_is() 
     table = made()
     view = table_view(table, *judgement(table, "5.9", "6.0"))
     (note,) = view.notes
-    assert note.ranges == {"none of which gives the print, by proof": [("A", "sum", "4.900 to 5.100")]}
+    assert note.ranges == {"none of which gives the print, by proof": [("A", "sum", "4.9 to 5.1")]}
     values = {cell.column: cell.values[0] for _, cells in view.rows for cell in cells if cell.printed}
     assert values["sum"].certainty == "none of which gives the print, by proof"
     assert (values["product"].range, values["product"].certainty) == ("5.752 to 6.252", "")
