@@ -14,6 +14,7 @@ from replicate.exhibits.variants import Answer, Answers, Inputs
 from replicate.handout import ClassSet
 from replicate.handout import build as build_module
 from replicate.handout import class_set as class_set_module
+from replicate.handout import notebook as notebook_module
 from replicate.handout import placing as placing_module
 
 SVG = (
@@ -108,7 +109,7 @@ def class_set(folder: Path, patched: pytest.MonkeyPatch, text: str = TEXT, **set
     (folder / "toy" / "handout.md").write_text(text, encoding="utf-8")
     paper = synthetic.paper(folder / "toy")
     made = exercises()
-    for module in (placing_module, class_set_module, build_module):
+    for module in (placing_module, class_set_module, build_module, notebook_module):
         patched.setattr(module, "exercises_of", lambda _: made)
     return ClassSet(paper, results(), (), **settings)  # type: ignore[arg-type]
 

@@ -10,6 +10,7 @@ from replicate.exhibits.results import Results
 from replicate.handout.edition import TEXT, edition
 from replicate.handout.formats import SLIDES
 from replicate.handout.own_code import LONGEST_RUN
+from replicate.handout.placing import code_of
 from replicate.run.guarded import GuardedProcess
 from replicate.run.units import loaded
 from replicate.verdicts.rows import VerdictRow
@@ -33,12 +34,19 @@ def unreadable_handouts(
             )
             try:
                 for kind in kinds:
-                    list(process.stream(_read, paper.package, *given, kind))
+                    if code_of(paper).is_file():
+                        list(process.stream(_read_in_process, paper.package, *given, kind))
+                    else:  # a text alone ends
+                        _read(paper, *given, kind)
             except ReplicateError as error:
                 found[paper.id] = str(error)
     return found
 
 
-def _read(package: str, results: Results, verdicts: Sequence[VerdictRow], kind: str) -> Iterator[None]:
-    edition(loaded(package), results, verdicts, solutions=True, kind=kind, programs=False)
+def _read(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], kind: str) -> None:
+    edition(paper, results, verdicts, solutions=True, kind=kind, programs=False)
+
+
+def _read_in_process(package: str, results: Results, verdicts: Sequence[VerdictRow], kind: str) -> Iterator[None]:
+    _read(loaded(package), results, verdicts, kind)
     yield from ()

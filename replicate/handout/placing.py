@@ -31,6 +31,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -281,6 +282,11 @@ class Placing:
         return f"{OPEN}{len(self.things) - 1}{CLOSE}"
 
 
+def code_of(paper: Paper) -> Path:
+    """Return where the functions of a paper's handout lie, if it has any."""
+    return paper.folder() / "handout.py"
+
+
 def exercises_of(paper: Paper) -> Exercises:
     """Return what a paper's handout computes and draws; nothing if its package has no module for it.
 
@@ -289,7 +295,7 @@ def exercises_of(paper: Paper) -> Exercises:
     PaperDefinitionError
         If the module fails, or defines no `Exercises`.
     """
-    file = paper.folder() / "handout.py"
+    file = code_of(paper)
     if not file.is_file():
         return Exercises()
     with OwnCode(str(file), f"{paper.id}/handout.py").running("the module"):

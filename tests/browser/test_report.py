@@ -71,7 +71,8 @@ def test_every_page_is_accessible_and_fits(report: Path, browser: Any, axe: str)
             found[f"{path.name}: wider than a phone"] = page.evaluate(SIDEWAYS)
             found[f"{path.name}: small letters in drawings"] = page.evaluate(SMALL)
             found[f"{path.name}: tab stops that are none"] = page.evaluate(STOPS) if path.name != "whatif.html" else []
-            page.evaluate(FOLD)
+            if path.name != "whatif.html":  # whose script writes into the rows that this would remove
+                page.evaluate(FOLD)
             page.emulate_media(color_scheme="dark")
             found[f"{path.name}: axe, 360 px, dark"] = violations(page, axe, BY_WIDTH + BY_COLOURS)
             page.set_viewport_size({"width": 1280, "height": 900})
