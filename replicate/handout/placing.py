@@ -31,7 +31,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property, partial
-from pathlib import Path
+from importlib.resources.abc import Traversable
 from types import ModuleType
 from typing import Any
 
@@ -282,7 +282,7 @@ class Placing:
         return f"{OPEN}{len(self.things) - 1}{CLOSE}"
 
 
-def code_of(paper: Paper) -> Path:
+def code_of(paper: Paper) -> Traversable:
     """Return where the functions of a paper's handout lie, if it has any."""
     return paper.folder() / "handout.py"
 
