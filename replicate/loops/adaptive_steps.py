@@ -25,15 +25,23 @@ from numpy.typing import NDArray
 from replicate.loops.chain import Chain, open_loop_of
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
-from replicate.loops.piece_flow import DEGREE, SAME, Row, delayed_values, integrations, nominal, piece_flow
+from replicate.loops.piece_flow import (
+    DEGREE,
+    SAME,
+    SMALLEST_JUMP,
+    SMOOTHEST,
+    STARTING,
+    Row,
+    delayed_values,
+    integrations,
+    nominal,
+    piece_flow,
+)  # fmt: skip
 from replicate.loops.plant import Plant
 from replicate.loops.resolution import START, Resolution, as_good_as_it_gets, coefficients
 
 Array = NDArray[np.float64]
 
-STARTING = 3.5  # first piece, in units of the fastest time constant
-SMOOTHEST = 12  # order of a derivative whose jump, when it arrives, no longer has to fall on the end of a piece
-SMALLEST_JUMP = 1e-17  # of the jump that set it off: one that is rounding
 MOST_PIECES = 200_000
 
 

@@ -22,6 +22,9 @@ from replicate.loops.limit_events import Piece, first_end
 from replicate.loops.piece_flow import (
     DEGREE,
     SAME,
+    SMALLEST_JUMP,
+    SMOOTHEST,
+    STARTING,
     PieceFlow,
     Row,
     delayed_values,
@@ -33,9 +36,6 @@ from replicate.loops.resolution import START, Resolution, as_good_as_it_gets, co
 
 Array = NDArray[np.float64]
 
-STARTING = 3.5  # first piece, in units of the fastest time constant
-SMOOTHEST = 12  # order of a derivative whose jump no longer has to fall on the end of a piece
-SMALLEST_JUMP = 1e-17  # of the jump that set it off: one that is rounding
 ON_LIMIT = 1e-12  # of the largest command: distance from the limit at which it slides along it
 MOST_PIECES = 100_000
 

@@ -10,7 +10,13 @@ import numpy as np
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure
-from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
+from replicate.teaching.drawing_numbers import (
+    gain_apart_from_one,
+    no_common_value,
+    no_mistake_accepted,
+    number,
+    two_digits,
+)
 from replicate.teaching.lag_loop import lag_loop
 
 if TYPE_CHECKING:
@@ -49,7 +55,7 @@ def bode_reading(exercises: Exercises, name: str, original: Inputs) -> None:
 
 def _variant(rng: Random) -> Inputs:
     return {
-        "K": two_digits(rng, 0.5, 0.9) if rng.random() < 0.5 else two_digits(rng, 1.1, 2.5),
+        "K": gain_apart_from_one(rng, 1.1, 2.5),
         "T": two_digits(rng, 2.0, 6.0),
         "L": two_digits(rng, 1.0, 3.0),
         "k": two_digits(rng, 0.5, 3.0),
@@ -96,9 +102,8 @@ def _read(numbers: tuple[float, ...]) -> tuple[float, float, float, float]:
 
 def _clear(inputs: Inputs) -> bool:
     answers = _answers(inputs)
-    overlap = any(part.accepts(value) for part in answers.values() for value in part.mistakes.values())
     in_sight = 1.6 < answers["gain margin"].value < 6.0 and 25.0 < answers["phase margin"].value < 75.0
-    return in_sight and answers["Ms"].value < 3.0 and not overlap
+    return in_sight and answers["Ms"].value < 3.0 and no_mistake_accepted(answers)
 
 
 _ALT = (

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs
-from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
+from replicate.teaching.drawing_numbers import gain_apart_from_one, no_common_value, number, two_digits
 from replicate.teaching.lag_loop import lag_loop
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def control_effort(exercises: Exercises, name: str, original: Inputs) -> None:
 
 def _variant(rng: Random) -> Inputs:
     return {
-        "K": two_digits(rng, 0.5, 0.9) if rng.random() < 0.5 else two_digits(rng, 1.1, 2.5),
+        "K": gain_apart_from_one(rng, 1.1, 2.5),
         "T": two_digits(rng, 2.0, 6.0),
         "L": two_digits(rng, 0.3, 1.5),
         "k": two_digits(rng, 1.2, 4.0),

@@ -12,6 +12,7 @@ import numpy as np
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure
 from replicate.loops import Loop
+from replicate.teaching.drawing_numbers import no_mistake_accepted
 
 if TYPE_CHECKING:
     from random import Random
@@ -74,9 +75,7 @@ def nyquist_reading(
 
     def clear(inputs: Inputs) -> bool:
         crossing, phase, _ = read(inputs)
-        one = answers(inputs)
-        overlap = any(part.accepts(value) for part in one.values() for value in part.mistakes.values())
-        return 0.15 < crossing < 0.8 and 20.0 < phase < 80.0 and not overlap
+        return 0.15 < crossing < 0.8 and 20.0 < phase < 80.0 and no_mistake_accepted(answers(inputs))
 
     exercises.vary(
         name,

@@ -12,7 +12,7 @@ from scipy import optimize
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure
-from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
+from replicate.teaching.drawing_numbers import gain_apart_from_one, no_common_value, number, two_digits
 
 if TYPE_CHECKING:
     from random import Random
@@ -52,7 +52,7 @@ def step_test(exercises: Exercises, name: str, original: Inputs) -> None:
 
 def _variant(rng: Random) -> Inputs:
     return {
-        "K": two_digits(rng, 0.5, 0.9) if rng.random() < 0.5 else two_digits(rng, 1.2, 3.0),
+        "K": gain_apart_from_one(rng, 1.2, 3.0),
         "T": two_digits(rng, 3.0, 8.0),
         "L": two_digits(rng, 1.0, 6.0),
         "u": two_digits(rng, 1.3, 2.9),

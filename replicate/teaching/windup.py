@@ -21,7 +21,7 @@ import numpy as np
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure, rounded
 from replicate.loops.limited_response import LimitedResponse
-from replicate.teaching.drawing_numbers import no_common_value, number, two_digits
+from replicate.teaching.drawing_numbers import gain_apart_from_one, no_common_value, number, two_digits
 from replicate.teaching.lag_loop import lag_loop
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def windup(exercises: Exercises, name: str, original: Inputs) -> None:
 
 def _variant(rng: Random) -> Inputs:
     return {
-        "K": two_digits(rng, 0.5, 0.9) if rng.random() < 0.5 else two_digits(rng, 1.2, 2.5),
+        "K": gain_apart_from_one(rng, 1.2, 2.5),
         "T": two_digits(rng, 2.0, 6.0),
         "L": two_digits(rng, 0.3, 1.5),
         "k": two_digits(rng, 1.2, 5.0),
