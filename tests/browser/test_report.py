@@ -149,6 +149,7 @@ def test_two_clicks_lead_a_newcomer_to_what_is_wrong_in_a_table(report: Path, br
         assert clicks == 2
         assert page.url.endswith(one["address"])
         card.get_by_role("button", name="copy address").click()
+        page.get_by_role("button", name="copied").wait_for()
         assert page.evaluate("navigator.clipboard.readText()") == page.url
 
 
@@ -251,6 +252,7 @@ def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: P
         assert [head.get_attribute("colspan") for head in heads.all()] == ["4", "4"]
         assert page.locator("#table-2 h3 .label").text_content() == "Table II"  # as the paper numbers it
         page.locator("#table-2 .files").get_by_role("button", name="copy as CSV").click()
+        page.get_by_role("button", name="copied").wait_for()
         names, *rows = csv.reader(io.StringIO(page.evaluate("navigator.clipboard.readText()")))
         assert len(set(names)) == len(names) == 9
         assert [name.endswith("ph=1") for name in names[1:]] == [True] * 4 + [False] * 4

@@ -48,10 +48,14 @@ def page(browser: Any, address: str) -> Iterator[Any]:
     assert page.wrong == []  # nothing raised, nothing was fetched
 
 
+NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)))"
+
+
 def until(page: Any, condition: str) -> None:
-    """Wait until something holds; the page's policy forbids what Playwright does to wait by itself."""
+    """Wait until something holds and is drawn; the page's policy forbids what Playwright does to wait by itself."""
     for _ in range(600):
         if page.evaluate(f"Boolean({condition})"):
+            page.evaluate(NEXT_FRAME)  # what has changed is drawn once a frame
             return
         page.wait_for_timeout(50)
     pytest.fail(f"{condition} did not come true")
@@ -571,7 +575,7 @@ def test_a_minus_sign_may_be_typographic(page: Any) -> None:
 )  # fmt: skip
 def test_a_damaged_address_leaves_a_page_that_works(page: Any, address: str, fragment: str) -> None:
     page.goto(f"{address}#{fragment}")
-    page.wait_for_timeout(100)
+    page.evaluate(NEXT_FRAME)
     until(page, "whatif.state.last && whatif.state.plant")
     page.fill("#k", "0.55")
     until(page, "whatif.state.last.stable && whatif.state.controller.k === 0.55")
@@ -584,11 +588,9 @@ def test_the_address_keeps_set_point_filter_and_three_pins(page: Any, address: s
     for gain in ("0.5", "0.45", "0.4", "0.35"):
         page.fill("#k", gain)
         until(page, f"whatif.state.last && whatif.state.controller.k === {gain}")
-        page.wait_for_timeout(50)
         page.click("#pin")
         until(page, f"whatif.state.pins.at(-1)?.controller.k === {gain}")
-    until(page, "decodeURIComponent(location.hash).includes('k=0.35')")
-    page.wait_for_timeout(400)
+    until(page, "/pins=.*;.*;k=0[.]35,/.test(decodeURIComponent(location.hash))")
     before, there = page.evaluate("[whatif.state.controller, whatif.state.pins]"), page.evaluate("location.href")
     page.goto(address + "#")
     page.goto(there)
@@ -611,12 +613,20 @@ def test_fine_steps_are_a_tenth_of_a_step(page: Any) -> None:
 
 
 def test_nothing_is_spoken_during_a_change(page: Any) -> None:
-    page.wait_for_timeout(800)
-    spoken = page.inner_text("#spoken")
-    for gain in ("0.61", "0.62", "0.63"):
-        page.fill("#k", gain)
-        page.wait_for_timeout(100)
-        assert page.inner_text("#spoken") == spoken
+    before, *during = page.evaluate("""async () => {
+      const spoken = document.getElementById("spoken"), k = document.getElementById("k");
+      const pause = (ms) => new Promise((done) => setTimeout(done, ms));
+      await pause(800);
+      const heard = [spoken.textContent];
+      for (const gain of [0.61, 0.62, 0.63]) {
+        k.value = gain;
+        k.dispatchEvent(new Event("input", { bubbles: true }));
+        await pause(100);
+        heard.push(spoken.textContent);
+      }
+      return heard;
+    }""")
+    assert during == [before] * 3
     until(page, "document.getElementById('spoken').textContent.startsWith('k=0.63')")
 
 
