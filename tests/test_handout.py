@@ -108,9 +108,9 @@ def make(tmp_path: Path) -> Make:
 # What each handout asks for; computing the other exhibits of the papers would take minutes.
 ASKED = {
     "ali": ("table-1", "table-2", "ms-count", "stability", "fig-1"),
-    "bayhan": ("table-2", "fig-2", "sample-grid", "match-count", "claims"),
+    "bayhan": ("table-1", "table-2", "fig-2", "sample-grid", "match-count", "claims"),
     "khan": ("table-1", "table-2", "eq-7", "lost-zeros", "fig-8a"),
-    "krajewski": ("table-1", "table-1-errors", "table-1-residuals", "fig-5"),
+    "krajewski": ("table-1", "table-1-errors", "table-1-residuals", "fig-5", "fig-10-values", "fig-11-values"),
     "panagopoulos": ("I-table-1", "I-table-2", "I-settling", "I-fig-2"),
 }
 # A computed value that the text of each handout quotes: exhibit, row, column.

@@ -10,8 +10,9 @@ import pytest
 from replicate.display.spanners import spans
 from replicate.display.tables import TableView, table_view
 from replicate.exhibits import Table
+from replicate.exhibits.frames import read_frame
 from replicate.exhibits.results import TableResult
-from replicate.exhibits.trials import listed
+from replicate.exhibits.trials import TableTrials, Trial, computed_trials, declared_trials
 from replicate.run.library import Library
 
 COLUMNS = ("k_1", "Ti_1", "k_2", "Ti_2")
@@ -82,10 +83,12 @@ def test_a_row_leads_to_its_loops() -> None:
     table = Table("table-1", "table", "Gains", rows=("A", "B"), columns=("k", "Ti"), printed=False)
     frame = pd.DataFrame([[1.0, 2.0], [math.nan, 4.0]], index=["A", "B"], columns=["k", "Ti"])
     table.reading("as-written", "as written")(frame.copy)
-    table.trials = lambda: {("A", "slow"): ("1/s", "k=1"), ("A", "fast"): ("1/s", "k=2")}
-    table.computed_trial = lambda _row, numbers: (f"1/(s+{numbers['Ti']:g})", f"k={numbers['k']:g}")
-    shown = table_view(table, TableResult("p", "table-1", {"as-written": frame}), [])
-    assert shown.trials == {  # nothing for B, whose gain was not computed
+    declared = declared_trials(lambda: {("A", "slow"): ("1/s", "k=1"), ("A", "fast"): ("1/s", "k=2")}, table.rows)
+    trial = lambda _row, numbers: (f"1/(s+{numbers['Ti']:g})", f"k={numbers['k']:g}")  # noqa: E731
+    computed = computed_trials(trial, read_frame(frame))
+    assert computed == (Trial("A", "", "1/(s+2)", "k=1"),)  # nothing for B, whose gain was not computed
+    result = TableResult("p", "table-1", {"as-written": frame}, trials=TableTrials(declared, computed))
+    assert table_view(table, result, []).trials == {
         "A": [
             ("slow", "whatif.html#plant=1%2Fs&controller=k%3D1"),
             ("fast", "whatif.html#plant=1%2Fs&controller=k%3D2"),
@@ -104,7 +107,7 @@ def test_every_row_of_tuning_parameters_can_be_tried_out() -> None:
         for table in paper.exhibits.values():
             if not (isinstance(table, Table) and PROPORTIONAL & {*table.columns} and INTEGRAL & {*table.columns}):
                 continue
-            rows = {*table.rows} - {trial.row for trial in listed(table.trials)}
+            rows = {*table.rows} - {trial.row for trial in declared_trials(table.trials)}
             if rows and table.computed_trial is None:
                 missing[f"{paper.id} {table.id}"] = rows
     assert missing == {"panagopoulos I-table-2": {"G9 Ms=1.4", "G9 Ms=2.0"}}  # e^{-sqrt(s)}, which the page cannot draw

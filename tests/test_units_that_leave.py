@@ -15,7 +15,7 @@ import rogue
 
 from replicate.exhibits.results import ClaimsResult, Results, TableResult
 from replicate.run.library import Library
-from replicate.run.parallel import Progress, run
+from replicate.run.parallel import Progress, failures, run
 
 #: What is said about each reading that does not return; the word that names what it did.
 SAID = {
@@ -157,6 +157,57 @@ def test_an_endless_unit_is_stopped_by_name(tmp_path: Path, body: str) -> None:
     assert list(result.frames) == ["as-written"]
     said = "stopped after 4 s (--unit-timeout allows more) (rogue_paper/exhibits.py"
     assert result.errors["endless"].startswith(said)
+
+
+#: What listing the loops of a table does, and what is said about it.
+TRIALS = {
+    "exits": ("sys.exit(0)", "trials: it tries to end the program, with status 0 (rogue_paper/exhibits.py:"),
+    "raises": ("return 1 / 0", "trials: ZeroDivisionError: division by zero (rogue_paper/exhibits.py:"),
+    "a-list": ("return []", ": trials returns list; expected: plant and controller by row"),
+    "other-row": ("return {'b': ('1/s', 'k=1')}", ": trials has ('1/s', 'k=1') for 'b'; expected: the texts of"),
+    "no-loop": ("return {'a': '1/s'}", ": trials has '1/s' for 'a'; expected: the texts of"),
+    "prints": ("print('lost')\nreturn {'a': ('1/s', 'k=1')}", ""),
+}
+#: Those after which nothing is left of the unit.
+FATAL_TRIALS = {
+    "dies": ("os._exit(0)", "it has ended its worker process with status 0"),
+    "endless": (rogue.HELD_LOOP, "stopped after 4 s (--unit-timeout allows more) (rogue_paper/exhibits.py:"),
+}
+
+
+def trials(name: str, body: str) -> str:
+    """Return a table with one reading, whose trials do something."""
+    lines = "\n".join(f"    {line}" for line in body.splitlines())
+    return f"""
+table = paper.table("{name}", "Gains", rows=("a",), columns=("x",), printed=False)
+table.reading("as-written", "As written")(good)
+
+def _trials():
+{lines}
+
+table.trials = _trials
+"""
+
+
+def test_what_listing_loops_does_is_reported_and_takes_nothing_else_down(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    tables = "".join(trials(name, body) for name, (body, _) in {**TRIALS, **FATAL_TRIALS}.items())
+    with rogue.installed(tmp_path, {}, tables):
+        results = run([Library().paper("rogue")], jobs=2, cache_dir=None, unit_timeout=4)
+    for name, (_, said) in TRIALS.items():
+        result = results["rogue", name]
+        assert isinstance(result, TableResult)
+        assert list(result.frames) == ["as-written"]
+        assert said in result.trials.error
+        assert bool(said) != bool(result.trials.declared)
+    lines = {line.partition(": ")[0]: line for line in failures(results)}
+    assert lines.keys() == {f"rogue/{name}" for name, (_, said) in TRIALS.items() if said} | {
+        f"rogue/{name} (as-written)" for name in FATAL_TRIALS
+    }
+    for name, (_, said) in FATAL_TRIALS.items():
+        assert said in lines[f"rogue/{name} (as-written)"]
+    assert "lost" not in "".join(capfd.readouterr())
 
 
 # ------------------------------------------------------------------------------------------- the command line

@@ -9,7 +9,9 @@ from pathlib import Path
 import pytest
 
 from replicate.exhibits import Paper
-from replicate.whatif import NAME, Row, whatif_page, write_whatif
+from replicate.exhibits.results import Results, TableResult
+from replicate.exhibits.trials import TableTrials, Trial
+from replicate.whatif import NAME, Row, unreadable_loops, whatif_page, write_whatif
 from replicate.whatif.reference import optimal
 
 Run = Callable[..., tuple[int, str, str]]
@@ -61,16 +63,28 @@ def test_what_cannot_be_drawn_is_refused_in_one_line(
     assert not out.exists()
 
 
-def test_rows_that_are_not_drawn_are_left_out_of_a_report(tmp_path: Path) -> None:
+def lab(*trials: Trial) -> tuple[list[Paper], Results]:
+    """Return a paper with one table, and loops of its rows as a run has listed them."""
     paper = Paper(
         id="mine", package="mine", title="T", authors=("A",), citation="C", year=2020, modules=(), numbered=()
     )
-    table = paper.table("table-1", "Rows", rows=("a", "b"), columns=("k",), printed=False)
-    table.trials = lambda: {"a": ("e^{-sqrt(s)}", "k=1"), "b": ("e^{-s}/(s+1)", "k=0.5,ki=0.4")}
-    assert write_whatif([paper], tmp_path) == [tmp_path / NAME]
+    paper.table("table-1", "Rows", rows=("a", "b"), columns=("k",), printed=False)
+    return [paper], {("mine", "table-1"): TableResult("mine", "table-1", trials=TableTrials(trials))}
+
+
+def test_rows_that_are_not_drawn_are_left_out_of_a_report(tmp_path: Path) -> None:
+    given = lab(Trial("a", "", "e^{-sqrt(s)}", "k=1"), Trial("b", "", "e^{-s}/(s+1)", "k=0.5,ki=0.4"))
+    assert write_whatif(*given, tmp_path) == [tmp_path / NAME]
     page = (tmp_path / NAME).read_text(encoding="utf-8")
     assert "mine table-1: b" in page
     assert "mine table-1: a" not in page
+    assert not unreadable_loops(*given)
+
+
+def test_a_loop_that_is_not_understood_is_named_with_its_row() -> None:
+    given = lab(Trial("a", "", "1/s", "k=1"), Trial("b", "fast", "1/(s+", "k=1"))
+    (said,) = unreadable_loops(*given).values()
+    assert said.startswith("mine/table-1: b, fast: plant '1/(s+'")
 
 
 def test_the_page_is_the_same_each_time() -> None:

@@ -87,7 +87,7 @@ def handout(
     from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.counted_progress import counted_progress_on
-    from replicate.whatif import DISTRIBUTIONS, ROOMS, write_whatif
+    from replicate.whatif import DISTRIBUTIONS, ROOMS, unreadable_loops, write_whatif
 
     again = Form.read(form) if form is not None else None
     selected = read_selection(select) if select else again.select if again else ()
@@ -133,6 +133,7 @@ def handout(
         # Those of other papers, and other editions, stay.
         with staged(run.folder, "handouts", renews=lambda _: False) as fresh:
             outcome = run.recompute(chosen)
+            outcome = outcome.without(unreadable_loops(outcome.papers, outcome.results))
             written = []
             with counted_progress_on(console(stderr=True), "sheets") as report:
                 order = replace(order, packages=tuple(paper.package for paper in outcome.papers))
@@ -142,8 +143,10 @@ def handout(
                     else:
                         name, content = made
                         written.append(_written(fresh / "handouts" / name, content))
-            keep = run.kept_texts(ROOMS, DISTRIBUTIONS)
-            written += write_whatif(outcome.papers, fresh / "handouts", keep=keep)  # exercises link to it
+            # Exercises link to this page.
+            written += write_whatif(
+                outcome.papers, outcome.results, fresh / "handouts", keep=run.kept_texts(ROOMS, DISTRIBUTIONS)
+            )
     for path in dict.fromkeys(path.relative_to(fresh) for path in written):
         echo(f"handout: {run.folder / path}")
     exit_with(run.within, outcome)

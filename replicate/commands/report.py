@@ -25,7 +25,7 @@ def report(
     Of papers that are named, their pages are written and what all pages share.
     """
     from replicate.report.data import expected_files, write_outputs
-    from replicate.report.pages import build_report, single_page
+    from replicate.report.pages import INDEX, build_report, single_page
     from replicate.report.scope import Scope, owner_of
     from replicate.report.site import site_of
     from replicate.report.standing import keep, texts_of
@@ -33,7 +33,7 @@ def report(
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import counts_of, print_summary
-    from replicate.whatif import DISTRIBUTIONS, ROOMS, write_whatif
+    from replicate.whatif import DISTRIBUTIONS, ROOMS, unreadable_loops, write_whatif
 
     chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
@@ -50,6 +50,7 @@ def report(
     with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
         outcome = run.recompute(everyone)
+        outcome = outcome.without(unreadable_loops(outcome.papers, outcome.results))
         try:
             pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         except TemplateError:  # one paper's text must not take the pages of the others
@@ -57,7 +58,8 @@ def report(
             pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         index = run.folder / "report" / pages[0].name
-        write_whatif(outcome.papers, fresh / "report", back="index.html", keep=run.kept_texts(ROOMS, DISTRIBUTIONS))
+        keep_texts = run.kept_texts(ROOMS, DISTRIBUTIONS)
+        write_whatif(outcome.papers, outcome.results, fresh / "report", back=INDEX, keep=keep_texts)
         mailed = [paper for paper in outcome.papers if paper.id in named] if single_file else []
         for paper in mailed:
             text = single_page(paper, outcome.results, outcome.judgement, data, about)
@@ -112,6 +114,7 @@ def check(
     from replicate.handout.legibility import unreadable_handouts
     from replicate.handout.own_code import LONGEST_RUN
     from replicate.report.texts import unreadable
+    from replicate.whatif import unreadable_loops
 
     chosen = run.within.papers(papers or ())
     baseline = accepted_folder(run.within, chosen, accepted)
@@ -126,6 +129,7 @@ def check(
     if outcome.complete and not outcome.failures:  # a text may ask for a result that failed or was not computed
         seconds = min(LONGEST_RUN, run.unit_timeout)
         handouts = unreadable_handouts(outcome.papers, outcome.results, outcome.judgement.verdicts, seconds)
-    outcome = replace(outcome, broken=outcome.broken | handouts | unreadable(outcome))
+    broken = handouts | unreadable(outcome) | unreadable_loops(outcome.papers, outcome.results)
+    outcome = replace(outcome, broken=outcome.broken | broken)
     status = BROKEN if comparison.broken else DIFFERS if problems else 0
     exit_with(run.within, outcome, status, problems_shown=True)

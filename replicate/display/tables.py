@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
@@ -18,7 +17,6 @@ from replicate.exhibits.matching import Match
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.readings import input_name
 from replicate.exhibits.results import Ranges, TableResult
-from replicate.exhibits.trials import listed
 from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
@@ -231,22 +229,15 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
         list(by_cell.values()),
         _shortened(table, by_cell.values()),
         _strengths(table, frames, by_cell),
-        _trials(table, first),
+        _trials(result),
     )
 
 
-def _trials(table: Table, cells: FrameCells | None) -> dict[str, list[tuple[str, str]]]:
+def _trials(result: TableResult) -> dict[str, list[tuple[str, str]]]:
     """Return by row the cases that can be tried out, each with its address."""
     found: dict[str, list[tuple[str, str]]] = {}
-    for row, case, *loop in listed(table.trials):
+    for row, case, *loop in (*result.trials.declared, *result.trials.computed):
         found.setdefault(row, []).append((case, trial_address(*loop)))
-    if table.computed_trial is not None and cells is not None:
-        for row in cells.rows:
-            computed = {column: cells.numbers.get((row, column)) for column in cells.columns}
-            numbers = {column: number for column, number in computed.items() if number is not None}
-            with contextlib.suppress(KeyError):  # the row computes no parameters
-                address = trial_address(*table.computed_trial(row, numbers))
-                found.setdefault(row, []).append(("", address))
     return found
 
 

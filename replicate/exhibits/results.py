@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from replicate.exhibits.claims import Finding
 from replicate.exhibits.frames import FrameCells, read_frame
 from replicate.exhibits.printed import Key
+from replicate.exhibits.trials import TableTrials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -59,6 +60,8 @@ class TableResult:
         By reading id: a one-line reason for each reading that raised.
     ranges
         By reading id, for the readings with printed inputs.
+    trials
+        Loops that a reader may try out; they are listed with the first reading.
     """
 
     paper: str
@@ -66,6 +69,7 @@ class TableResult:
     frames: dict[str, pd.DataFrame] = field(default_factory=dict)
     errors: dict[str, str] = field(default_factory=dict)
     ranges: dict[str, Ranges] = field(default_factory=dict)
+    trials: TableTrials = field(default_factory=TableTrials)
 
     @cached_property
     def cells(self) -> Mapping[str, FrameCells]:
@@ -123,7 +127,9 @@ Results = dict[tuple[str, str], Result]
 
 
 def errors_of(result: Result) -> dict[str, str]:
-    """Return what went wrong, by reading or claim (by the empty text for a figure)."""
+    """Return what went wrong, by reading or claim (by the empty text for a figure, or the trials of a table)."""
     if isinstance(result, FigureResult):
         return {"": result.error} if result.error else {}
+    if isinstance(result, TableResult) and result.trials.error:
+        return {**result.errors, "": result.trials.error}
     return result.errors

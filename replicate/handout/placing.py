@@ -41,8 +41,7 @@ from replicate.display.tables import TableView, table_view
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.exercises import Exercises, Values
-from replicate.exhibits.results import FigureResult, Results, TableResult
-from replicate.exhibits.trials import Trial, listed
+from replicate.exhibits.results import FigureResult, Results, TableResult, errors_of
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
 from replicate.handout.drawings import Drawing, DrawnLater, captured, said_by
@@ -156,10 +155,8 @@ class Placing:
 
     def try_it(self, table: str, row: str, case: str = "") -> str:
         """Return a link, in Markdown, to the page that holds the loop of a table's row, or of one case of it."""
-        exhibit, key = self.paper.exhibits.get(table), f"trials {table}"
-        if key not in self.shared:
-            self.shared[key] = listed(exhibit.trials) if isinstance(exhibit, Table) else []
-        trials: list[Trial] = self.shared[key]
+        result = self.results.get((self.paper.id, table))
+        trials = result.trials.declared if isinstance(result, TableResult) else ()
         for trial in trials:
             if (trial.row, trial.case) == (row, case):
                 label, address = trial_label(table, row, case), trial_address(trial.plant, trial.controller)
@@ -167,7 +164,8 @@ class Placing:
         asked, *allowed = (
             "', '".join(filter(None, names)) for names in ((table, row, case), *(one[:2] for one in trials))
         )
-        msg = f"try_it('{asked}'): no loop to try out; allowed: {_listed(allowed)}"
+        failed = "; ".join(errors_of(result).values()) if isinstance(result, TableResult) else ""
+        msg = f"try_it('{asked}'): {failed or f'no loop to try out; allowed: {_listed(allowed)}'}"
         raise TemplateError(msg)
 
     def _variation(self, function: str, name: str) -> Variation:

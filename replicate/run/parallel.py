@@ -188,4 +188,5 @@ def _together(exhibit: Exhibit, parts: Iterable[Result]) -> Result:
         frames={id: frame for part in tables for id, frame in part.frames.items()},
         errors={id: why for part in tables for id, why in part.errors.items()},
         ranges={id: ranges for part in tables for id, ranges in part.ranges.items()},
+        trials=first.trials,
     )

@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 from replicate.exhibits import ClaimVerdict, Finding
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.exhibits.statements import given_text
+from replicate.exhibits.trials import TableTrials, Trial
 from replicate.run.stored_ranges import ranges_from_data, ranges_to_data
 
 if TYPE_CHECKING:
     import pandas as pd
 
 #: Changes with the form of what is written here.
-SCHEMA = 4
+SCHEMA = 5
 
 _POINT = ("panel", "curve", "x", "y")
 _MOST_SHOWN = 60
@@ -46,6 +47,7 @@ def to_text(result: Result) -> str:
             "frames": {id: _frame(frame) for id, frame in result.frames.items()},
             "errors": result.errors,
             "ranges": {id: ranges_to_data(ranges) for id, ranges in result.ranges.items()},
+            "trials": [result.trials.declared, result.trials.computed, result.trials.error],
         }
     elif isinstance(result, FigureResult):
         fields = {
@@ -94,7 +96,9 @@ def from_text(text: str | bytes) -> Result:
 def _read_table(paper: str, exhibit: str, given: dict[str, Any]) -> TableResult:
     frames = {id: _to_frame(frame) for id, frame in _as(dict, given["frames"]).items()}
     ranges = {id: ranges_from_data(data) for id, data in _as(dict, given["ranges"]).items()}
-    return TableResult(paper, exhibit, frames, _texts(given["errors"]), ranges)
+    declared, computed, error = _as(list, given["trials"])
+    trials = TableTrials(_trials(declared), _trials(computed), _as(str, error))
+    return TableResult(paper, exhibit, frames, _texts(given["errors"]), ranges, trials)
 
 
 def _read_figure(paper: str, exhibit: str, given: dict[str, Any]) -> FigureResult:
@@ -122,7 +126,7 @@ def _read_claims(paper: str, exhibit: str, given: dict[str, Any]) -> ClaimsResul
 
 
 _READERS: dict[str, tuple[tuple[str, ...], Callable[[str, str, dict[str, Any]], Result]]] = {
-    "TableResult": (("frames", "errors", "ranges"), _read_table),
+    "TableResult": (("frames", "errors", "ranges", "trials"), _read_table),
     "FigureResult": (("svg", "png", "curves", "axes", "error", "figure"), _read_figure),
     "ClaimsResult": (("findings", "errors"), _read_claims),
 }
@@ -133,6 +137,14 @@ def _as(kind: type[T], value: object) -> T:
         msg = f"expected: {kind.__name__}, found: {type(value).__name__}"
         raise ValueError(msg)  # noqa: TRY004  -- whatever is wrong with a text is a ValueError, as in `json`
     return value
+
+
+def _trials(value: object) -> tuple[Trial, ...]:
+    found = []
+    for texts in _as(list, value):
+        row, case, plant, controller = (_as(str, text) for text in _as(list, texts))
+        found.append(Trial(row, case, plant, controller))
+    return tuple(found)
 
 
 def _texts(value: object) -> dict[str, str]:

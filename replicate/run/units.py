@@ -20,10 +20,12 @@ from replicate.errors import PaperDefinitionError, ReplicateError
 from replicate.exhibits import Claim, Claims, ClaimVerdict, Exhibit, Figure, Finding, Paper, Reading, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.frame_check import checked_frame
+from replicate.exhibits.frames import read_frame
 from replicate.exhibits.printed import Key, PrintedValue, read_printed
 from replicate.exhibits.readings import other_cell
 from replicate.exhibits.results import ClaimsResult, FigureResult, Ranges, Result, TableResult
 from replicate.exhibits.rounded_inputs import compute_reading, places_elsewhere
+from replicate.exhibits.trials import TableTrials, computed_trials, declared_trials
 from replicate.run.modules import is_standard
 
 if TYPE_CHECKING:
@@ -163,7 +165,23 @@ def _compute_reading(unit: Unit, paper: Paper, table: Table) -> TableResult:
     except BaseException as error:  # noqa: BLE001  -- one exhibit must not take the others down
         function = table.readings[unit.reading].compute if unit.reading in table.readings else None
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: reason(error, function)})
-    return TableResult(unit.paper, unit.exhibit, frames={unit.reading: frame}, ranges=ranges)
+    trials = _trials(table, frame) if unit.reading == next(iter(table.readings)) else TableTrials()
+    return TableResult(unit.paper, unit.exhibit, {unit.reading: frame}, {}, ranges, trials)
+
+
+def _trials(table: Table, frame: pd.DataFrame) -> TableTrials:
+    """List the loops of a table, with those that its first reading computes."""
+    declared = partial(declared_trials, table.trials, table.rows)
+    computed = partial(computed_trials, table.computed_trial, read_frame(frame))
+    asked = declared
+    try:
+        loops = declared()
+        asked = computed
+        return TableTrials(loops, computed())
+    except PaperDefinitionError as error:
+        return TableTrials(error=f"{_place(asked.args[0])}: {reason(error)}")
+    except BaseException as error:  # noqa: BLE001  -- they must not take the table's numbers down
+        return TableTrials(error=f"trials: {reason(error, asked.args[0])}")
 
 
 def _elsewhere(paper: Paper, reading: Reading) -> dict[str, PrintedValue]:

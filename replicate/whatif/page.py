@@ -16,6 +16,7 @@ from replicate.display.addresses import TRIALS
 from replicate.display.rendering import html_environment
 from replicate.display.safe_html import policy
 from replicate.exhibits import Paper
+from replicate.exhibits.results import Results
 from replicate.figures.style import dark_curves
 from replicate.loops.errors import LoopError
 from replicate.loops.tune import marked_rules
@@ -116,9 +117,11 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", ke
     )
 
 
-def write_whatif(papers: Iterable[Paper], folder: Path, back: str = "", keep: Keep = _made) -> list[Path]:
+def write_whatif(
+    papers: Iterable[Paper], results: Results, folder: Path, back: str = "", keep: Keep = _made
+) -> list[Path]:
     """Write the page of the papers' rows into a folder; return the file, or nothing where no paper declares a row."""
-    rows = [row for row in rows_of(papers) if not why_not_drawn(row)]
+    rows = [row for row in rows_of(papers, results) if not why_not_drawn(row)]
     if not rows:
         return []
     (folder / NAME).write_bytes(whatif_page(rows, back=back, keep=keep).encode())

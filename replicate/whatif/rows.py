@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from replicate.display.addresses import trial_label
-from replicate.exhibits import Paper, Table
-from replicate.exhibits.trials import listed
+from replicate.exhibits import Paper
+from replicate.exhibits.results import Results, TableResult
+from replicate.exhibits.trials import TableTrials
 from replicate.loops import Plant
+from replicate.loops.errors import LoopError
 from replicate.loops.notation import parse_controller, parse_plant
 
 
@@ -77,12 +79,33 @@ def _spread(plant: Plant, gain: float) -> float:
         return float(np.max(sizes) / np.min(sizes)) if sizes.size else 1.0
 
 
-def rows_of(papers: Iterable[Paper]) -> list[Row]:
+def rows_of(papers: Iterable[Paper], results: Results) -> list[Row]:
     """Return the rows of tuning parameters that papers declare, in their order, each loop once."""
     found: dict[tuple[str, str], Row] = {}
     for paper in papers:
-        for exhibit in paper.exhibits.values():
-            for row, case, plant, controller in listed(exhibit.trials) if isinstance(exhibit, Table) else ():
-                label = f"{paper.id} {trial_label(exhibit.id, row, case)}"
+        for exhibit, trials in _trials(paper, results):
+            for row, case, plant, controller in trials.declared:
+                label = f"{paper.id} {trial_label(exhibit, row, case)}"
                 found.setdefault((plant, controller), Row(label, plant, controller))
     return list(found.values())
+
+
+def unreadable_loops(papers: Iterable[Paper], results: Results) -> dict[str, str]:
+    """Return by id the first loop of a paper that is not understood, and why; nothing where all are."""
+    found: dict[str, str] = {}
+    for paper in papers:
+        for exhibit, trials in _trials(paper, results):
+            for row, case, plant, controller in (*trials.declared, *trials.computed):
+                try:
+                    parse_plant(plant)
+                    parse_controller(controller)
+                except LoopError as error:
+                    found.setdefault(paper.id, f"{paper.id}/{trial_label(exhibit, row, case)}: {error}")
+    return found
+
+
+def _trials(paper: Paper, results: Results) -> Iterator[tuple[str, TableTrials]]:
+    for id in paper.exhibits:
+        result = results.get((paper.id, id))
+        if isinstance(result, TableResult):
+            yield id, result.trials

@@ -8,7 +8,7 @@ import re
 import pytest
 
 from replicate.exhibits import Paper, Table
-from replicate.exhibits.trials import listed
+from replicate.exhibits.trials import declared_trials
 from replicate.loops import PID
 from replicate.loops.notation import parse_controller, parse_plant
 from replicate.run.library import Library
@@ -26,7 +26,7 @@ def test_each_paper_has_rows_to_try_out(id: str) -> None:
     found = tables(PAPERS[id])
     assert found
     for table in found:
-        rows = {trial.row for trial in listed(table.trials)}
+        rows = {trial.row for trial in declared_trials(table.trials)}
         assert rows, table.id
         assert rows <= set(table.rows), table.id
 
@@ -34,7 +34,7 @@ def test_each_paper_has_rows_to_try_out(id: str) -> None:
 @pytest.mark.parametrize("id", PAPERS)
 def test_the_page_can_read_each_loop(id: str) -> None:
     for table in tables(PAPERS[id]):
-        for trial in listed(table.trials):
+        for trial in declared_trials(table.trials):
             where = f"{table.id}, {trial}"
             plant, controller = parse_plant(trial.plant), parse_controller(trial.controller)
             assert plant.is_rational, where
@@ -58,7 +58,7 @@ def test_exercises_lead_to_loops_that_exist(id: str) -> None:
     for table, row, case in calls:
         found = PAPERS[id].exhibits[table]
         assert isinstance(found, Table)
-        assert (row, case) in {(trial.row, trial.case) for trial in listed(found.trials)}
+        assert (row, case) in {(trial.row, trial.case) for trial in declared_trials(found.trials)}
 
 
 def printed(paper: str, table: str) -> dict[str, dict[str, str]]:
@@ -69,7 +69,7 @@ def printed(paper: str, table: str) -> dict[str, dict[str, str]]:
 def controllers(paper: str, table: str) -> dict[str, PID]:
     found = PAPERS[paper].exhibits[table]
     assert isinstance(found, Table)
-    return {trial.row: parse_controller(trial.controller) for trial in listed(found.trials)}
+    return {trial.row: parse_controller(trial.controller) for trial in declared_trials(found.trials)}
 
 
 @pytest.mark.parametrize("table", ["I-table-1", "I-table-5", "II-table-1", "IIs-table-2"])
