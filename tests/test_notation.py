@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import datetime as dt
+import math
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +11,8 @@ import pandas as pd
 import pytest
 
 from replicate.errors import PaperDefinitionError, PrintedFileError
-from replicate.exhibits import Near, Notation, Paper
+from replicate.exhibits import Near, Notation, Paper, Table
+from replicate.exhibits.frame_check import checked_frame
 from replicate.exhibits.matching import match
 from replicate.exhibits.notation import PLAIN
 from replicate.exhibits.printed import PrintedValue, read_printed
@@ -103,6 +106,59 @@ def kind(text: str, given: object, notation: Notation = PLAIN) -> str:
 def test_each_print_has_its_rule(text: str, notation: Notation, equal: object, differs: object) -> None:
     assert kind(text, equal, notation) == "equal"
     assert kind(text, differs, notation) == "differs"
+
+
+@pytest.mark.parametrize(
+    ("text", "notation", "given", "message"),
+    [
+        ("6.9", PLAIN, math.inf, "the number inf; expected: a number"),
+        ("6.9", PLAIN, "6.9", r"text \('6.9'\); expected: a number"),
+        ("6.9", PLAIN, (6.9, 0.1), r"tuple \(\(6.9, 0.1\)\); expected: a number"),
+        ("17", Notation(count=True), -math.inf, "the number -inf; expected: a number"),
+        ("0.5", WORDS, "stable", "text .*; expected: a number or 'unstable' or 'n.s.'"),
+        ("0.5", WORDS, math.inf, "the number inf; expected: a number or 'unst"),
+        (
+            "3.4 ± 0.2",
+            Notation(uncertainty=True),
+            (3.4, math.nan),
+            "expected: a number or a pair of value and uncertai",
+        ),
+        ("3.4", Notation(uncertainty=True), (3.4, 0.2), "expected: a number"),
+        ("[1.2, 3.4]", ENDS, 2.0, "the number 2; expected: a pair of ends"),
+        ("[1.2, 3.4]", ENDS, (1.2, math.inf), "expected: a pair of ends"),
+        ("[1.2, 3.4]", Notation(interval="inside"), (1.2, 3.4), "expected: a number"),
+        ("2003-05-17", Notation(date=True), "17 May 2003", "expected: a date"),
+        ("2003-05-17", Notation(date=True), 2003.4, "the number 2003.4; expected: a date"),
+    ],
+)
+def test_what_cannot_be_compared_is_no_result(text: str, notation: Notation, given: object, message: str) -> None:
+    table = Table("table-1", "table", "One cell", rows=("A",), columns=("x",), notation=notation)
+    printed = {("A", "x"): PrintedValue(text, notation=notation)}
+    with pytest.raises(PaperDefinitionError, match=f"row 'A', column 'x' holds .*{message}"):
+        checked_frame(table, table.frame({"A": [given]}), printed)
+
+
+@pytest.mark.parametrize(
+    ("text", "notation", "given"),
+    [
+        (">10", BOUND, math.inf),
+        ("<-3", BOUND, -math.inf),
+        ("n.s.", WORDS, 0.7),
+        ("0.7", WORDS, "n.s."),
+        ("3.4 ± 0.2", Notation(uncertainty=True), 3.4),
+        ("2003-05-17", Notation(date=True), dt.date(2003, 5, 18)),
+        ("", PLAIN, "where nothing is printed, anything"),
+    ],
+)
+def test_what_can_be_compared_is_a_result(text: str, notation: Notation, given: object) -> None:
+    table = Table("table-1", "table", "One cell", rows=("A",), columns=("x",), notation=notation)
+    printed = {("A", "x"): PrintedValue(text, notation=notation)} if text else {}
+    assert checked_frame(table, table.frame({"A": [given]}), printed).size == 1
+
+
+def test_what_is_infinite_is_beyond_every_bound_of_its_side() -> None:
+    assert [kind(text, math.inf, BOUND) for text in (">10", "≥ 10", "<10")] == ["equal", "equal", "differs"]
+    assert [kind(text, -math.inf, BOUND) for text in (">10", "<10")] == ["differs", "equal"]
 
 
 def test_the_border_of_a_bound_is_near() -> None:

@@ -101,10 +101,11 @@ def test_several_curves_of_one_label_need_their_panel(tmp_path: Path) -> None:
 
 
 def test_points_are_drawn_over_the_figure(tmp_path: Path) -> None:
-    points = read_points(written(tmp_path, "a,line,0.5,1.1,0.1,0.1\n"))
+    points = read_points(written(tmp_path, "a,line,0.5,1.1,0.1,0.1\nb,wall,5.0,1.5,0,0.3\n"))
     fig = matplotlib.figure.Figure()
     with_points(draw, points)(fig)
-    assert [container.get_label() for container in fig.axes[0].containers] == [LABEL]
+    (marks,) = (line for line in fig.axes[0].lines if line.get_label() == LABEL)
+    assert marks.get_xydata().tolist() == [[0.5, 1.1], [5.0, 1.5]]
 
 
 def test_a_curve_that_is_not_there(tmp_path: Path) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
+from dataclasses import replace
 from decimal import ROUND_HALF_EVEN, Decimal
 
 from replicate.exhibits.matching import computed_text
 from replicate.exhibits.numerals import MINUS
 from replicate.exhibits.printed import PrintedValue
+from replicate.exhibits.statements import numbers_in, scaled
 
 FIGURE_SPACE = "\N{FIGURE SPACE}"  # as wide as a digit
 OVERLINE = "\N{COMBINING OVERLINE}"
@@ -17,6 +19,7 @@ PUNCTUATION_SPACE = "\N{PUNCTUATION SPACE}"  # as wide as a decimal point
 
 _HYPHEN = re.compile(r"(?<![\w.)\]/-])-(?=[\d\[]|\.\d)|(?<=[\d.]e)-(?=\d)")  # before a number, not between two
 _EXPONENT = re.compile(r"(?<=\d)e([+-])0*(?=\d)(\d+)\b")
+_REPEATED = re.compile(r"(?<=[\d.])\[(\d+)\]")  # the brackets of an interval hold more, and follow nothing
 _PLAIN_DIGITS = 6  # significant digits where nothing printed tells how many are of interest
 _LONG_PRINT = 5  # a print with at least so many digits is followed by one more, a shorter one by two
 _MOST_PADDING = 8  # a column that mixes 0.0000001 and 1000 is not aligned
@@ -70,6 +73,28 @@ def shown(computed: float | None, printed: PrintedValue | None) -> str:
     return _minus(f"{own if own == rounded else rounded:f}")
 
 
+def shown_word(word: str, printed: PrintedValue | None) -> str:
+    """Return what is computed in place of a number: a word or a date as it is, each number of a pair as `shown`.
+
+    Examples
+    --------
+    >>> from replicate.exhibits import Notation
+    >>> shown_word("3.00949525 0.0776547", PrintedValue("3.01 ± 0.08", notation=Notation(uncertainty=True)))
+    '3.0095 ± 0.0777'
+    >>> shown_word("1.2041 -3.4", PrintedValue("[1.2, -3.4]", notation=Notation(interval="ends")))
+    '1.204 to −3.4'
+    >>> shown_word("n.s.", None)
+    'n.s.'
+    """
+    if printed is None or len(computed := numbers_in(word)) != 2:
+        return word
+    statement = printed.statement
+    stated = (statement.text, statement.upper or statement.uncertainty or statement.text)
+    prints = [PrintedValue(str(scaled(replace(statement, text=text))[0])) for text in stated]
+    ends = [shown(float(number), one) for number, one in zip(computed, prints, strict=True)]
+    return (" to " if statement.upper else " ± ").join(ends)
+
+
 def _scientific(number: Decimal) -> str:
     mantissa, exponent = f"{number:.{_PLAIN_DIGITS - 1}e}".split("e")
     return _minus(f"{_stripped(mantissa)}e{int(exponent)}")
@@ -89,13 +114,10 @@ def overlined(printed: str) -> str:
 
     Examples
     --------
-    >>> overlined("-0.916"), overlined("0.91[6]") == "0.916\N{COMBINING OVERLINE}"
-    ('−0.916', True)
+    >>> overlined("-0.916"), overlined("0.91[6]") == "0.916\N{COMBINING OVERLINE}", overlined("[1.2, 3.4]")
+    ('−0.916', True, '[1.2, 3.4]')
     """
-    printed = _HYPHEN.sub(MINUS, printed)
-    plain, _, repeated = printed.partition("[")
-    digits, _, rest = repeated.partition("]")
-    return plain + "".join(f"{digit}{OVERLINE}" for digit in digits) + rest
+    return _REPEATED.sub(lambda found: "".join(f"{digit}{OVERLINE}" for digit in found[1]), _HYPHEN.sub(MINUS, printed))
 
 
 def minus_signs(text: str) -> str:

@@ -250,9 +250,11 @@ def _cell(
     for id, cells in frames.items():
         reading = table.readings[id]
         found = judged[id].match if id in judged else Match("none")
-        if key in cells.words:  # a word such as "unstable" is shown as it is
+        if key in cells.words:
             word = cells.words[key]
-            values.append(Value(reading, word, word if found.kind != "none" else "", found))
+            values.append(
+                Value(reading, numbers.shown_word(word, printed), word if found.kind != "none" else "", found)
+            )
             continue
         number = cells.numbers.get(key)
         texts = _range(table, result.ranges.get(id), key, printed)

@@ -1,13 +1,16 @@
-"""What a reading returns must be its table: the same rows and columns, a number in every cell that prints one."""
+"""What a reading returns must be its table: the same rows and columns, and in each cell what can be compared there."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.frames import FrameCells, read_frame
-from replicate.exhibits.printed import Key
+from replicate.exhibits.notation import Notation, Statement, is_date
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.statements import numbers_in
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,7 +20,7 @@ if TYPE_CHECKING:
 _SHOWN = 12
 
 
-def checked_frame(table: Table, made: object, printed: Collection[Key]) -> pd.DataFrame:
+def checked_frame(table: Table, made: object, printed: Mapping[Key, PrintedValue]) -> pd.DataFrame:
     """Return what a reading of a table has made, if it is the table.
 
     Parameters
@@ -25,20 +28,20 @@ def checked_frame(table: Table, made: object, printed: Collection[Key]) -> pd.Da
     made
         Whatever the reading returned.
     printed
-        The cells in which the paper prints something.
+        What the paper prints, by (row, column).
 
     Raises
     ------
     PaperDefinitionError
-        If it is not a data frame, has other rows or columns than the table, one of them twice, or something other than
-        a number where the paper prints one.
+        If it is not a data frame, has other rows or columns than the table, one of them twice, or something in a cell
+        that cannot be compared with what the paper prints there, such as a text or an infinite number.
 
     Examples
     --------
     >>> import pandas as pd
     >>> from replicate.exhibits import Table
     >>> table = Table("table-1", "table", "Squares", rows=("two", "three"), columns=("square",))
-    >>> checked_frame(table, pd.DataFrame({"square": [4, 9]}), ())
+    >>> checked_frame(table, pd.DataFrame({"square": [4, 9]}), {})
     Traceback (most recent call last):
     replicate.errors.PaperDefinitionError: the reading returns the row '0'; allowed: 'two', 'three'
     """
@@ -71,11 +74,47 @@ def _check_keys(kind: str, found: Sequence[str], declared: Sequence[str]) -> Non
             raise PaperDefinitionError(msg)
 
 
-def _check_cells(table: Table, cells: FrameCells, printed: Collection[Key]) -> None:
-    for key, wrong in cells.wrong.items():
-        if key in printed and table.notation_of(key[1]).plain:
-            msg = f"the reading returns a wrong cell: {wrong}"
-            raise PaperDefinitionError(msg)
+def _check_cells(table: Table, cells: FrameCells, printed: Mapping[Key, PrintedValue]) -> None:
+    for key, value in printed.items():
+        for row, column in (key, *table.spans.get(key, ())):
+            wrong = _wrong(cells, (row, column), value)
+            if wrong:
+                msg = f"the reading returns a wrong cell: row '{row}', column '{column}' holds {wrong}"
+                raise PaperDefinitionError(msg)
+
+
+def _wrong(cells: FrameCells, key: Key, printed: PrintedValue) -> str:
+    """Return what a cell holds and what is expected, if it cannot be compared with the print; nothing if it can."""
+    notation, statement = printed.notation, printed.statement
+    number, held = cells.numbers.get(key), cells.wrong.get(key, "")
+    if held:
+        fits = _fits(cells.words[key], notation, statement)
+    elif number is None:  # nothing is computed
+        fits = True
+    else:
+        held = f"the number {number:g}"
+        fits = not notation.date and statement.kind != "interval" and (notation.bounds or math.isfinite(number))
+    return "" if fits else f"{held}; expected: {_expected(notation, statement)}"
+
+
+def _fits(word: str, notation: Notation, statement: Statement) -> bool:
+    """Say whether something else than a number can be compared: a word from the list, a date, a pair of numbers."""
+    if word in notation.words:
+        return True
+    if notation.date:
+        return is_date(word)
+    return _takes_pair(statement) and len(numbers_in(word)) == 2
+
+
+def _takes_pair(statement: Statement) -> bool:
+    return bool(statement.uncertainty) or statement.kind == "interval"
+
+
+def _expected(notation: Notation, statement: Statement) -> str:
+    """Return in words what a reading may give."""
+    kind = "a date" if notation.date else "a pair of ends" if statement.kind == "interval" else "a number"
+    kinds = [kind, "a pair of value and uncertainty"] if statement.uncertainty else [kind]
+    return " or ".join([*kinds, *(f"'{word}'" for word in notation.words)])
 
 
 def _listed(keys: Sequence[str]) -> str:

@@ -30,7 +30,7 @@ class FrameCells:
     words
         What is held by a cell that holds something else than a real number, as its text: a word, a date, a pair.
     wrong
-        Why such a cell is not a number, by (row, column).
+        What such a cell holds, in words for a message, by (row, column).
     twice
         Keys that occur more than once, each with its kind: ``("row", key)``.
     """
@@ -58,7 +58,8 @@ class FrameCells:
                 msg = f"{kind} '{key}' is missing"
                 raise CellError(msg)
         if (row, column) in self.wrong:
-            raise CellError(self.wrong[row, column])
+            msg = f"row '{row}', column '{column}' holds {self.wrong[row, column]}; expected: a number"
+            raise CellError(msg)
         return self.numbers[row, column]
 
     def pick(self, printed: Mapping[Key, PrintedValue]) -> tuple[dict[Key, float], dict[Key, str], list[str]]:
@@ -109,13 +110,13 @@ def _read(cells: FrameCells, key: Key, value: object) -> None:
     elif isinstance(value, bool | np.bool_) or not isinstance(value, Real):
         kind = "text" if isinstance(value, str) else type(value).__name__
         cells.words[key] = given_text(value) or str(value)
-        cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds {kind} ({value!r}); expected: a number"
+        cells.wrong[key] = f"{kind} ({value!r})"
     else:
         try:
             number = float(value)
         except OverflowError:
             cells.words[key] = str(value)
-            cells.wrong[key] = f"row '{key[0]}', column '{key[1]}' holds an integer beyond the largest number"
+            cells.wrong[key] = "an integer beyond the largest number"
         else:
             cells.numbers[key] = None if number != number else number  # noqa: PLR0124  -- NaN
 

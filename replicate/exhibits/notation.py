@@ -13,9 +13,7 @@ print                          the computed value is equal if
 ``3.4 ± 0.2``, ``3.4(2)``      it rounds to 3.4; a pair ``(value, uncertainty)`` must round to both
 ``12 %``                       it rounds to 12, or as declared, as a fraction, to 0.12
 ``[1.2, 3.4]``                 a pair of ends rounds to both; or as declared, a number lies between them
-a count                        it is that whole number
-a date                         it is that day
-a word from the fixed list     it is that word
+a count, a date, a word        it is that one
 =============================  ==================================================================================
 """
 
@@ -23,6 +21,7 @@ from __future__ import annotations
 
 import datetime as dt
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from decimal import Decimal
 from itertools import combinations
@@ -46,7 +45,6 @@ _ANY_COMMA = re.compile(r"\s*,\s*")
 _WITHOUT_BRACKETS = re.compile(r"\s*(?:\.\.\.|…|–|\bto\b)\s*")
 _DASH = re.compile(r"[-–—−.…/]+")
 _WORD = re.compile(r"[^\W\d_⁰-₟²³¹]\D+")
-_DATE = re.compile(r"\d{4}-\d{2}-\d{2}")
 
 
 @dataclass(frozen=True)
@@ -169,8 +167,6 @@ class Notation:
         plain = text.strip()
         if plain in self.words:
             return Statement("word", plain)
-        if self.date:
-            return self._date(plain)
         found = self.states(plain)
         if found is None:
             msg = f"'{text}' is not {self.allowed}{hint(self, plain)}"
@@ -178,13 +174,15 @@ class Notation:
         return found
 
     def states(self, text: str) -> Statement | None:
-        """Return what a number or an interval states; ``None`` if the text is neither.
+        """Return what a number, an interval or a date states; ``None`` if the text is none of what is declared.
 
         Parameters
         ----------
         text
             The cell, without spaces around it.
         """
+        if self.date:
+            return Statement("date", text) if is_date(text) else None
         text = text.replace(MINUS, "-")
         return (self._interval(text) if self.interval else None) or self._number(text)
 
@@ -213,15 +211,6 @@ class Notation:
         parts = ["a date such as 2003-05-17"] if self.date else parts
         parts += [f"'{word}'" for word in self.words]
         return " or ".join(parts) if len(parts) > 1 or with_ or self.count or self.date else PLAIN_ALLOWED
-
-    def _date(self, text: str) -> Statement:
-        if _DATE.fullmatch(text):
-            try:
-                return Statement("date", dt.date.fromisoformat(text).isoformat())
-            except ValueError:  # the 30th of February
-                pass
-        msg = f"'{text}' is not {self.allowed}"
-        raise PrintedFileError(msg)
 
     def _interval(self, text: str) -> Statement | None:
         """Read ``[1.2, 3.4]``; what separates the ends is what leaves a number on both sides."""
@@ -298,6 +287,14 @@ class Notation:
         return plain_number(text, self.decimal, self.thousands)
 
 
+def is_date(text: str) -> bool:
+    """Say whether a text is a day, ``2003-05-17``."""
+    try:
+        return dt.date.fromisoformat(text).isoformat() == text
+    except ValueError:  # the 30th of February
+        return False
+
+
 _CHOICES: dict[str, tuple[object, ...]] = {
     "decimal": (".", ",", "·"),
     "thousands": ("", ",", ".", "'", " "),
@@ -330,19 +327,24 @@ _DECLARATIONS: tuple[dict[str, Any], ...] = (
 
 def hint(notation: Notation, text: str) -> str:
     """Say which notation would accept a text that a notation does not, if one or two more declarations would do."""
-    if _DATE.fullmatch(text):
-        return "; notation=Notation(date=True) would accept it"
-    if _DASH.fullmatch(text):
-        return f"; notation={replace(notation, none=(*notation.none, text)).declared} would accept it"
-    if _WORD.fullmatch(text):
-        return f"; notation={replace(notation, words=(*notation.words, text)).declared} would accept it"
-    doubles = ({**first, **second} for first, second in combinations(_DECLARATIONS, 2))
-    for more in (*_DECLARATIONS, *doubles):
-        given: dict[str, Any] = {**vars(notation), **more}
-        if given["decimal"] != given["thousands"]:
-            changed = Notation(**given)
-            if changed.states(text) is not None:
-                return f"; notation={changed.declared} would accept it"
+    changed = next(_accepting(notation, text), None)
+    if changed is not None:
+        return f"; notation={changed.declared} would accept it"
     if notation.states(text.replace("–", "-")) is not None:
         return "; the dash is no minus sign: write - or −"
     return ""
+
+
+def _accepting(notation: Notation, text: str) -> Iterator[Notation]:
+    """Yield notations that accept a text, the likeliest first."""
+    if is_date(text):
+        yield Notation(date=True)
+    if _DASH.fullmatch(text):
+        yield replace(notation, none=(*notation.none, text))
+    if _WORD.fullmatch(text):
+        yield replace(notation, words=(*notation.words, text))
+    doubles = ({**first, **second} for first, second in combinations(_DECLARATIONS, 2))
+    for more in () if notation.date else (*_DECLARATIONS, *doubles):
+        given: dict[str, Any] = {**vars(notation), **more}
+        if given["decimal"] != given["thousands"] and (changed := Notation(**given)).states(text) is not None:
+            yield changed

@@ -122,14 +122,13 @@ def with_points(draw: Draw, points: Sequence[Point]) -> Draw:
 
     def drawn(fig: Figure) -> None:
         draw(fig)
-        labelled: set[object] = set()
+        panels: dict[Axes, list[Point]] = {}
         for point in points:
-            axes, _ = _curve_of(fig, point)
-            label = "_nolegend_" if axes in labelled else LABEL
-            labelled.add(axes)
-            axes.errorbar(
-                [point.x], [point.height], yerr=point.y_error, xerr=point.x_error, fmt="ko", ms=3, lw=0.8, label=label
-            )
+            panels.setdefault(_curve_of(fig, point)[0], []).append(point)
+        for axes, found in panels.items():
+            x, y, x_error, y_error = zip(*((one.x, one.height, one.x_error, one.y_error) for one in found), strict=True)
+            marks, *_ = axes.errorbar(x, y, yerr=y_error, xerr=x_error, fmt="ko", ms=3, elinewidth=0.8)
+            marks.set_label(LABEL)  # not the container's, which the data of the figure does not show
 
     return drawn
 

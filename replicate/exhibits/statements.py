@@ -17,6 +17,7 @@ Agreement = Literal["equal", "consistent", "near", "differs", "none"]
 Compare = Callable[[Decimal, Decimal, Decimal], Agreement]
 
 _KINDS: tuple[Agreement, ...] = ("equal", "near", "differs")
+_INFINITE = {"inf": "above", "-inf": "below"}  # beyond which bounds it lies
 
 
 def given_text(given: object) -> str | None:
@@ -34,6 +35,12 @@ def given_text(given: object) -> str | None:
     return given if isinstance(given, str) else None
 
 
+def numbers_in(given: str) -> list[Decimal]:
+    """Return the numbers of a number or a pair as `given_text` writes it; none if part of it is not a finite number."""
+    numbers = [number for part in given.split() if (number := parse_number(part)) is not None]
+    return numbers if len(numbers) == len(given.split()) else []
+
+
 def compare_statement(statement: Statement, given: str, compare: Compare) -> Agreement:
     """Return how what a reading gives compares with a print: ``equal``, ``near`` or ``differs``.
 
@@ -46,10 +53,11 @@ def compare_statement(statement: Statement, given: str, compare: Compare) -> Agr
     """
     if statement.kind in {"word", "date"}:
         return "equal" if given == statement.text else "differs"
-    values = [parse_number(part) for part in given.split()]
+    if statement.kind in {"below", "above"} and given in _INFINITE:
+        return "equal" if _INFINITE[given] == statement.kind else "differs"
+    numbers = numbers_in(given)
     pair = bool(statement.upper or statement.uncertainty) and statement.kind != "inside"
-    numbers = [value for value in values if value is not None]
-    if len(numbers) != len(values) or len(numbers) != (2 if pair else 1):
+    if len(numbers) != (2 if pair else 1):
         return "differs"
     if pair:
         ends = (statement.text, statement.upper or statement.uncertainty)

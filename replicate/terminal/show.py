@@ -12,7 +12,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from replicate.display.csv_text import number_text
-from replicate.display.numbers import shown
+from replicate.display.numbers import shown, shown_word
 from replicate.display.words import MATCHES, WORDS
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
 from replicate.exhibits.printed import PrintedValue
@@ -75,7 +75,8 @@ def _comparison(readings: Sequence[str], verdicts: list[VerdictRow]) -> Grid:
 def _computed(one: Computed | None, printed: PrintedValue | None) -> str:
     if one is None or not one.text:
         return ""
-    return f"{shown(one.number, printed)} {MATCHES[one.match.kind][0]:1}"
+    text = shown_word(one.word, printed) if one.word else shown(one.number, printed)
+    return f"{text} {MATCHES[one.match.kind][0]:1}"
 
 
 def _print_frames(result: TableResult, readings: Sequence[str], console: Console) -> None:

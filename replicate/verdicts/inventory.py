@@ -49,7 +49,7 @@ def _table(result: TableResult, verdicts: Sequence[VerdictRow]) -> tuple[Status,
     missing = [
         verdict
         for verdict in verdicts
-        if verdict.verdict == "not-computable" or all(one.number is None for one in verdict.values)
+        if verdict.verdict == "not-computable" or not any(one.text for one in verdict.values)
     ]
     if not missing:
         return "done", ""

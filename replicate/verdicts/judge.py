@@ -49,13 +49,14 @@ def judge(
     """
     judgement = Judgement()
     if exhibits is None:
-        judgement.problems.extend(
-            f"{paper.id}: numbered exhibit '{id}' is not in the inventory"
+        unused = [
+            f"{paper.id}: numbered exhibit '{id}' is not in the inventory; defined: {', '.join(paper.exhibits)}"
             for id in paper.numbered
             if id not in paper.exhibits
-        )
-        judgement.problems.extend(inputs.unused)
-        judgement.unused.extend(inputs.unused)
+        ]
+        unused += inputs.unused
+        judgement.problems.extend(unused)
+        judgement.unused.extend(unused)
     explained: list[tuple[int, LedgerEntry]] = []
     for id, exhibit in paper.exhibits.items():
         if exhibits is not None and id not in exhibits:
