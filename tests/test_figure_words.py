@@ -34,6 +34,7 @@ def test_what_cannot_be_seen_is_no_curve_and_no_text() -> None:
             axes.plot(T, np.cos(T), label="b", alpha=0.0)
             axes.plot(T, np.cos(T), color="none")
             axes.plot(T, np.cos(T), linewidth=0)
+            axes.plot(T, np.cos(T), linestyle="none")
             axes.scatter(T, np.cos(T), alpha=0.0, label="c")
             axes.fill_between(T, np.cos(T), alpha=0.0)
             axes.add_patch(Circle((3, 0), 0.5, fill=False, linewidth=0))
@@ -55,6 +56,29 @@ def test_what_is_clipped_away_and_the_order_of_axes_are_not_seen() -> None:
 
     assert said(draw, False, True) == said(draw, True, False) == []
     assert said(lambda ax, v: ax.plot([2, 3], [0, 1], clip_on=v) and ax.set_xlim(0, 1), True, False)
+
+
+@pytest.mark.parametrize(("filled", "labels"), [(False, False), (False, True), (True, False)])
+def test_a_contour_of_another_level_is_another_curve(filled: bool, labels: bool) -> None:
+    def draw(axes: Any, level: float) -> None:
+        contours = (axes.contourf if filled else axes.contour)(X, Y, X + Y**2, [-1.0, level, 5.0])
+        if labels:
+            axes.clabel(contours)
+
+    changes = said(draw, 2.0, 2.5)
+    assert any(text.endswith("is missing") for text in changes) or "moved" in changes[0]
+
+
+def test_texts_of_a_figure_without_axes_are_said_and_placed() -> None:
+    def shown(**given: Any) -> Record:
+        figure = Figure()
+        figure.suptitle("all", x=given.get("x", 0.5))
+        figure.text(0.5, given.get("y", 0.5), "words", color=given.get("color", "k"))
+        return capture(figure)
+
+    assert compare(shown(), shown(color="r")).changes == ["colour of text 'words' changed from black to red"]
+    assert compare(shown(), shown(x=0.2)).changes == ["figure title moved by up to 30 % of the figure"]
+    assert compare(shown(), shown(y=0.6)).changes == ["text 'words' moved by up to 10 % of the figure"]
 
 
 def test_a_curve_that_can_be_seen_now_is_new() -> None:

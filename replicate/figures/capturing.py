@@ -13,7 +13,7 @@ from replicate.errors import FigureError
 from replicate.figures.describe import said_texts, said_titles
 from replicate.figures.drawing import parasites, recorded
 from replicate.figures.fields import read_field
-from replicate.figures.ink import unseen
+from replicate.figures.ink import Ink
 from replicate.figures.marks import Box, marks_of
 from replicate.figures.parts import Namer, Part
 from replicate.figures.readback import read_panel
@@ -46,15 +46,14 @@ def record_of(figure: Figure) -> Record:
     fitted = {"fitted": True} if engine == "PlaceHolderLayoutEngine" else {}
     with recorded(figure) as drawn:
         panels = list(_panels(figure))
-        nothing = unseen(drawn)
-        read = {id(axes): read_panel(name, axes, nothing) for name, axes in panels}
+        ink = Ink.of(drawn)
+        read = {id(axes): read_panel(name, axes, ink) for name, axes in panels}
         outside = _outside_the_axes(figure) if panels else {}
         namers = {id(axes): Namer(axes, read[id(axes)].names, _described_texts(axes)) for _, axes in panels}
-        texts = {id(text): f"text '{text.get_text()}'" for text in figure.texts} if panels else {}
-        title = getattr(figure, "_suptitle", None)
-        if title is not None and panels:
-            texts[id(title)] = "figure title"
-        whole = Namer(figure, {}, texts, names_of_sub_figures(figure), placed=True)
+        names = names_of_sub_figures(figure) | _names_of_texts(figure)
+        # What the texts of a figure read is said with its first panel, if it has one.
+        described_texts = _names_of_texts(figure) if panels else {}
+        whole = Namer(figure, {}, described_texts, names, placed=True)
         stacks = {id(owner): Stack() for owner in (figure, *(axes for _, axes in panels if axes.child_axes))}
         called = {id(axes): f"panel '{name}'" for name, axes in panels}
         for call in in_order_of_place(figure, drawn):
@@ -132,6 +131,12 @@ def _pile(call: Drawn, name: str, called: dict[int, str], stacks: dict[int, Stac
         else:
             left, bottom, right, top = inner.bbox.extents
             stacks[owner].add(called[id(inner)], (left, bottom, right, top))
+
+
+def _names_of_texts(figure: Figure) -> dict[int, str]:
+    title = getattr(figure, "_suptitle", None)
+    names = {id(text): f"text '{text.get_text()}'" for text in figure.texts}
+    return names if title is None else names | {id(title): "figure title"}
 
 
 def _described_texts(axes: Axes) -> dict[int, str]:

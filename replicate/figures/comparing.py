@@ -82,7 +82,7 @@ def _figure(one: Mapping[str, Any], other: Mapping[str, Any]) -> list[Difference
     ):
         shown = [" × ".join(f"{side:g}" for side in size) for size in (sizes[1], sizes[0])]
         found.append(Difference("axes", f"the figure is now {shown[0]} in (was {shown[1]})", "figure / size"))
-    return found + compare_parts(*parts, names_of_texts(*parts), "figure")
+    return found + compare_parts(*parts, names_of_texts(*parts), "figure", frame=Frame(whole="figure"))
 
 
 def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Difference]:

@@ -93,7 +93,7 @@ def _named(line: Line2D) -> bool:
 
 def _write(axes: Axes, line: Line2D, place: Array, size: float, *, on: bool) -> None:
     """Write a name, and say in the drawing whose it is; one that stands on its curve interrupts it."""
-    figure: Any = axes.get_figure(root=True)
+    figure: Any = axes.figure.canvas.figure
     number = sum(str(artist.get_gid()).endswith("-name") for one in figure.axes for artist in one.texts) + 1
     line.set_gid(f"curve-{number}")
     x, y = (round(float(share), 3) for share in place)
@@ -113,7 +113,7 @@ def _write(axes: Axes, line: Line2D, place: Array, size: float, *, on: bool) -> 
 
 def _size(axes: Axes) -> Array:
     """Return width and height of axes in points, as their grid has them."""
-    figure: Any = axes.get_figure(root=True)
+    figure: Any = axes.figure.canvas.figure
     spec = axes.get_subplotspec()
     place = axes.get_position(original=True) if spec is None else spec.get_position(figure)
     size = np.array([place.width, place.height]) * figure.get_size_inches() * 72.0

@@ -20,7 +20,7 @@ from replicate.figures.pair import Pair
 from replicate.figures.places import points_apart
 from replicate.figures.polylines import THINNING, Points
 from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
-from replicate.figures.showing import shown_names
+from replicate.figures.showing import hidden_names
 from replicate.figures.values import WINDOW, Array, compare_values, is_function
 from replicate.figures.wording import moved_words
 
@@ -101,9 +101,8 @@ class _Panel:
         for name in pairs:
             self.slack(name, found)
         differ = [name for name, pair in pairs.items() if pair.moved]
-        seen = shown_names(self.old), shown_names(self.new)
-        gone = [name for name in one if name not in other and (seen[0] is None or name in seen[0])]
-        fresh = [name for name in other if name not in one and (seen[1] is None or name in seen[1])]
+        gone = [name for name in one if name not in other and name not in hidden_names(self.old)]
+        fresh = [name for name in other if name not in one and name not in hidden_names(self.new)]
         was = self.same_elsewhere(
             {name: one[name] for name in (*differ, *gone)}, {name: other[name] for name in (*differ, *fresh)}
         )  # new name -> the accepted name of the same curve

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -15,6 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
+
+    from replicate.figures.ink import Ink
 
 _DIGITS = 9
 _SIDES: tuple[Literal["left"], Literal["center"], Literal["right"]] = ("left", "center", "right")
@@ -35,13 +36,13 @@ _PERIODS = {
 }
 
 
-def describe(panel: str, axes: Axes, unseen: Container[int] = ()) -> dict[str, Any]:
+def describe(panel: str, axes: Axes, ink: Ink | None = None) -> dict[str, Any]:
     """Return the description of axes, ready for JSON.
 
     Parameters
     ----------
-    unseen
-        The identities of the artists of which nothing can be seen.
+    ink
+        What the artists have left on the figure, if it was drawn: a text that left nothing is none.
 
     Returns
     -------
@@ -56,6 +57,7 @@ def describe(panel: str, axes: Axes, unseen: Container[int] = ()) -> dict[str, A
     """
     legend = axes.get_legend() if hasattr(axes, "get_legend") else None
     said = said_titles(axes)
+    texts = (text for text in said_texts(axes) if text.get_visible() and not (ink and ink.hides(text)))
     found: dict[str, Any] = {
         "panel": panel,
         "title": said[0] if said else "",
@@ -66,7 +68,7 @@ def describe(panel: str, axes: Axes, unseen: Container[int] = ()) -> dict[str, A
         "xlim": [number(limit) for limit in axes.get_xlim()],
         "ylim": [number(limit) for limit in axes.get_ylim()],
         "legend": [text.get_text() for text in legend.get_texts()] if legend and legend.get_visible() else [],
-        "texts": [_text(text, axes) for text in said_texts(axes) if text.get_visible() and id(text) not in unseen],
+        "texts": [_text(text, axes) for text in texts],
     }
     if len(said) > 1:
         found["titles"] = [axes.get_title(loc=side) for side in _SIDES]

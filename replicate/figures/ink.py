@@ -1,36 +1,61 @@
-"""Whether anything can be seen of what an artist draws: a line without colour or width is no curve of the figure."""
+"""Of which artists something can be seen: a line without colour, width or dashes is no curve of the figure."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from replicate.figures.recorder import Array, Drawn
 from replicate.figures.stacking import extent
 
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+
 #: Opacities up to this, of 1, cannot be seen.
 _LEAST = 1.5 / 255.0
 
 
-def unseen(drawn: Sequence[Drawn]) -> set[int]:
-    """Return the identities of the artists that draw, but nothing that could be seen.
+@dataclass(frozen=True)
+class Ink:
+    """What the artists of a figure have left on it.
 
-    Examples
-    --------
-    >>> from matplotlib.figure import Figure
-    >>> from replicate.figures.drawing import recorded
-    >>> figure = Figure()
-    >>> one, other = (figure.subplots().plot([0, 1], alpha=alpha)[0] for alpha in (0.0, 0.5))
-    >>> with recorded(figure) as drawn:
-    ...     [id(line) in unseen(drawn) for line in (one, other)]
-    [True, False]
+    Attributes
+    ----------
+    drawn, seen
+        The identities of the artists that draw, or consist of others that do, and of those of which something can be
+        seen.
     """
-    seen: dict[int, bool] = {}
-    for call in drawn:
-        artist = id(call.artists[-1])
-        seen[artist] = seen.get(artist, False) or _leaves_ink(call)
-    return {artist for artist, visible in seen.items() if not visible}
+
+    drawn: frozenset[int] = frozenset()
+    seen: frozenset[int] = frozenset()
+
+    @classmethod
+    def of(cls, calls: Sequence[Drawn]) -> Ink:
+        """Return what calls of the renderer leave.
+
+        Examples
+        --------
+        >>> from matplotlib.figure import Figure
+        >>> from replicate.figures.drawing import recorded
+        >>> figure = Figure()
+        >>> lines = [figure.subplots().plot([0, 1], alpha=alpha)[0] for alpha in (0.0, 0.5)]
+        >>> with recorded(figure) as drawn:
+        ...     [Ink.of(drawn).shows(line) for line in lines]
+        [False, True]
+        """
+        seen = [artist for call in calls if _leaves_ink(call) for artist in call.artists]
+        return cls(frozenset(id(artist) for call in calls for artist in call.artists), frozenset(map(id, seen)))
+
+    def shows(self, artist: Artist) -> bool:
+        """Whether something can be seen of an artist."""
+        return id(artist) in self.seen
+
+    def hides(self, artist: Artist) -> bool:
+        """Whether an artist draws, but nothing that could be seen."""
+        return id(artist) in self.drawn - self.seen
 
 
 def _leaves_ink(call: Drawn) -> bool:

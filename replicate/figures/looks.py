@@ -239,8 +239,8 @@ def _same_blocks(one: Any, other: Any) -> bool:
     return first.shape == second.shape and bool(np.abs(second - first).max() <= _BLOCK)
 
 
-def place_words(one: Mark, other: Mark, tolerance: float) -> Iterator[Words]:
-    """Yield how far apart two marks lie, if further than the tolerance."""
+def place_words(one: Mark, other: Mark, tolerance: float, whole: str = "axes") -> Iterator[Words]:
+    """Yield how far apart two marks lie, if further than the tolerance, as fractions of the axes or of the figure."""
     apart, where = 0.0, None
     if "outline" in one and "outline" in other:
         apart = outlines_apart(one["outline"], other["outline"], tolerance)
@@ -253,8 +253,8 @@ def place_words(one: Mark, other: Mark, tolerance: float) -> Iterator[Words]:
         apart = apart if apart > (max(tolerance, _PICTURE) if one["draws"] == "image" else 2.0 * tolerance) else 0.0
     if not apart:
         return
-    around = "" if where is None else f", mostly around ({where[0]:.2g}, {where[1]:.2g}) of the axes"
+    around = "" if where is None else f", mostly around ({where[0]:.2g}, {where[1]:.2g}) of the {whole}"
     if np.isfinite(apart):
-        yield f"{{}} moved by up to {percent(apart)} of the axes{around}", apart
+        yield f"{{}} moved by up to {percent(apart)} of the {whole}{around}", apart
     else:
         yield f"{{}} is drawn in other places{around}", 1.0

@@ -26,16 +26,19 @@ class Frame:
         lies at ``(p - shift) / stretch`` now.
     zoomed
         Whether they are.
+    whole
+        What places are fractions of.
     """
 
     slack: float = 1.0
     shift: tuple[float, float] = (0.0, 0.0)
     stretch: tuple[float, float] = (1.0, 1.0)
+    whole: str = "axes"
 
     @property
     def zoomed(self) -> bool:
         """Whether the limits are others."""
-        return self != Frame(self.slack)
+        return (self.shift, self.stretch) != ((0.0, 0.0), (1.0, 1.0))
 
     def accepted(self, mark: Mark) -> Mark:
         """Return a mark of the new state where it would lie in the accepted one, had it stayed with the data."""
@@ -78,10 +81,10 @@ def _kind(mark: Mark) -> str:
 
 def _pair(before: Mark, after: Mark, tolerance: float, frame: Frame) -> Iterator[Words]:
     yield from ((text, None) for text in look_words(before, after))
-    moved = list(place_words(before, after, tolerance))
+    moved = list(place_words(before, after, tolerance, frame.whole))
     if moved and frame.zoomed:  # what stayed with the data has not moved, nor what stayed with the axes
         digest = any("pieces" in after.get(name, {}) for name in ("outline", "places"))
-        moved = [] if digest else list(place_words(before, frame.accepted(after), tolerance))
+        moved = [] if digest else list(place_words(before, frame.accepted(after), tolerance, frame.whole))
     yield from moved
 
 

@@ -196,7 +196,7 @@ class Namer:
             style = box.get_boxstyle()
             shape = {"style": type(style).__name__, "shape": style_numbers(style) or "usual"}
             return Part(f"box of {name}", box, placed=False, properties=shape)
-        if not told and text in getattr(self.owner, "texts", ()):  # of a contour: width and font decide where it is
+        if not told and not self.placed and text in self.owner.texts:  # of a contour: width and font decide where it is
             return Part(f"label '{_shortened(text.get_text())}'", text, placed=False, turned=False)
         solid = hasattr(text, "get_position_3d")  # its data say two of three coordinates
         clip = {"clipping": "none" if drawn.clip_box is None and drawn.clip_path is None else "to the axes"}

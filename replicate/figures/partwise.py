@@ -131,6 +131,8 @@ def _sentence(words: str, names: Sequence[str], curves: frozenset[str]) -> str:
     if len(names) > 1 or _plural(names[0]):
         words = _VERB.sub(lambda match: match[1] + {"is": "are", "has": "have"}[match[2]], words)
         words = words.replace(" of its ", " of their ")
+        if words.startswith("{} are "):
+            words = words.replace("(was ", "(were ")
     return words.replace("{}", together([_called(name, curves) for name in names]))
 
 

@@ -8,7 +8,7 @@ very many scattered points have a digest.
 from __future__ import annotations
 
 import math
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.patches import Patch
     from matplotlib.transforms import Transform
+
+    from replicate.figures.ink import Ink
 
 #: A thinned curve has no more points than this, even if dropped ones then lie further away than `THINNING`.
 MOST_POINTS = 400
@@ -88,7 +90,7 @@ class Panel:
     names: dict[int, str] = field(default_factory=dict)
 
 
-def read_panel(panel: str, axes: Axes, unseen: Container[int] = ()) -> Panel:
+def read_panel(panel: str, axes: Axes, ink: Ink) -> Panel:
     """Read what one axes shows.
 
     Every line, scatter, filled area, contour and shape is a curve. It is named by its label, otherwise by its
@@ -98,16 +100,16 @@ def read_panel(panel: str, axes: Axes, unseen: Container[int] = ()) -> Panel:
 
     Parameters
     ----------
-    unseen
-        The identities of the artists of which nothing can be seen: they are no curves, and no texts.
+    ink
+        What the artists have left on the figure: one of which nothing can be seen is no curve, and no text.
     """
     axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
-    read = Panel(description=describe(panel, axes, unseen))
+    read = Panel(description=describe(panel, axes, ink))
     special: dict[str, Any] = {name: [] for name in ("points", "areas", "loose")}
     special |= {name: {} for name in ("thinned", "dense", "clouds")}
     used: dict[str, int] = {}
     for curve in _curves(axes):
-        if len(curve.points) == 0 or id(curve.artist) in unseen:
+        if len(curve.points) == 0 or not ink.shows(curve.artist):
             continue
         used[curve.name] = used.get(curve.name, 0) + 1
         unique = curve.name if used[curve.name] == 1 else f"{curve.name} ({used[curve.name]})"

@@ -29,9 +29,9 @@ def shows(part: Part) -> bool:
     return inked and not (_is_clipped(part) and _is_outside(part.get("box")))
 
 
-def shown_names(axes: Mapping[str, Any]) -> set[str] | None:
-    """Return the names of the parts of a panel that can be seen; ``None`` if its record does not say."""
-    return {str(part["name"]) for part in axes["parts"] if shows(part)} if "parts" in axes else None
+def hidden_names(axes: Mapping[str, Any]) -> set[str]:
+    """Return the names of the parts of a panel of which its record says that nothing can be seen."""
+    return {str(part["name"]) for part in axes.get("parts", ()) if not shows(part)}
 
 
 def _is_clipped(part: Part) -> bool:
