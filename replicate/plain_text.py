@@ -6,6 +6,7 @@ defined or read is refused with its place; whatever else is shown has such chara
 
 from __future__ import annotations
 
+import codecs
 import re
 import tomllib
 import unicodedata
@@ -51,7 +52,9 @@ def visible(text: str) -> str:
     return _STEERING.sub(lambda found: found[0].encode("unicode_escape", "backslashreplace").decode("ascii"), text)
 
 
-def read_text(path: Path | Traversable, name: str, error: type[ReplicateError], *, pipes: bool = False) -> str:
+def read_text(
+    path: Path | Traversable, name: str, error: type[ReplicateError], *, pipes: bool = False, utf_16: bool = False
+) -> str:
     """Read a text file of a paper.
 
     Parameters
@@ -63,6 +66,8 @@ def read_text(path: Path | Traversable, name: str, error: type[ReplicateError], 
         line.
     pipes
         Whether it may be a pipe, which a reader waits for, as in ``--roster <(command)``.
+    utf_16
+        Whether UTF-16 is read, too, if the file begins with a byte order mark, as some programs export tables.
     """
     try:
         if isinstance(path, Path) and (path.is_char_device() or path.is_block_device() or path.is_socket()):
@@ -82,8 +87,9 @@ def read_text(path: Path | Traversable, name: str, error: type[ReplicateError], 
     if content.startswith(_ARCHIVE):
         msg = f"{name}: is a spreadsheet or an archive; expected: text (save a table as CSV in UTF-8)"
         raise error(msg)
+    wide = utf_16 and content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        text = content.decode("utf-8")
+        text = content.decode("utf-16" if wide else "utf-8")
     except UnicodeDecodeError as why:
         line = content[: why.start].count(b"\n") + 1
         msg = f"{name}:{line}: is not UTF-8 text"

@@ -33,6 +33,9 @@ def test_a_roster_of_many_scripts() -> None:
         ('name\n"Ada\nBob\n', "", "r.csv:3: cannot be read as CSV: unexpected end of data"),
         ('name,mail\n"Ada,a\nBob"\n', "", "r.csv:3: 'Ada,a...' goes on in another line; is a quotation mark missing?"),
         ("name\nA\u202edA\n", "", "r.csv:2: holds the character U.202E"),
+        ("Group 2026,,\nname,mail,x\nAda,a,1\n", "", "r.csv:1: 'Group 2026' is a title, not the names of the columns"),
+        ("Group 2026\nname,mail\nAda,a\n", "", "r.csv:2: has 2 cells, more than the 1 columns that the first line"),
+        ("name,mail\nLovelace, Ada,a\n", "", "r.csv:2: has 3 cells, .* is a quotation mark missing"),
         ("name\nA\0B\n", "", "r.csv:2: holds the character U.0000"),
     ],
 )
@@ -55,6 +58,8 @@ def test_long_names_that_differ_at_their_end_name_two_sheets(tmp_path: Path) -> 
     [
         "name;Größe\r\nAda;1\r\nZoë;2\r\n".encode("utf-8-sig"),  # as spreadsheets save it: mark, semicolons, CRLF
         b"sep=;\r\nname;x\r\nAda;1\r\nZo\xc3\xab;2\r\n",
+        "name\tx\r\nAda\t1\r\nZoë\t2\r\n".encode("utf-16"),  # "Unicode text"
+        "\ufeffname;x;\r\n;;\r\nAda;1;\r\nZoë;2;;\r\n".encode("utf-16-be"),
         b"\r\nname\tx\r\n\r\nAda\t1\r\nZo\xc3\xab\t2",
         b'"name","x"\rAda,"1\r2"\rZo\xc3\xab',
     ],

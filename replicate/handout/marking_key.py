@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import re
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
@@ -22,6 +23,8 @@ from replicate.handout.letters import FAMILIES, can_be_set, fonts
 from replicate.resources import templates_dir
 
 TEMPLATE = "handout_key.typ"
+_FORMULA = ("=", "+", "-", "@")  # how one begins in a spreadsheet
+_NUMBER = re.compile(r"[-+]?\d+(\.\d+)?")
 _DIGITS = 7  # of the key's numbers, more than any answer is stated with
 
 
@@ -61,12 +64,28 @@ def key_rows(variations: Mapping[str, Variation], student: str, form: Form) -> l
 
 
 def key_csv(rows: Sequence[KeyRow]) -> bytes:
-    """Return the key as CSV, one answer a line."""
+    """Return the key as CSV, one answer a line; a text that a spreadsheet would run has an apostrophe before it."""
+    shown = [{name: _not_run(text) for name, text in asdict(row).items()} for row in rows]
+    return _csv(shown)
+
+
+def _csv(rows: Iterable[dict[str, str]]) -> bytes:
     text = io.StringIO(newline="")
     writer = csv.DictWriter(text, [field.name for field in fields(KeyRow)], lineterminator="\n")
     writer.writeheader()
-    writer.writerows(asdict(row) for row in rows)
+    writer.writerows(rows)
     return text.getvalue().encode()
+
+
+def _not_run(text: str) -> str:
+    """Return a text so that no spreadsheet takes it for a formula; a number stays one.
+
+    Examples
+    --------
+    >>> [_not_run(text) for text in ("=1+1", "@ada", "-1.5", "+1", "a=b")]
+    ["'=1+1", "'@ada", '-1.5', '+1', 'a=b']
+    """
+    return f"'{text}" if text.startswith(_FORMULA) and not _NUMBER.fullmatch(text) else text
 
 
 def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str, figures: Iterable[KeyFigure] = ()) -> bytes:
@@ -85,7 +104,7 @@ def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str, figures: Iterable[K
     names = {row.student: row.student if can_be_set(row.student) else row.form.split(":")[1] for row in rows}
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
-        (root / "key.csv").write_bytes(key_csv([replace(row, student=names[row.student]) for row in rows]))
+        (root / "key.csv").write_bytes(_csv(asdict(replace(row, student=names[row.student])) for row in rows))
         listed: dict[str, list[dict[str, str]]] = {}
         for number, figure in enumerate(figures):
             (root / f"{number}.svg").write_bytes(figure.svg)

@@ -36,21 +36,7 @@ def read_roster(path: Path, column: str = "") -> list[str]:
     ReplicateError
         If there is no such file or column, nobody in it, an id missing, or two ids would name one file.
     """
-    text = _text(path)
-    head = text.splitlines()[0] if text.strip() else ""
-    skipped = 1 if re.fullmatch(r'"?sep=[,;\t]"?', head.strip()) else 0  # what a spreadsheet may write first
-    text = "\n" * skipped + text.partition("\n")[2] if skipped else text
-    head = next((line for line in text.splitlines() if line.strip()), "")
-    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), strict=True)
-    try:
-        columns = [name.strip() for name in next((row for row in rows if row), [])]
-        lines = [(rows.line_num, row) for row in rows if any(cell.strip() for cell in row)]
-    except csv.Error as error:
-        msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
-        raise ReplicateError(msg) from error
-    if not lines:
-        msg = f"{path.name}: the roster is empty: it needs a line with the names of the columns and one per student"
-        raise ReplicateError(msg)
+    columns, lines = _table(path)
     if column and column not in columns:
         msg = f"{path.name}: no column '{column}'; allowed: {', '.join(columns)}"
         raise ReplicateError(msg)
@@ -82,9 +68,38 @@ def read_roster(path: Path, column: str = "") -> list[str]:
     return students
 
 
+def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return the names of the columns and the other lines that hold something, with their numbers."""
+    text = _text(path)
+    head = text.splitlines()[0] if text.strip() else ""
+    skipped = 1 if re.fullmatch(r'"?sep=[,;\t]"?', head.strip()) else 0  # what a spreadsheet may write first
+    text = "\n" * skipped + text.partition("\n")[2] if skipped else text
+    head = next((line for line in text.splitlines() if line.strip()), "")
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), strict=True)
+    try:
+        found = [(rows.line_num, row) for row in rows if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
+        raise ReplicateError(msg) from error
+    if len(found) < 2:
+        msg = f"{path.name}: the roster is empty: it needs a line with the names of the columns and one per student"
+        raise ReplicateError(msg)
+    (number, names), *lines = found
+    columns = [name.strip() for name in names]
+    if len(columns) > 1 and not any(columns[1:]):
+        msg = f"{path.name}:{number}: '{_short(columns[0])}' is a title, not the names of the columns; remove the line"
+        raise ReplicateError(msg)
+    for number, row in lines:
+        if any(cell.strip() for cell in row[len(columns) :]):
+            cells = f"has {len(row)} cells, more than the {len(columns)} columns that the first line names"
+            msg = f"{path.name}:{number}: {cells}; is a quotation mark missing, or is there a title above the names?"
+            raise ReplicateError(msg)
+    return columns, lines
+
+
 def _text(path: Path) -> str:
     try:
-        return read_text(path, path.name, ReplicateError, pipes=True)
+        return read_text(path, path.name, ReplicateError, pipes=True, utf_16=True)
     except ReplicateError as error:
         if isinstance(error.__cause__, UnicodeDecodeError):
             msg = f"{error}; in a spreadsheet, save the roster as 'CSV UTF-8'"

@@ -6,9 +6,17 @@ export class NotationError extends Error {}
 
 const fail = (column, reason) => { throw new NotationError(`column ${column}: ${reason}`); };
 const CLOSING = { "(": ")", "{": "}", "[": "]" };
+const NUMBER = /(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?/;
+const SIGNED = new RegExp(`^[-+−–]?${NUMBER.source}$`);
+
+function float(text, column) {
+  const value = Number(text);
+  if (!Number.isFinite(value) || (value === 0 && /[1-9]/.test(text.split(/e/i)[0]))) fail(column, `${text} is not a floating-point number`);
+  return value;
+}
 
 function tokens(text) {
-  const found = [], pattern = /\s+|\\left|\\right|\\[,;!:]|(\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+(?:[eE][+-]?\d+)?)|(\*\*|\\cdot|\\frac|exp|[-+*/^(){}[\]−–·⋅×se])|([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/y;
+  const found = [], pattern = new RegExp(`\\s+|\\\\left|\\\\right|\\\\[,;!:]|(${NUMBER.source})|(\\*\\*|\\\\cdot|\\\\frac|exp|[-+*/^(){}[\\]−–·⋅×se])|([⁰¹²³⁴⁵⁶⁷⁸⁹]+)`, "y");
   const same = { "**": "^", "\\cdot": "*", "−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*" };
   while (pattern.lastIndex < text.length) {
     const column = pattern.lastIndex + 1, match = pattern.exec(text), rest = text.slice(column - 1);
@@ -19,10 +27,13 @@ function tokens(text) {
     const [, number, symbol, superscript] = match;
     if (symbol) found.push({ kind: same[symbol] || symbol, column });
     if (superscript) found.push({ kind: "^", column });
-    if (number || superscript) found.push({ kind: "number", value: Number(number || [...superscript].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)).join("")), column });
+    if (number || superscript) found.push({ kind: "number", value: float(number || [...superscript].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)).join(""), column), column });
   }
   return [...found, { kind: "end", column: text.length + 1 }];
 }
+
+// What a field with one number holds; null if it is none.
+export const plainNumber = (text) => (SIGNED.test(text) ? Number(text.replace(/[−–]/, "-")) : null);
 
 // Values are quotients of products of polynomials with a dead time: {num, den, delay}, the factors as they were written.
 const poly = (...num) => ({ num: [num], den: [], delay: 0 });
@@ -98,7 +109,7 @@ function evaluate(text) {
     const token = next();
     if (token.kind in CLOSING) return group();
     take();
-    if (token.kind === "number") return Number.isFinite(token.value) ? poly(token.value) : fail(token.column, "the number is too large");
+    if (token.kind === "number") return poly(token.value);
     if (token.kind === "s") return poly(1, 0);
     if (token.kind === "\\frac") { const above = group(); return over(above, group(), token.column); }
     if (token.kind === "e" && !(next().kind === "^" && list[at + 1].kind in CLOSING)) fail(token.column, "e needs an exponent in braces, as in e^{-2s}");

@@ -11,7 +11,7 @@ from replicate.loops.errors import NotationError
 FUNCTIONS = ("exp", "sqrt", "sinh", "cosh", "tanh", "sech", "csch", "coth")
 NAMES = (*FUNCTIONS, "s", "e")  # longer ones first, so that a run of letters is split greedily
 
-_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_NUMBER = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 _LETTERS = re.compile(r"[^\W\d_]+")
 _NAME = re.compile("|".join(NAMES))
 _SPACE = re.compile(r"(?:\s|\\left|\\right|\\[,;!:])+")
