@@ -12,6 +12,8 @@ from replicate.exhibits import Paper
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import Results
 from replicate.exhibits.variants import Variation
+from replicate.handout.artist import Artist
+from replicate.handout.drawings import Wanted
 from replicate.handout.edition import AT_ONCE, Document, editions, without_solutions
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, EDITIONS, named
@@ -19,7 +21,7 @@ from replicate.handout.key_figures import key_figures
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.placing import exercises_of
-from replicate.handout.questions import Question, questions_of, with_pictures
+from replicate.handout.questions import Question, pictures_of, questions_of
 from replicate.handout.roster import file_stem
 from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
@@ -41,6 +43,8 @@ class ClassSet:
         Of the sheets, or of the file of questions in their place.
     progress
         Is given how many sheets of how many are done.
+    artist
+        Draws the pictures of key and questions meanwhile; without one, they are drawn when they are needed.
     """
 
     paper: Paper
@@ -50,6 +54,7 @@ class ClassSet:
     sheet: Sheet = field(default_factory=Sheet)
     file_format: str = "pdf"
     progress: Callable[[int, int], None] = lambda *_: None
+    artist: Artist | None = None
     _shared: dict[str, Any] = field(default_factory=dict, repr=False)
 
     def files(self, students: Sequence[str], seed: str, bank: str = "") -> Iterator[tuple[str, bytes]]:
@@ -71,7 +76,11 @@ class ClassSet:
         """
         exercises = varying(self.paper, self.sheet.own)
         forms = {student: Form.of(self.paper.id, seed, student, self.sheet.select) for student in students}
-        yield from self._key(exercises, forms, seed)
+        chosen = self._on_sheet(exercises, next(iter(forms.values()), None))
+        rows = self._key(chosen, forms)
+        yield f"{self.paper.id}-key.csv", key_csv(rows)
+        figures = list(key_figures(chosen, forms, self.paper.id))
+        draw = self._draw([figure.wanted for figure in figures], exercises)
         for student, form in forms.items():
             yield from self._data(exercises, file_stem(student), form)
         questions: list[Question] = []
@@ -81,6 +90,7 @@ class ClassSet:
         else:
             for number, _ in enumerate(self._documents(forms.values(), exercises, questions), start=1):
                 self.progress(number, len(forms))
+        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed, figures, draw)
         if bank:
             yield from named(BANKS[bank](questions), self.paper.id).items()
 
@@ -90,8 +100,7 @@ class ClassSet:
         yield from self._data(exercises, form.key, form)
         yield from self._sheets([form.key], self._documents([form], exercises, None))
 
-    def _key(self, exercises: Exercises, forms: Mapping[str, Form], seed: str) -> Iterator[tuple[str, bytes]]:
-        chosen = self._on_sheet(exercises, next(iter(forms.values()), None))
+    def _key(self, chosen: Mapping[str, Variation], forms: Mapping[str, Form]) -> list[KeyRow]:
         rows: list[KeyRow] = []
         for student, form in forms.items():
             try:
@@ -99,8 +108,11 @@ class ClassSet:
             except PaperDefinitionError as error:
                 msg = f"{self.paper.id}, seed '{form.seed}', student '{student}': {error}"
                 raise PaperDefinitionError(msg) from error
-        yield f"{self.paper.id}-key.csv", key_csv(rows)
-        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed, key_figures(chosen, forms, self.paper.id))
+        return rows
+
+    def _draw(self, wanted: Sequence[Wanted], exercises: Exercises) -> Callable[[Wanted], bytes]:
+        """Return what draws pictures that will be wanted."""
+        return self.artist.order(wanted) if self.artist else lambda one: one.drawn(exercises)
 
     def _data(self, exercises: Exercises, stem: str, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the files that go with a sheet."""
@@ -126,8 +138,21 @@ class ClassSet:
         while some := list(islice(waiting, AT_ONCE)):
             for form, document in zip(some, self._batch(some), strict=True):
                 if questions is not None:
-                    questions += with_pictures(questions_of(document, exercises, form))
+                    asked = list(questions_of(document, exercises, form))
+                    questions += asked
+                    self._pictures(asked)
                 yield document
+
+    def _pictures(self, questions: Iterable[Question]) -> None:
+        """Have pictures of questions drawn: by the artist, or now, while another thread still sets sheets."""
+        later = pictures_of(questions)
+        if not self.artist:
+            for drawing in later:
+                drawing.png  # noqa: B018  -- it is kept
+            return
+        draw = self.artist.order([drawing.wanted("png") for drawing in later])
+        for drawing in later:
+            drawing.drawn_by(draw)
 
     def _batch(self, forms: Sequence[Form]) -> list[Document]:
         return editions(

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from types import ModuleType
 from typing import Literal
 
 from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Figure
+from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import FigureResult
 
 
@@ -25,11 +26,56 @@ class Drawing:
     width: float
 
 
-class DrawnLater(Drawing):
-    """A figure of the numbers of one form, drawn when it is needed: a sheet without solutions needs fewer."""
+@dataclass(frozen=True)
+class Wanted:
+    """A picture of the numbers of one form, in values that can be sent to a process.
 
-    def __init__(self, paper: str, figure: Figure, width: float) -> None:
-        self.__dict__.update(name=figure.id, alt=figure.alt, width=width, _paper=paper, _figure=figure)
+    Attributes
+    ----------
+    owner, id
+        Seed the ids inside it.
+    exercise, figure
+        Their names.
+    draw
+        What the numbers are drawn from; empty for those that all share.
+    title
+        Inside an SVG.
+    size
+        In inches.
+    """
+
+    owner: str
+    id: str
+    exercise: str
+    figure: str
+    draw: str
+    title: str
+    size: tuple[float, float]
+    kind: Literal["svg", "png"]
+
+    def drawn(self, exercises: Exercises) -> bytes:
+        """Return the picture."""
+        variation = exercises.variations[self.exercise]
+        found = variation.figures[self.figure]
+        inputs = variation.drawn(self.draw) if self.draw else variation.original
+        draw = partial(found.draw, inputs=inputs)
+        with said_by(f"figure('{self.figure}')"):
+            figure = Figure(self.id, "figure", self.title, draw, alt=found.alt, size=self.size)
+            made: bytes = _drawing().picture(self.owner, figure, self.kind)
+            return made
+
+
+class DrawnLater(Drawing):
+    """A figure of the numbers of one form, drawn when it is needed: a sheet without solutions needs fewer.
+
+    Parameters
+    ----------
+    draw
+        Returns the picture of one kind.
+    """
+
+    def __init__(self, wanted: Wanted, alt: str, width: float, draw: Callable[[Wanted], bytes]) -> None:
+        self.__dict__.update(name=wanted.figure, alt=alt, width=width, _wanted=wanted, _draw=draw)
 
     @cached_property
     def svg(self) -> str:
@@ -41,9 +87,18 @@ class DrawnLater(Drawing):
         """The picture."""
         return self._drawn("png")
 
+    def wanted(self, kind: Literal["svg", "png"]) -> Wanted:
+        """Return which picture it is."""
+        wanted: Wanted = self.__dict__["_wanted"]
+        return replace(wanted, kind=kind)
+
+    def drawn_by(self, draw: Callable[[Wanted], bytes]) -> None:
+        """Have what is not drawn yet drawn otherwise."""
+        self.__dict__["_draw"] = draw
+
     def _drawn(self, kind: Literal["svg", "png"]) -> bytes:
-        with said_by(f"figure('{self.name}')"):
-            return picture(f"{self.__dict__['_paper']}-handout", self.__dict__["_figure"], kind)
+        made: bytes = self.__dict__["_draw"](self.wanted(kind))
+        return made
 
 
 def captured(call: str, paper: str, figure: Figure) -> FigureResult:
@@ -51,12 +106,6 @@ def captured(call: str, paper: str, figure: Figure) -> FigureResult:
     with said_by(call):
         found: FigureResult = _drawing().capture(f"{paper}-handout", figure)
         return found
-
-
-def picture(owner: str, figure: Figure, kind: Literal["svg", "png"]) -> bytes:
-    """Return one picture of a figure; the owner's name seeds the ids inside it."""
-    found: bytes = _drawing().picture(owner, figure, kind)
-    return found
 
 
 @contextmanager

@@ -240,7 +240,7 @@ def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:
         level, attributes, content = element["c"]
         return [{"t": "Header", "c": [level - 1, attributes, content]}]
 
-    return text_of(blocks[0]["c"][2]), transform(blocks[1:], raised)
+    return text_of(blocks[0]["c"][2]), transform(blocks[1:], raised, texts=False)
 
 
 def _placed(blocks: Blocks, placing: Placing) -> Blocks:
@@ -262,7 +262,7 @@ def _placed(blocks: Blocks, placing: Placing) -> Blocks:
         caption = [div([plain(_with_legend(words, thing))], "caption")] if words or thing.legend else []
         return [div([thing.table, *caption], "exhibit")]
 
-    placed: Blocks = transform(blocks, changed)
+    placed: Blocks = transform(blocks, changed, texts=False)
     return placed
 
 

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from functools import partial
 
-from replicate.exhibits import Figure
 from replicate.exhibits.variants import Variation
-from replicate.handout.drawings import picture
+from replicate.handout.drawings import Wanted
 from replicate.handout.form import Form
 
 _SIZE = (3.25, 1.3)  # inches: two beside each other, six below each other on a page
@@ -26,8 +24,8 @@ class KeyFigure:
 
     heading: str
     student: str
-    svg: bytes
     alt: str
+    wanted: Wanted
 
 
 def key_figures(variations: Mapping[str, Variation], forms: Mapping[str, Form], paper: str) -> Iterator[KeyFigure]:
@@ -39,9 +37,11 @@ def key_figures(variations: Mapping[str, Variation], forms: Mapping[str, Form], 
         By student.
     """
     for name, variation in variations.items():
-        for figure in (one for one in variation.figures.values() if one.in_key):
+        for key, figure in variation.figures.items():
+            if not figure.in_key:
+                continue
             heading = f"{variation.name}: {figure.title}"
             for student, form in forms.items():
-                draw = partial(figure.draw, inputs=variation.drawn(form.draw))
-                drawn = Figure(f"{name}-{form.key}", "figure", heading, draw, alt=figure.alt, size=_SIZE)
-                yield KeyFigure(heading, student, picture(f"{paper}-key", drawn, "svg"), figure.alt)
+                id = f"{name}-{form.key}"
+                wanted = Wanted(f"{paper}-key", id, name, key, form.draw, heading, _SIZE, "svg")
+                yield KeyFigure(heading, student, figure.alt, wanted)

@@ -9,8 +9,10 @@ from pathlib import Path
 
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
+from replicate.handout.artist import Artist
 from replicate.handout.build import handouts
 from replicate.handout.class_set import ClassSet, varying
+from replicate.handout.edition import AT_ONCE
 from replicate.handout.exercise_heads import check_sheet
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, SLIDES
@@ -111,8 +113,11 @@ def make(order: Order, results: Results, verdicts: Sequence[VerdictRow]) -> Iter
     class_set = ClassSet(paper, results, verdicts, order.solutions == (True,), sheet, order.file_format, progress)
     if order.again is not None:
         yield from class_set.again(order.again)
-    else:
-        bank = order.file_format if order.file_format in BANKS else "moodle"  # what can be imported is in every set
+        return
+    bank = order.file_format if order.file_format in BANKS else "moodle"  # what can be imported is in every set
+    with Artist(paper.package, order.exercises) as artist:
+        if len(order.students) > AT_ONCE:  # otherwise its process would not have begun before all is drawn
+            class_set = replace(class_set, artist=artist)
         yield from class_set.files(order.students, order.seed, bank)
 
 

@@ -30,7 +30,7 @@ import importlib
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property, partial
+from functools import cache, cached_property
 from importlib.resources.abc import Traversable
 from types import ModuleType
 from typing import Any
@@ -44,7 +44,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult, errors_of
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
-from replicate.handout.drawings import Drawing, DrawnLater, captured, said_by
+from replicate.handout.drawings import Drawing, DrawnLater, Wanted, captured, said_by
 from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_code import OwnCode
@@ -239,11 +239,9 @@ class Placing:
     def figure(self, name: str, width: float = 1.0, size: tuple[float, float] | None = None) -> str:
         """Place a figure of the handout's own, or else one of the paper."""
         own, found = self.exercises.figures.get(name), self.paper.exhibits.get(name)
-        varied = self._varied(name)
+        varied = self._varied(name, min(1.0, size[0] / TEXT_WIDTH) if size else width, size)
         if varied is not None:
-            if size is not None:
-                varied, width = replace(varied, size=size), min(1.0, size[0] / TEXT_WIDTH)
-            return self._mark(DrawnLater(self.paper.id, varied, width))
+            return self._mark(varied)
         if own is not None or (size is not None and isinstance(found, Figure)):
             drawn = own or found
             assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker
@@ -266,13 +264,14 @@ class Placing:
             raise TemplateError(msg)
         return self._mark(Drawing(name, known.svg, known.png, description(found.alt, known.axes), width))
 
-    def _varied(self, name: str) -> Figure | None:
+    def _varied(self, name: str, width: float, size: tuple[float, float] | None) -> DrawnLater | None:
         """Return a figure that shows the numbers of this form."""
         for variation in self.exercises.variations.values():
             figure = variation.figures.get(name)
             if figure is not None:
-                draw = partial(figure.draw, inputs=self.inputs(variation.name))
-                return Figure(name, "figure", figure.title, draw, alt=figure.alt, size=figure.size)
+                owner = f"{self.paper.id}-handout"
+                wanted = Wanted(owner, name, variation.name, name, self.form, figure.title, size or figure.size, "svg")
+                return DrawnLater(wanted, figure.alt, width, lambda wanted: wanted.drawn(self.exercises))
         return None
 
     def _mark(self, thing: Drawing | Placed) -> str:

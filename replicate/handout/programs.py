@@ -62,7 +62,7 @@ def run_programs(
 
     with GuardedProcess(LONGEST_RUN) as process:
         runs = Runs(process, known)
-        result: Blocks = transform(document, changed)
+        result: Blocks = transform(document, changed, texts=False)
     return result
 
 

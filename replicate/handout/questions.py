@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answers
-from replicate.handout.drawings import Drawing
+from replicate.handout.drawings import Drawing, DrawnLater
 from replicate.handout.edition import Document
 from replicate.handout.form import Form
 from replicate.handout.tree import Blocks, attribute, classes, elements
@@ -95,13 +95,10 @@ def drawings_in(blocks: Blocks, document: Document) -> list[Drawing]:
     return [document.drawings[name] for name in dict.fromkeys(found)]
 
 
-def with_pictures(questions: Iterable[Question]) -> list[Question]:
-    """Return questions with their pictures drawn, while another thread still sets sheets."""
-    found = list(questions)
-    for question in found:
-        for drawing in drawings_in([*question.text, *question.solution], question.document):
-            drawing.png  # noqa: B018  -- it is kept
-    return found
+def pictures_of(questions: Iterable[Question]) -> list[DrawnLater]:
+    """Return the drawings in questions that are still to be drawn, as pictures."""
+    found = (drawings_in([*one.text, *one.solution], one.document) for one in questions)
+    return [drawing for drawings in found for drawing in drawings if isinstance(drawing, DrawnLater)]
 
 
 def different(questions: Iterable[Question]) -> list[Question]:

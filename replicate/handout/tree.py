@@ -13,6 +13,7 @@ Blocks = list[Element]
 
 
 _WORDS = {"Str", "Space", "SoftBreak", "LineBreak"}  # nine of ten elements
+_TEXTS = {"Para", "Plain", "Header", "LineBlock"}  # blocks that hold no blocks, footnotes aside
 
 
 def elements(node: object, *, words: bool = False) -> Iterator[Element]:
@@ -41,7 +42,7 @@ def elements(node: object, *, words: bool = False) -> Iterator[Element]:
                 waiting.append(content)
 
 
-def transform(node: Any, change: Callable[[Element], list[Element] | None]) -> Any:
+def transform(node: Any, change: Callable[[Element], list[Element] | None], *, texts: bool = True) -> Any:
     """Return a copy in which elements are replaced, children before their parents.
 
     Parameters
@@ -49,6 +50,8 @@ def transform(node: Any, change: Callable[[Element], list[Element] | None]) -> A
     change
         Gets an element whose children are changed already; returns what takes its place, or ``None`` to keep
         it. Words and the spaces between them stay what they are.
+    texts
+        Whether what is inside paragraphs and headings may change, or only blocks.
     """
     if isinstance(node, list):
         out: list[Any] = []
@@ -57,11 +60,12 @@ def transform(node: Any, change: Callable[[Element], list[Element] | None]) -> A
                 if child["t"] in _WORDS:
                     out.append(child)
                     continue
-                kept = {**child, "c": transform(child["c"], change)} if "c" in child else child
+                leaf = "c" not in child or (not texts and child["t"] in _TEXTS)
+                kept = child if leaf else {**child, "c": transform(child["c"], change, texts=texts)}
                 replaced = change(kept)
                 out += [kept] if replaced is None else replaced
             else:
-                out.append(transform(child, change) if isinstance(child, list) else child)
+                out.append(transform(child, change, texts=texts) if isinstance(child, list) else child)
         return out
     return node
 

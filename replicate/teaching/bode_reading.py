@@ -18,6 +18,7 @@ from replicate.teaching.drawing_numbers import (
     two_digits,
 )
 from replicate.teaching.lag_loop import lag_loop
+from replicate.teaching.phase_margin import phase_margin
 
 if TYPE_CHECKING:
     from random import Random
@@ -73,13 +74,7 @@ def _answers(inputs: Inputs) -> Answers:
             mistakes={"not inverted": 1 / gain, "decibels taken as a ratio": 20 * math.log10(gain)},
             asked="gain margin, as a ratio",
         ),
-        "phase margin": Answer(
-            phase,
-            unit="degrees",
-            tolerance=ANGLE,
-            mistakes={"angle from the positive axis": 180.0 - phase, "radians": math.radians(phase)},
-            asked="phase margin",
-        ),
+        "phase margin": phase_margin(phase, ANGLE),
         "Ms": Answer(
             peak,
             tolerance=share * peak,

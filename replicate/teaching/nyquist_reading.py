@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure
 from replicate.loops import Loop
 from replicate.teaching.drawing_numbers import no_mistake_accepted
+from replicate.teaching.phase_margin import phase_margin
 
 if TYPE_CHECKING:
     from random import Random
@@ -55,13 +55,7 @@ def nyquist_reading(
                 mistakes={"not inverted": crossing, "distance to the critical point": 1 / (1 - crossing)},
                 asked="gain margin",
             ),
-            "phase margin": Answer(
-                phase,
-                unit="degrees",
-                tolerance=ANGLE,
-                mistakes={"angle from the positive axis": 180.0 - phase, "radians": math.radians(phase)},
-                asked="phase margin",
-            ),
+            "phase margin": phase_margin(phase, ANGLE),
             "Ms": Answer(
                 1 / distance,
                 tolerance=DISTANCE / distance**2,

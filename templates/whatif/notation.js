@@ -6,17 +6,9 @@ export class NotationError extends Error {}
 
 const fail = (column, reason) => { throw new NotationError(`column ${column}: ${reason}`); };
 const CLOSING = { "(": ")", "{": "}", "[": "]" };
-const NUMBER = /(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?/;
-const SIGNED = new RegExp(`^[-+−–]?${NUMBER.source}$`);
-
-function float(text, column) {
-  const value = Number(text);
-  if (!Number.isFinite(value) || (value === 0 && /[1-9]/.test(text.split(/e/i)[0]))) fail(column, `${text} is not a floating-point number`);
-  return value;
-}
 
 function tokens(text) {
-  const found = [], pattern = new RegExp(`\\s+|\\\\left|\\\\right|\\\\[,;!:]|(${NUMBER.source})|(\\*\\*|\\\\cdot|\\\\frac|exp|[-+*/^(){}[\\]−–·⋅×se])|([⁰¹²³⁴⁵⁶⁷⁸⁹]+)`, "y");
+  const found = [], pattern = /\s+|\\left|\\right|\\[,;!:]|((?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(\*\*|\\cdot|\\frac|exp|[-+*/^(){}[\]−–·⋅×se])|([⁰¹²³⁴-⁹]+)/y;
   const same = { "**": "^", "\\cdot": "*", "−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*" };
   while (pattern.lastIndex < text.length) {
     const column = pattern.lastIndex + 1, match = pattern.exec(text), rest = text.slice(column - 1);
@@ -27,13 +19,12 @@ function tokens(text) {
     const [, number, symbol, superscript] = match;
     if (symbol) found.push({ kind: same[symbol] || symbol, column });
     if (superscript) found.push({ kind: "^", column });
-    if (number || superscript) found.push({ kind: "number", value: float(number || [...superscript].map((c) => "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)).join(""), column), column });
+    const digits = number || superscript?.replace(/./g, (c) => "⁰¹²³⁴⁵⁶⁷⁸⁹".indexOf(c)), value = Number(digits);
+    if (value === Infinity || (value === 0 && /^[^e]*[1-9]/i.test(digits))) fail(column, `${digits} is not a floating-point number`);
+    if (digits) found.push({ kind: "number", value, column });
   }
   return [...found, { kind: "end", column: text.length + 1 }];
 }
-
-// What a field with one number holds; null if it is none.
-export const plainNumber = (text) => (SIGNED.test(text) ? Number(text.replace(/[−–]/, "-")) : null);
 
 // Values are quotients of products of polynomials with a dead time: {num, den, delay}, the factors as they were written.
 const poly = (...num) => ({ num: [num], den: [], delay: 0 });

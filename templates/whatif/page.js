@@ -1,4 +1,4 @@
-// The page: what is chosen, and how one changes it.
+// The page: what is chosen, and how it changes.
 
 import { CONSTANTS, DATA } from "./data.js";
 import { prepare } from "./loop.js";
@@ -8,7 +8,7 @@ import { measure } from "./metrics.js";
 import { limited } from "./limited.js";
 import { border, contour, extent, gainMap } from "./region.js";
 import { rules } from "./rules.js";
-import { controllerText, NotationError, parseController, parsePlant, plainNumber } from "./notation.js";
+import { controllerText, NotationError, parseController, parsePlant } from "./notation.js";
 import { shown } from "./charts.js";
 import { $, drawNyquist, drawPlane, drawResponses, drawTable, drawPoints, PINS, say, summary } from "./views.js";
 import { copy, curves, download, picture, python } from "./takeaway.js";
@@ -145,9 +145,9 @@ on("plant", "change", () => take("plant", () => usePlant($("plant").value)));
 on("controller", "change", () => take("controller", () => useController(parseController($("controller").value))));
 
 function number(id) {
-  const { value, min, max, dataset: { name = id } } = $(id), text = value.trim(), found = plainNumber(text);
-  if (found === null) refuse(`${name}: '${text}' is not a number${text.includes(",") ? "; write a point" : ""}`);
-  if (found < (min || -Infinity) || found > (max || Infinity)) refuse(`${name}: ${text} is not possible; allowed: ${min} to ${max}`);
+  const { value, min, max, dataset: { name = id } } = $(id), text = value.trim().replace("−", "-"), found = Number(text);
+  if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(text)) refuse(`${name}: '${text}' is not a number${text.includes(",") ? "; write a point" : ""}`);
+  if (min && (found < min || found > max)) refuse(`${name}: ${text} is not possible; allowed: ${min} to ${max}`);
   return found;
 }
 on("gains", "input", ({ target: { id } }) => take(id, () => useController({ ...state.controller, [id]: number(id) }, { plane: !["k", "b", state.plane].includes(id) })));

@@ -72,7 +72,7 @@ export function gainMap(plant, controller, plane, box) {
   return { place, stable, level, stableAt, logMs };
 }
 
-// Segments inside cells where log Ms crosses a level: marching squares, their ends found exactly.
+// Segments where log Ms crosses a level: marching squares, ends found exactly.
 export function contour({ place, stable, level, logMs }, value) {
   return CELLS.filter((cell) => cell.every(([corner]) => at(stable, corner))).flatMap((cell) => {
     const cut = cell.filter(([one, other]) => (at(level, one) < value) !== (at(level, other) < value)).map(([one, other]) => {

@@ -1,0 +1,64 @@
+"""Pictures of a class set, drawn in a process of its own while sheets are set in this one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+
+from replicate.exhibits.exercises import Exercises
+from replicate.handout.drawings import Wanted
+from replicate.handout.own_code import LONGEST_RUN
+from replicate.handout.own_exercises import own_exercises, with_own
+from replicate.handout.placing import exercises_of
+from replicate.run.guarded import GuardedProcess
+from replicate.run.units import loaded
+
+
+class Artist:
+    """Draws what is ordered, in that order, until the ``with`` block ends.
+
+    Parameters
+    ----------
+    package, folders
+        Of the paper, and of exercises of a lecturer's own.
+    """
+
+    def __init__(self, package: str, folders: tuple[Path, ...]) -> None:
+        self._from = package, folders
+        self._process = GuardedProcess(LONGEST_RUN)
+        self._thread = ThreadPoolExecutor(1)  # waits for the process
+
+    def __enter__(self) -> Artist:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._thread.shutdown(wait=False, cancel_futures=True)
+        self._process.__exit__(kind, error, trace)
+        self._thread.shutdown()
+
+    def order(self, wanted: Sequence[Wanted]) -> Callable[[Wanted], bytes]:
+        """Have pictures drawn, and return at once what gives one of them when it is done.
+
+        The function returned raises `ReplicateError` if a picture cannot be drawn.
+        """
+        under_way = self._thread.submit(self._drawn, list(dict.fromkeys(wanted)))
+        return lambda one: under_way.result()[one]
+
+    def _drawn(self, wanted: Sequence[Wanted]) -> dict[Wanted, bytes]:
+        return dict(zip(wanted, self._process.stream(pictures, *self._from, wanted), strict=True))
+
+
+def pictures(package: str, folders: tuple[Path, ...], wanted: Sequence[Wanted]) -> Iterator[bytes]:
+    """Yield pictures of the exercises of a paper and of folders."""
+    exercises = _exercises(package, folders)
+    return (one.drawn(exercises) for one in wanted)
+
+
+@cache
+def _exercises(package: str, folders: tuple[Path, ...]) -> Exercises:
+    return with_own(exercises_of(loaded(package)), tuple(own for folder in folders for own in own_exercises(folder)))
