@@ -19,6 +19,8 @@ from replicate.papers.ali.structures import (
     Settings,
     plant,
     printed_settings,
+    series,
+    trial,
 )
 
 if TYPE_CHECKING:
@@ -207,6 +209,10 @@ def add_readings(table: Table, theta: Fraction, settings: dict[str, Settings], r
             return pd.DataFrame(columns, index=list(QUANTITIES))
 
         table.reading(id, title, note)(compute)
+    # A controller is a column here: its link stands in the first row, that of the gains.
+    table.trials = lambda: {
+        (QUANTITIES[0], name): trial(float(theta), series(simulated)) for name, simulated in settings.items()
+    }
 
 
 CAPTION = (

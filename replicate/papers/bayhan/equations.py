@@ -17,7 +17,7 @@ from replicate.papers.bayhan.pole_assignment import (
     dominance_of,
     match_coefficients,
 )
-from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process
+from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process, trials
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -50,6 +50,7 @@ equations = paper.table(
         "pt326": "PT326",
     },
 )
+equations.trials = lambda: {("Kp", column): trials(process, ["PA"])["PA"] for column, process in COLUMNS.items()}
 
 
 def exact(process: Process) -> tuple[Fraction, Fraction, Fraction, Fraction]:

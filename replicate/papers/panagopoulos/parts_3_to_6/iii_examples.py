@@ -59,6 +59,7 @@ example_1 = paper.table(
     },
     caption="$G(s) = 1/(s+1)^4$. The paper prints only $k$ and $k_i$.",
 )  # fmt: skip
+example_1.trials = lambda: {"k": (PROCESS.notation(), PRINTED.notation())}
 
 
 @example_1.reading("as-written", "Largest $k_i$ outside the combined circle")

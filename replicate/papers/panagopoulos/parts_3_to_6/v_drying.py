@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -64,6 +65,10 @@ drying = paper.table(
     caption="$P_2(s)e^{-2s} = 0.008\\,(30s+1)/(s(5s+1))\\,e^{-2s}$. $K$, $T_i$, $T_d$ and $k_i$ are the "
     "optimum; the rest evaluates the printed settings on the model.",
 )  # fmt: skip
+drying.trials = lambda: {
+    ("K", name): (DRYING.notation(), controller.notation())
+    for name, controller in (("PID", replace(drying_pid(), c=0.0)), ("PI", DRYING_PI))
+}
 
 
 @cache

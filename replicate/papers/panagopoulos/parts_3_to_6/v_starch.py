@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING, Literal
 
@@ -59,6 +60,10 @@ starch = paper.table(
     "printed settings and the previous PI controller are evaluated on the model. A positive curvature or "
     "phase slope violates the constraint.",
 )
+starch.trials = lambda: {
+    ("K", name): (STARCH.notation(), controller.notation())
+    for name, controller in (("PID", replace(starch_pid(filtered=False), c=0.0)), ("PI", STARCH_PI))
+}
 
 
 @cache
