@@ -50,11 +50,17 @@ def folder(tmp_path: Path) -> Iterator[Path]:
 
 
 @pytest.fixture
-def replicate(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
-    """Run the command in an empty folder and return exit status, output and error output."""
+def replicate(command_line: Run, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+    """Run the command in an empty folder, with a paper installed."""
     assert folder.is_dir()
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
+    return command_line
+
+
+@pytest.fixture
+def command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
+    """Run the command in this process and return exit status, output and error output."""
     monkeypatch.setenv("NO_COLOR", "1")
     # The terminal is that of the tests, and the summary that of the job that runs them.
     for name in ("COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "GITHUB_STEP_SUMMARY"):

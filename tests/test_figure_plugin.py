@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -41,8 +42,13 @@ class Project:
         (self.folder / "tests" / name).write_text(text)
 
     def run(self, *arguments: str) -> tuple[int, str]:
-        command = [sys.executable, "-m", "pytest", "-q", "-p", "replicate.baselines.plugin", "-p", "no:cacheprovider"]
-        done = subprocess.run([*command, *arguments], cwd=self.folder, capture_output=True, text=True, check=False)
+        plugins = [
+            part for name in ("replicate.baselines.plugin", "xdist", "no:cacheprovider") for part in ("-p", name)
+        ]
+        command = [sys.executable, "-m", "pytest", "-q", *plugins, *arguments]
+        # what else is installed for pytest would be imported in each of these processes, and is no part of this
+        environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
+        done = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, check=False)
         return done.returncode, done.stdout + done.stderr
 
     def accepted(self) -> dict[str, bytes]:

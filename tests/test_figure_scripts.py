@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+Run = Callable[..., tuple[int, str, str]]
 
 SCRIPTS = {
     "plot_saved.py": """
@@ -60,8 +61,8 @@ FIGURES = [
 
 
 class Folder:
-    def __init__(self, path: Path) -> None:
-        self.path = path
+    def __init__(self, path: Path, command_line: Run) -> None:
+        self.path, self._command_line = path, command_line
         (path / "plots").mkdir()
         for name, text in SCRIPTS.items():
             self.write(name, text)
@@ -69,15 +70,8 @@ class Folder:
     def write(self, name: str, text: str) -> None:
         (self.path / "plots" / name).write_text(text)
 
-    def run(self, *arguments: str, **environment: str) -> tuple[int, str, str]:
-        import os
-
-        done = subprocess.run(
-            [sys.executable, "-m", "replicate", "figures", *arguments],
-            cwd=self.path, capture_output=True, text=True, check=False,
-            env={**os.environ, "NO_COLOR": "1", "GITHUB_STEP_SUMMARY": "", **environment},
-        )  # fmt: skip
-        return done.returncode, done.stdout, done.stderr
+    def run(self, *arguments: str) -> tuple[int, str, str]:
+        return self._command_line("figures", *arguments)
 
     def accepted(self) -> list[str]:
         folder = self.path / "figures"
@@ -85,11 +79,12 @@ class Folder:
 
 
 @pytest.fixture
-def folder(tmp_path: Path) -> Folder:
-    return Folder(tmp_path)
+def folder(tmp_path: Path, command_line: Run, monkeypatch: pytest.MonkeyPatch) -> Folder:
+    monkeypatch.chdir(tmp_path)
+    return Folder(tmp_path, command_line)
 
 
-def test_accept_compare_change(folder: Folder) -> None:
+def test_accept_compare_change(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
     status, out, _ = folder.run("diff", "plots")
     assert status == 1
     assert "plots/plot_saved-1: has no accepted state" in out
@@ -102,7 +97,9 @@ def test_accept_compare_change(folder: Folder) -> None:
     folder.write("plot_saved.py", SCRIPTS["plot_saved.py"].replace("label", "color='orange', label"))
     folder.write("plot_shown.py", SCRIPTS["plot_shown.py"].replace("plt.plot([2, 1])", ""))
     summary = folder.path / "summary.md"
-    status, out, _ = folder.run("diff", "plots", "--comment", "comment.md", GITHUB_STEP_SUMMARY=str(summary))
+    with monkeypatch.context() as patch:
+        patch.setenv("GITHUB_STEP_SUMMARY", str(summary))
+        status, out, _ = folder.run("diff", "plots", "--comment", "comment.md")
     assert status == 1
     assert "plots/plot_saved-1: colour of curve 'ZN' changed from blue to orange" in out
     assert "plots/plot_shown-2: was accepted, but is not drawn any more" in out
@@ -126,33 +123,37 @@ def test_accept_compare_change(folder: Folder) -> None:
     assert (folder.path / "comment.md").read_text().startswith("<!-- replicate-figures -->\n## 🟢 Figures\n")
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("x = 1\nraise ValueError('no\\nway')\n", "plots/plot_bad.py:2: ValueError: no way"),
-        ("x = (\n", "plots/plot_bad.py:1: SyntaxError:"),
-        ("import sys\nsys.exit(3)\n", "plots/plot_bad.py:2: ended with sys.exit(3)"),
-        ("import os\nos._exit(7)\n", "plots/plot_bad.py: ended before its end, with status 7"),
-        ("import os\nos.abort()\n", "plots/plot_bad.py: ended before its end, with status -6"),
-        ("import matplotlib.pyplot as plt\nplt.plot([1])\nplt.close()\n", "plots/plot_bad.py: draws nothing"),
-        ("import time\ntime.sleep(99)\n", "plots/plot_bad.py: is stopped, it took longer than 8 seconds"),
-        (
-            "import matplotlib.pyplot as plt\nplt.plot([1])\n(place,) = plt.ginput(1)\n",
-            "plots/plot_bad.py:3: ValueError: not enough values to unpack",
-        ),
-    ],
-)
-def test_a_script_that_fails_is_named_and_takes_nothing_else_down(folder: Folder, text: str, said: str) -> None:
+FAILING = [
+    ("x = 1\nraise ValueError('no\\nway')\n", ":2: ValueError: no way"),
+    ("x = (\n", ":1: SyntaxError:"),
+    ("import sys\nsys.exit(3)\n", ":2: ended with sys.exit(3)"),
+    ("import os\nos._exit(7)\n", ": ended before its end, with status 7"),
+    ("import os\nos.abort()\n", ": ended before its end, with status -6"),
+    ("import matplotlib.pyplot as plt\nplt.plot([1])\nplt.close()\n", ": draws nothing"),
+    (
+        "import matplotlib.pyplot as plt\nplt.plot([1])\n(place,) = plt.ginput(1)\n",
+        ":3: ValueError: not enough values to unpack",
+    ),
+]
+SLEEPING = ("import time\ntime.sleep(99)\n", ": is stopped, it took longer than 8 seconds")
+
+
+@pytest.mark.parametrize(("scripts", "options"), [(FAILING, ()), ([SLEEPING], ("--timeout", "8"))])
+def test_scripts_that_fail_are_named_and_take_nothing_else_down(
+    folder: Folder, scripts: list[tuple[str, str]], options: tuple[str, ...]
+) -> None:
     for name in ("plot_shown.py", "plot_ended.py", "plot_forked.py"):
         (folder.path / "plots" / name).unlink()
     assert folder.run("accept", "plots", "--reason", "first")[0] == 0
-    folder.write("plot_bad.py", text)
-    status, out, err = folder.run("diff", "plots", "--timeout", "8")
+    for number, (text, _) in enumerate(scripts):
+        folder.write(f"plot_bad{number}.py", text)
+    status, out, err = folder.run("diff", "plots", *options)
     assert status == 2
-    assert [line for line in err.splitlines() if line.startswith(said)], err
-    assert "failed: 1" in out
+    for number, (_, said) in enumerate(scripts):
+        assert [line for line in err.splitlines() if line.startswith(f"plots/plot_bad{number}.py{said}")], err
+    assert f"failed: {len(scripts)}" in out
     assert "plot_saved-1" not in out
-    status, _, err = folder.run("accept", "plots", "--reason", "second", "--timeout", "8")
+    status, _, err = folder.run("accept", "plots", "--reason", "second", *options)
     assert status == 2
     assert err.splitlines()[-1].startswith("replicate: nothing is accepted, because a script failed")
 
