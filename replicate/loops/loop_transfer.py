@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 EPS = float(np.finfo(float).eps)
+LARGEST = 1e70  # of a coefficient: products of four of them must remain numbers
 
 
 @dataclass(frozen=True)
@@ -47,17 +48,19 @@ class LoopTransfer:
         ------
         ImproperLoopError
             If |L| grows without bound at high frequency, or L tends to -1 there in a loop without dead time.
+        LoopError
+            If a coefficient of L is too large to compute with.
         """
         from replicate.loops.other_transfers import FunctionTransfer, SumTransfer
 
         num, den = controller.feedback_polynomials()
-        num = trimmed(num)
+        num = _computable(trimmed(num))
         if isinstance(plant, SumPlant):
             return SumTransfer.of_parts(plant, num, den)
         if not plant.is_rational:
             return FunctionTransfer(num, den, plant.dead_time, plant)
-        num = trimmed(product(num, plant.num)) if num.size else num
-        den = product(den, plant.den)
+        num = _computable(trimmed(product(num, plant.num))) if num.size else num
+        den = _computable(product(den, plant.den))
         transfer = LoopTransfer(num, den, plant.dead_time, plant)
         if transfer.num.size > den.size:
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
@@ -238,6 +241,18 @@ class LoopTransfer:
             w *= 1.5
         msg = f"the loop gain does not fall below {level:g} at high frequency"
         raise ImproperLoopError(msg)
+
+
+def _computable(coefficients: Array) -> Array:
+    """Return the coefficients of L after none is too large."""
+    largest = float(np.max(np.abs(coefficients), initial=0.0))
+    if not largest <= LARGEST:
+        msg = (
+            f"the loop gain is too large to compute with: in the plant's own units of gain and time it has the "
+            f"coefficient {largest:.3g}; allowed are at most {LARGEST:g}"
+        )
+        raise LoopError(msg)
+    return coefficients
 
 
 def stationary_frequencies(num: Array, den: Array) -> Array:

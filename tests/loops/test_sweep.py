@@ -275,6 +275,20 @@ def test_a_horizon_far_beyond_rest_changes_nothing() -> None:
     assert Loop(FOPTD, PI(0.6, 0.5)).step(until=1e9)(1e9) == pytest.approx(1.0, abs=1e-13)
 
 
+def test_a_horizon_beyond_all_pieces_is_a_horizon() -> None:
+    result = sweep(FOPTD, [PI(0.6, ki) for ki in (0.3, 0.35, 0.4, 0.45)], metrics=["ie", "stable"], until=1e300)
+    np.testing.assert_allclose(result["ie"][0], [1 / 0.3, 1 / 0.35, 1 / 0.4, 1 / 0.45], rtol=1e-9)  # 1/ki
+
+
+@pytest.mark.parametrize("count", [1, 5])
+@pytest.mark.parametrize("gains", [(1e300, 0.4), (0.5, 1e200), (1e155, 1e155), (1e100, 0.0)])
+def test_gains_whose_squares_are_no_numbers_are_refused(gains: tuple[float, float], count: int) -> None:
+    result = sweep(FOPTD, [gains] * count, metrics=["stable", "ms", "rightmost_pole", "overshoot"])
+    assert not result["stable"].any()
+    assert np.isnan(result["ms"]).all()
+    assert all("the loop gain is too large to compute with" in reason for reason in result.reason.ravel())
+
+
 NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
     "no plants": (lambda: sweep([], [PI(1.0)]), "the sweep has no plants"),
     "no controllers": (lambda: sweep(FOPTD, np.empty((0, 2))), "the sweep has no controllers"),

@@ -155,10 +155,12 @@ class _March:
             (self.final == 0.0) & (self.setpoint != 0.0)
         )
         if self.until is not None:
-            most = max(int(np.ceil(self.until * splits * (1.0 - 1e-14))), 1)
-            share = min(1.0, self.until * splits - (most - 1))
-            if most > MOST_PIECES:
+            pieces = self.until * splits * (1.0 - 1e-14)
+            if pieces > MOST_PIECES:
                 failed[:] = True
+            else:
+                most = max(int(np.ceil(pieces)), 1)
+                share = min(1.0, self.until * splits - (most - 1))
         found = Responses(
             1.0 / splits, self.final, share, [], np.zeros(count, dtype=np.intp), LastModes.none(count),
             LastModes.none(count), np.zeros(count, dtype=bool), failed, self.until is None,
