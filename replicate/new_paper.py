@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import importlib.util
 import keyword
 import os
 import re
 import sys
+import sysconfig
 from pathlib import Path
 
 import jinja2
 
+import replicate
 from replicate.errors import OutputError, PaperDefinitionError
+from replicate.exhibits.definitions import check_paper_id
 from replicate.resources import templates_dir
 from replicate.staging import replace_files
 
@@ -42,15 +46,17 @@ def new_paper(id: str, parent: Path, schemas: Path | None = None) -> Path:
     Raises
     ------
     PaperDefinitionError
-        If the id is not of that form, or is the name of a module of Python.
+        If the id is not of that form, or is the name of a page of the report, or of a Python module on this machine.
     OutputError
         If the folder exists or cannot be written.
     """
-    if not re.fullmatch(r"[a-z][a-z0-9_]*", id) or keyword.iskeyword(id):
+    if not re.fullmatch(r"[a-z][a-z0-9_]*", id):
         msg = f"'{id}' is not an id of a paper; allowed: lower-case letters, digits and _, starting with a letter"
         raise PaperDefinitionError(msg)
-    if id in sys.stdlib_module_names or id == "replicate":
-        msg = f"'{id}' is the name of a Python module; choose another id"
+    check_paper_id(id)
+    kind = "word" if keyword.iskeyword(id) else "module" if _is_module(id) else ""
+    if kind:
+        msg = f"'{id}' is the name of a Python {kind}; choose another id"
         raise PaperDefinitionError(msg)
     folder = parent / id
     if folder.exists():
@@ -61,6 +67,15 @@ def new_paper(id: str, parent: Path, schemas: Path | None = None) -> Path:
     schema = Path(os.path.relpath(schemas / "ledger.schema.json", folder)).as_posix() if schemas and there else ""
     write_templates("new_paper", places, parent, id=id, schema=schema)
     return folder
+
+
+def _is_module(name: str) -> bool:
+    """Say whether Python, or an installed distribution, has a module of this name, which a paper does not hide."""
+    if name in sys.stdlib_module_names or name == replicate.__name__:
+        return True
+    spec = importlib.util.find_spec(name)
+    installed = (sysconfig.get_path(kind) for kind in ("purelib", "platlib"))
+    return spec is not None and any(Path(spec.origin or "").is_relative_to(place) for place in installed)
 
 
 def write_templates(

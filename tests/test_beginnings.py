@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from replicate.diff.check import problems
 from replicate.diff.comparison import Comparison
+from replicate.display.addresses import TRIALS
 from replicate.errors import OutputError, PaperDefinitionError
+from replicate.exhibits.definitions import PAGES
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
+from replicate.report import pages
 from replicate.run.library import Library
 from replicate.run.outcome import recompute
 from replicate.run.project import find_project
@@ -48,11 +52,16 @@ def test_the_test_of_a_new_paper_passes(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("id", ["", "Demo", "1st", "a-b", "class", "../x", "statistics"])
+@pytest.mark.parametrize("id", ["", "Demo", "1st", "a-b", "class", "../x", "statistics", "numpy", "search"])
 def test_ids_that_cannot_be_imported_are_refused(id: str, tmp_path: Path) -> None:
     with pytest.raises(PaperDefinitionError):
         new_paper(id, tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_no_paper_has_the_name_of_a_page_of_the_report() -> None:
+    others = {pages.INDEX, pages.METHODS, pages.VERDICTS, pages.ERRATA, pages.SEARCH, TRIALS}
+    assert {f"{id}.html" for id in PAGES} == others
 
 
 def test_an_existing_folder_is_left_alone(tmp_path: Path) -> None:
@@ -68,3 +77,9 @@ def test_a_project_overwrites_nothing(name: str, tmp_path: Path) -> None:
         new_project(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == [name]
     assert (tmp_path / name).read_text() == "mine"
+
+
+@pytest.mark.parametrize(("name", "step"), [("mine", "  cd mine\n"), ("a b", "  cd 'a b'\n"), (".", "this folder")])
+def test_the_next_steps_can_be_typed(name: str, step: str, replicate: Callable[..., tuple[int, str, str]]) -> None:
+    status, out, _ = replicate("init", name)
+    assert (status, step in out, "cd ." in out) == (0, True, False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -20,10 +21,11 @@ def init(
     from replicate.new_project import new_project
 
     new_project(folder, title)
+    here = folder.resolve() == Path.cwd()
     echo(
-        f"Created {folder}. Next steps:\n"
-        f"  cd {folder}\n"
-        "  replicate new PAPER     # begins a paper in papers/PAPER\n"
+        f"Created {'a project in this folder' if here else folder}. Next steps:\n"
+        + ("" if here else f"  cd {shlex.quote(f'{folder}')}\n")
+        + "  replicate new PAPER     # begins a paper in papers/PAPER\n"
         "  replicate report"
     )
 

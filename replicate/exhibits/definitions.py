@@ -18,7 +18,7 @@ _ID = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,98}[A-Za-z0-9_-])?", re.ASCII)
 _ALLOWED = "letters and digits first, then also '-', '_' and '.', at most 100 and no '.' at the end"
 
 #: Names of a report's own pages, which no paper may have.
-PAGES = frozenset({"index", "methods", "errata", "whatif"})
+PAGES = frozenset({"errata", "index", "methods", "search", "verdicts", "whatif"})
 
 
 def check_id(what: str, id: object, others: Iterable[str] = ()) -> None:
