@@ -346,6 +346,7 @@ HEAD = "# Toy\n\n{% for i in [1, 2] %}\nA line.\n\n{% endfor %}\n{{ table('table
         ("```{.python .run}\nx = = 1\n```\n", r"toy/handout\.md:10: the program fails: SyntaxError"),
         ("```python\n" + "x" * 89 + "\n```\n", r"toy/handout\.md:10: a line has 89 characters, allowed: 88"),
         ("$$" + " + ".join(["x_{long}"] * 60) + "$$\n", r"cannot be typeset: .*a formula is wider than the text"),
+        (f"{{{{ table('table-1', labels={{'x': '{'m' * 99}'}}) }}}}\n", r"table\('table-1'\) is wider than the text"),
     ],
 )  # fmt: skip
 def test_errors_name_the_place(make: Make, text: str, message: str) -> None:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from pathlib import Path
 
 import matplotlib.figure
+import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 
 from replicate.errors import PaperDefinitionError, PrintedFileError
-from replicate.exhibits.read_off import LABEL, read_points, values_at, with_points
+from replicate.exhibits.read_off import LABEL, Point, read_points, values_at, with_points
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -105,7 +108,7 @@ def test_points_are_drawn_over_the_figure(tmp_path: Path) -> None:
     fig = matplotlib.figure.Figure()
     with_points(draw, points)(fig)
     (marks,) = (line for line in fig.axes[0].lines if line.get_label() == LABEL)
-    assert marks.get_xydata().tolist() == [[0.5, 1.1], [5.0, 1.5]]
+    assert np.array_equal(np.asarray(marks.get_xydata()), [[0.5, 1.1], [5.0, 1.5]])
 
 
 def test_a_curve_that_is_not_there(tmp_path: Path) -> None:
@@ -148,3 +151,26 @@ def test_a_paper_with_points(replicate: Run) -> None:
         ["early", "y", "0.38", "reproduced"],
         ["late", "y", "0.15", "unexplained"],
     ]
+
+
+@pytest.mark.parametrize("nothing", ["pass", "import matplotlib.pyplot as plt; plt.plot([1])", "fig.subplots()"])
+def test_a_figure_with_points_that_draws_nothing_is_empty(nothing: str) -> None:
+    def draw_nothing(fig: matplotlib.figure.Figure) -> None:
+        exec(nothing, {"fig": fig})  # noqa: S102  -- what a careless author writes
+
+    points = [Point("p1", "line", 1.0, "2", 0.1, 0.1)]
+    fig = matplotlib.figure.Figure()
+    drawn = with_points(draw_nothing, points)
+    drawn(fig)
+    assert not any(axes.has_data() for axes in fig.axes)
+    assert inspect.unwrap(drawn) is draw_nothing  # whose file and line the message names
+    plt.close("all")
+
+
+def test_what_a_wrong_function_returns_is_handed_on() -> None:
+    async def late(fig: matplotlib.figure.Figure) -> None:
+        draw(fig)
+
+    made = with_points(late, [Point("p1", "line", 1.0, "2", 0.1, 0.1)])(matplotlib.figure.Figure())
+    assert inspect.iscoroutine(made)
+    made.close()

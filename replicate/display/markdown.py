@@ -16,7 +16,7 @@ from markupsafe import Markup
 
 from replicate.display.formulas import formulas
 from replicate.display.numbers import minus_signs
-from replicate.display.pandoc import PandocError, SlowTextError, convert
+from replicate.display.pandoc import PandocError, SlowTextError, convert, refusal
 from replicate.display.safe_html import sanitised
 from replicate.errors import TemplateError, UnreadableFormulaError, UnreadableTextError
 
@@ -121,7 +121,7 @@ class MarkdownBatch:
         except PandocError as error:
             formula = _FORMULA.search(str(error))
             if formula:
-                raise UnreadableFormulaError(self.name, formula[1].strip(), _reason(formula[2])) from error
+                raise UnreadableFormulaError(self.name, formula[1].strip(), refusal(formula[2])) from error
             msg = f"{self.name}: pandoc cannot convert a text: {self._culprit(str(error))}"
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
@@ -152,12 +152,6 @@ class MarkdownBatch:
         lines = [line.strip() for line in message.splitlines() if line.strip()]
         start = next((i for i, line in enumerate(lines) if "WARNING" in line or "rror" in line), 0)
         return " ".join(lines[start : start + 2])
-
-
-def _reason(message: str) -> str:
-    """Return what pandoc's reader of formulas met, without the long list of what it would have taken."""
-    found = re.search(r"unexpected [^\n]*", message)
-    return found[0].partition(" expecting")[0].strip() if found else "it is not LaTeX that pandoc knows"
 
 
 def _not_a_block(text: str) -> str:

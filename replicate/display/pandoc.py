@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
@@ -94,3 +95,16 @@ def run(
     if done.returncode:
         raise PandocError(done.stderr.decode("utf-8", errors="replace"))
     return done.stdout
+
+
+def refusal(message: str) -> str:
+    """Return what pandoc's reader of formulas met, without the long list of what it would have taken.
+
+    Examples
+    --------
+    >>> refusal("[WARNING] Could not convert TeX math a_, rendering as TeX: unexpected eof expecting letter or digit")
+    'unexpected eof'
+    """
+    words = " ".join(message.split()).rpartition("rendering as TeX:")[2]
+    found = re.search(r"unexpected .*?(?= expecting |\s*Failing because|$)", words)
+    return found[0] if found else "it is not LaTeX that pandoc knows"

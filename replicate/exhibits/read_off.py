@@ -14,13 +14,14 @@ a line across the axes. Errors are those of reading the page: half the width wit
 from __future__ import annotations
 
 import csv
+import functools
 import io
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from replicate.errors import PaperDefinitionError, PrintedFileError
 from replicate.exhibits.file_names import display_name
@@ -40,7 +41,7 @@ LABEL = "read off the original"
 _NEEDED = ("point", "curve", "x", "y", "x_error", "y_error")
 _NUMBERS = ("x", "y", "x_error", "y_error")
 
-Draw = Callable[["Figure"], None]
+Draw = Callable[["Figure"], Any]  # what a wrong one returns is for others to refuse
 
 
 @dataclass(frozen=True)
@@ -120,8 +121,11 @@ def _point(file: str, line: int, row: dict[str, str]) -> Point:
 def with_points(draw: Draw, points: Sequence[Point]) -> Draw:
     """Return a function that draws the figure and the points over it."""
 
-    def drawn(fig: Figure) -> None:
-        draw(fig)
+    @functools.wraps(draw)
+    def drawn(fig: Figure) -> object:
+        made = draw(fig)
+        if not any(axes.has_data() for axes in fig.axes):
+            return made  # an empty figure is refused as such
         panels: dict[Axes, list[Point]] = {}
         for point in points:
             panels.setdefault(_curve_of(fig, point)[0], []).append(point)
@@ -129,6 +133,7 @@ def with_points(draw: Draw, points: Sequence[Point]) -> Draw:
             x, y, x_error, y_error = zip(*((one.x, one.height, one.x_error, one.y_error) for one in found), strict=True)
             marks, *_ = axes.errorbar(x, y, yerr=y_error, xerr=x_error, fmt="ko", ms=3, elinewidth=0.8)
             marks.set_label(LABEL)  # not the container's, which the data of the figure does not show
+        return made
 
     return drawn
 

@@ -260,7 +260,7 @@ def _placed(blocks: Blocks, placing: Placing) -> Blocks:
             caption = [div([plain(words)], "caption")] if words else []
             return [div(caption, "drawing", name=thing.name)]
         caption = [div([plain(_with_legend(words, thing))], "caption")] if words or thing.legend else []
-        return [div([thing.table, *caption], "exhibit")]
+        return [div([thing.table, *caption], "exhibit", name=thing.exhibit)]
 
     placed: Blocks = transform(blocks, changed, texts=False)
     return placed

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from html import escape
 
 from replicate.display import pandoc
+from replicate.display.pandoc import refusal
 from replicate.errors import TemplateError
 from replicate.handout.spoken_math import spoken
 from replicate.handout.tree import Blocks, elements
@@ -66,7 +67,7 @@ def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
             try:
                 _written([formula], "typst")
             except pandoc.PandocError as error:
-                raise FormulaError(formula[1], _reason(str(error))) from error
+                raise FormulaError(formula[1], refusal(str(error))) from error
         raise
     return {
         formula: Converted(one, other.replace("<math", f'<math alttext="{escape(spoken(other))}"', 1), spoken(other))
@@ -86,13 +87,6 @@ def _written(formulas: Sequence[Formula], target: str) -> list[str]:
         if match is None:  # not taken for math at all, say for a space after the dollar sign
             raise FormulaError(formula[1], "is not a formula")
     return [match[0] for match in found if match]
-
-
-def _reason(message: str) -> str:
-    """Return pandoc's explanation without the formula, which it repeats, on one line."""
-    words = " ".join(message.split())
-    found = re.search(r"rendering as TeX:.*?((?:unexpected|expecting) .*?)(?:Failing because|$)", words)
-    return (found[1] if found else words).strip()
 
 
 def located(error: FormulaError, lines: Sequence[tuple[str, int]], source: str) -> TemplateError:

@@ -61,6 +61,7 @@ OPEN, CLOSE = "\ue002", "\ue003"
 class Placed:
     """A table to be placed, with the meaning of its signs."""
 
+    exhibit: str
     table: Element
     legend: list[Element]
 
@@ -196,7 +197,7 @@ class Placing:
         view = self._view("table", exhibit)
         with _refused_by(f"table('{exhibit}')"):
             placed = key_table(view, choice)
-        return Placed(placed, legend(view, choice) if choice.printed else [])
+        return Placed(exhibit, placed, legend(view, choice) if choice.printed else [])
 
     def dots(
         self,

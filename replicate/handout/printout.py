@@ -243,7 +243,7 @@ def _block(element: Element, document: Document) -> Blocks | None:
         long = "true" if len(_rows(table)) > _LONG else "false"
         group = max(cell[3] for cell in table["c"][3][1][0][1])  # columns under one head
         return [
-            raw_block("typst", f"#exhibit({long}, {group})["),
+            raw_block("typst", f"#exhibit({quoted(attribute(element, 'name'))}, {long}, {group})["),
             table,
             raw_block("typst", "]["),
             *caption,
