@@ -24,14 +24,14 @@ AXES = {"title": "", "xlabel": "t", "ylabel": "y", "xlim": [0, 1], "ylim": [0, 1
 FIGURE = "{{ figure('fig-1') }}\nIts caption."
 DOTS = "{{ dots('table-1', columns=['x'], readings={'as-written': 'recomputed'}) }}"
 
-Make = Callable[[str], Document]
+Make = Callable[..., Document]
 
 
 @pytest.fixture
 def make(tmp_path: Path) -> Make:
     """Make the slides of a small paper from their text."""
 
-    def document(text: str) -> Document:
+    def document(text: str, *, only_read: bool = False) -> Document:
         (tmp_path / "toy").mkdir(exist_ok=True)
         (tmp_path / "toy" / "slides.md").write_text(text, encoding="utf-8")
         paper = synthetic.paper(tmp_path / "toy")
@@ -40,7 +40,7 @@ def make(tmp_path: Path) -> Make:
         assert isinstance(figure, FigureResult)
         results["toy", "fig-1"] = replace(figure, svg=toy_class.SVG, axes=[AXES])
         judged = judge(paper, results, Inputs(synthetic.printed(), Ledger("toy/ledger.toml", ())))
-        return edition(paper, results, judged.verdicts, solutions=False, kind="slides")
+        return edition(paper, results, judged.verdicts, solutions=False, kind="slides", only_read=only_read)
 
     return document
 
@@ -67,6 +67,15 @@ def test_dots_stand_where_the_numbers_are(make: Make) -> None:
     rings = re.findall(r'<use xlink:href="#\w+" x="([\d.]+)"[^>]*stroke: #595959', drawn.svg)
     assert len(rings) >= 2  # one for each printed number of the column, and that of the legend
     assert "98.8" in str(document.formulas)  # a number of the text comes from the results
+
+
+def test_who_only_reads_a_text_draws_nothing(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("replicate.handout.placing.captured", None)
+    assert make(text_of(5, DOTS), only_read=True).drawings
+    with pytest.raises(TemplateError, match="no column 'z'"):
+        make(text_of(5, "{{ dots('table-1', columns=['z']) }}"), only_read=True)
+    with pytest.raises(TemplateError):
+        make(text_of(5, DOTS))
 
 
 @pytest.mark.parametrize(

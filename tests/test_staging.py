@@ -83,7 +83,9 @@ def test_a_file_that_is_not_ours_is_named_and_nothing_is_written(tmp_path: Path,
     ("make", "said"),
     [
         (lambda place: place.mkdir(), "a folder"),
-        (lambda place: place.symlink_to("elsewhere"), "a symbolic link"),
+        (lambda place: place.symlink_to("elsewhere"), "a symbolic link to nothing"),
+        (lambda place: place.symlink_to(place.parent), "a symbolic link and"),
+        pytest.param(os.mkfifo, "a pipe or device", marks=posix),
     ],
 )
 def test_neither_is_a_folder_or_a_link_replaced(tmp_path: Path, make: Callable[[Path], None], said: str) -> None:
@@ -94,6 +96,15 @@ def test_neither_is_a_folder_or_a_link_replaced(tmp_path: Path, make: Callable[[
     with pytest.raises(OutputError, match="report is in the way, which is a file"):
         write(tmp_path, {"report/index.html": "new"})
     assert seen(tmp_path) == {"report": "mine"}
+
+
+def test_a_folder_that_is_a_link_to_nothing_is_named(tmp_path: Path) -> None:
+    (tmp_path / "report").symlink_to("elsewhere")
+    with pytest.raises(OutputError, match="report is in the way, which is a symbolic link to nothing"):
+        write(tmp_path, {"report/index.html": "new"})
+    with pytest.raises(OutputError, match="/report: cannot be written: File exists"):
+        replace_files(tmp_path, {"report/index.html": b"new"})
+    assert [path.name for path in tmp_path.iterdir()] == ["report"]
 
 
 def test_a_file_of_ours_that_was_changed_belongs_to_who_changed_it(tmp_path: Path) -> None:

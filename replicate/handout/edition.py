@@ -79,7 +79,7 @@ def edition(
     sheet: Sheet | None = None,
     shared: dict[str, Any] | None = None,
     kind: str = TEXT,
-    programs: bool = True,
+    only_read: bool = False,
 ) -> Document:
     """Make one edition of a paper's handout.
 
@@ -97,8 +97,8 @@ def edition(
         Kept from one form to the next: what does not vary.
     kind
         Which text of the paper: its handout or its slides.
-    programs
-        Whether programs in the text are run.
+    only_read
+        Whether neither programs in the text are run nor figures drawn: to see whether the text can be read.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def edition(
         sheet=sheet,
         shared={} if shared is None else shared,
         kind=kind,
-        programs=programs,
+        only_read=only_read,
     )
     return made
 
@@ -132,7 +132,7 @@ def editions(
     sheet: Sheet | None,
     shared: dict[str, Any],
     kind: str = TEXT,
-    programs: bool = True,
+    only_read: bool = False,
 ) -> list[Document]:
     """Make one edition for each of several forms, in few calls of pandoc; `edition` says more."""
     sheet = sheet or Sheet()
@@ -142,7 +142,9 @@ def editions(
         msg = f"{source}: the paper has no {kind}"
         raise TemplateError(msg)
     content = read_text(file, source, TemplateError)
-    placings = [Placing(paper, results, verdicts, form.draw if form else "", shared, sheet.own) for form in forms]
+    placings = [
+        Placing(paper, results, verdicts, form.draw if form else "", shared, sheet.own, only_read) for form in forms
+    ]
     prose = partial(Prose, paper, results, verdicts)
     filled = [prose(one.functions()).render_lines(content, source) for one in placings]
     texts = [_Text(source, filled, read(filled, source)), *(_own_text(one, prose, placings) for one in sheet.own)]
@@ -155,7 +157,7 @@ def editions(
         done: Blocks = []
         for part, text in zip(parts, texts, strict=True):
             placed = _placed(part, placing)
-            done += run_programs(placed, text.lines[number], text.source, shared) if programs else placed
+            done += placed if only_read else run_programs(placed, text.lines[number], text.source, shared)
         found.append((title, selected(done, sheet)))
     formulas = [formulas_in(blocks) for _, blocks in found]
     try:

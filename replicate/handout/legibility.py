@@ -21,8 +21,8 @@ def unreadable_handouts(
 ) -> dict[str, str]:
     """Return by id why the handout or the slides of a paper cannot be made, with file and line.
 
-    Nothing is returned for those that can be. Programs in the text are not run: `replicate handout` does that.
-    ``seconds`` is what a function of an exercise may take.
+    Nothing is returned for those that can be. Programs in the text are not run, and its own figures not drawn:
+    `replicate handout` does that. ``seconds`` is what a function of an exercise may take.
     """
     found = {}
     with GuardedProcess(seconds) as process:
@@ -44,7 +44,7 @@ def unreadable_handouts(
 
 
 def _read(paper: Paper, results: Results, verdicts: Sequence[VerdictRow], kind: str) -> None:
-    edition(paper, results, verdicts, solutions=True, kind=kind, programs=False)
+    edition(paper, results, verdicts, solutions=True, kind=kind, only_read=True)
 
 
 def _read_in_process(package: str, results: Results, verdicts: Sequence[VerdictRow], kind: str) -> Iterator[None]:

@@ -80,6 +80,8 @@ class Placing:
         Drawings and answers that no form changes; one dict for all the sheets of a class.
     own
         Exercises of a lecturer's own.
+    only_read
+        Whether figures that the run has not drawn are left for later.
     """
 
     paper: Paper
@@ -88,6 +90,7 @@ class Placing:
     form: str = ""
     shared: dict[str, Any] = field(default_factory=dict)
     own: tuple[OwnExercise, ...] = ()
+    only_read: bool = False
     things: list[Drawing | Placed] = field(default_factory=list)
     _answers: dict[str, Values] = field(default_factory=dict)
 
@@ -220,6 +223,8 @@ class Placing:
             view = transposed_view(view) if transposed else view
             with _refused_by(f"dots('{exhibit}')"):
                 drawn = dot_figure(view, choice, name, size)
+            if self.only_read:
+                return self._mark(DrawnLater(self.paper.id, drawn, 1.0))
             self.shared[key] = captured(f"dots('{exhibit}')", self.paper.id, drawn), drawn.alt
         result, alt = self.shared[key]
         return self._mark(Drawing(name, result.svg, result.png, alt, min(1.0, size[0] / TEXT_WIDTH)))
@@ -248,6 +253,8 @@ class Placing:
             assert isinstance(drawn, Figure)  # noqa: S101  -- for the type checker
             if size is not None:
                 drawn, width = replace(drawn, size=size), min(1.0, size[0] / TEXT_WIDTH)
+            if self.only_read:
+                return self._mark(DrawnLater(self.paper.id, drawn, width))
             drawing_key = f"figure {name} {size}"
             if drawing_key not in self.shared:
                 self.shared[drawing_key] = captured(f"figure('{name}')", self.paper.id, drawn)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -135,10 +136,17 @@ def _looks_like_ours(target: Path) -> bool:
 def _not_a_file(target: Path, manifest: Manifest, name: str) -> str:
     """Say what else stands where a file should, or where one of its folders should."""
     for parent in list(Path(name).parents)[:-1]:
-        if (target / parent).exists() and not (target / parent).is_dir() and manifest.digest(parent.as_posix()) is None:
-            return f"{parent.as_posix()} is in the way, which is a file that no earlier run wrote; move it away"
+        place = target / parent
+        if os.path.lexists(place) and not place.is_dir() and manifest.digest(parent.as_posix()) is None:
+            return f"{parent.as_posix()} is in the way, which is {_kind(place)} that no earlier run wrote; move it away"
     place = target / name
-    if place.is_dir() or place.is_symlink():
-        what = "a symbolic link" if place.is_symlink() else "a folder"
-        return f"is in the way, which is {what} and no file that an earlier run wrote; move it away"
+    if os.path.lexists(place) and (place.is_symlink() or not place.is_file()):
+        return f"is in the way, which is {_kind(place)} and no file that an earlier run wrote; move it away"
     return ""
+
+
+def _kind(place: Path) -> str:
+    """Say what something is, without looking into it: reading a pipe would wait for ever."""
+    if place.is_symlink():
+        return "a symbolic link" if place.exists() else "a symbolic link to nothing"
+    return "a folder" if place.is_dir() else "a file" if place.is_file() else "a pipe or device"

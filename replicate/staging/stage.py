@@ -131,10 +131,12 @@ def _room(target: Path) -> Iterator[Path]:
 
 def unwritable(target: Path, error: OSError) -> OSError | OutputError:
     """Return the error to raise: one about another place, say a file that is read, is none of ours."""
-    elsewhere = error.filename and not Path(error.filename).absolute().is_relative_to(target.absolute())
-    if error.errno in (None, errno.EPIPE) or elsewhere:
+    named = [Path(name).absolute() for name in (error.filename2, error.filename) if isinstance(name, str)]
+    inside = [name.relative_to(target.absolute()) for name in named if name.is_relative_to(target.absolute())]
+    if error.errno in (None, errno.EPIPE) or (named and not inside):
         return error
-    return OutputError(f"{target}: cannot be written: {error.strerror or error}")
+    place = next((target / name for name in inside if ROOM not in name.parts), target)
+    return OutputError(f"{place}: cannot be written: {error.strerror or error}")
 
 
 def say(text: str) -> None:
