@@ -27,6 +27,7 @@ from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.piece_flow import (
     DEGREE,
+    MOST_PIECES,
     SAME,
     SMALLEST_JUMP,
     SMOOTHEST,
@@ -41,8 +42,6 @@ from replicate.loops.plant import Plant
 from replicate.loops.resolution import START, Resolution, as_good_as_it_gets, coefficients
 
 Array = NDArray[np.float64]
-
-MOST_PIECES = 200_000
 
 
 def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, load: float) -> tuple[Array, Array, Array]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -19,9 +20,12 @@ from replicate.loops.anti_windup import (
 from replicate.loops.errors import LoopError
 from replicate.loops.inputs import Input, Sine
 from replicate.loops.limited_steps import Jump, LimitedSteps
-from replicate.loops.loop import SETTLED, Loop
 from replicate.loops.piece_flow import Row
 from replicate.loops.signal import Response, Signal
+from replicate.loops.slow_modes import SETTLED
+
+if TYPE_CHECKING:
+    from replicate.loops.loop import Loop
 
 MOST_EXTENSIONS = 40  # of the horizon, before a loop counts as one that never comes to rest
 Given = float | Input | Sequence[Input]
@@ -52,59 +56,103 @@ class LimitedResponse(Response):
     at_limit: tuple[AtLimit, ...]
 
 
-def limited_response(
-    loop: Loop,
-    limits: tuple[float, float],
-    anti_windup: AntiWindup = "none",
-    *,
-    tracking_time: float | None = None,
-    setpoint: Given = 1.0,
-    load: Given = 0.0,
-    load_at: float = 0.0,
-    until: float | None = None,
-) -> LimitedResponse:
-    """Return the response of a loop whose control signal stays within limits; see `Loop.saturated`."""
-    low, high = checked_limits(limits)
-    scheme, tracking = checked_anti_windup(anti_windup, tracking_time, loop.primary_controller)
-    load_at = checks.non_negative("load_at", load_at, allowed="a time >= 0")
-    setpoints, loads = _jumps("setpoint", setpoint, 0.0), _jumps("load", load, load_at)
-    if until is not None:
-        until = checks.positive("the horizon until", until, allowed="a finite time > 0")
-    if not loop.plant.parts:
-        msg = "limits of the control signal need a rational plant with dead times, not one given by a function"
-        raise LoopError(msg)
-    units, parts = loop.open_loop()
-    chain, g = parts.chain, parts.gains
-    if g[3] * chain.setpoint_impulse and setpoints:
-        msg = "an ideal derivative of a set-point step has no limited response: give derivative_filter > 0 or c = 0"
-        raise LoopError(msg)
-    limited = LimitedController(
-        chain, Row(g @ chain.wx, g @ chain.wv, float(g @ chain.wr)),
-        (low * units.gain, high * units.gain), scheme, tracking / units.time,
-    )  # fmt: skip
-    steps = LimitedSteps(
-        limited, parts.delays, parts.loaded,
-        [(time / units.time, value) for time, value in setpoints],
-        [(time / units.time, value * units.gain) for time, value in loads],
-    )  # fmt: skip
-    last = max([0.0, *(time for time, _ in [*setpoints, *loads])])
-    final_y, final_u, comes_back = _steady_state(loop, setpoints, loads, (low, high))
-    with np.errstate(over="ignore", invalid="ignore"):
+class LimitedViews:
+    """Methods of `Loop` that answer what limits of the control signal do."""
+
+    def saturated(
+        self,
+        limits: tuple[float, float],
+        anti_windup: AntiWindup = "none",
+        *,
+        tracking_time: float | None = None,
+        setpoint: Given = 1.0,
+        load: Given = 0.0,
+        load_at: float = 0.0,
+        until: float | None = None,
+    ) -> LimitedResponse:
+        r"""Return the exact response when the control signal has limits, with or without anti-windup.
+
+        The instants at which the command meets or leaves a limit are found as roots of the response's polynomials;
+        between them the loop is linear and computed as without limits.
+
+        Parameters
+        ----------
+        limits
+            The least and the largest control signal, before any load; 0, its value at rest, must be between them.
+            ``inf`` and ``-inf`` mean no limit.
+        anti_windup
+            ``"none"``; ``"back-calculation"``: :math:`\dot I = k_i e + (u - v)/T_t`, v being the command and u the
+            control signal; or ``"clamping"``: the integral part is held while v is beyond a limit and the error would
+            drive it further.
+        tracking_time
+            Tt of back-calculation; by default Ti of a PI and the geometric mean of Ti and Td of a PID controller.
+        setpoint, load
+            Numbers (steps), or steps and pulses of `replicate.loops.inputs`, or several.
+        load_at
+            Time that is added to the load's own.
+        until
+            Horizon; by default the time at which the loop has come to rest.
+
+        Raises
+        ------
+        LoopError
+            If an argument is not allowed, the plant is given by a function, an ideal derivative acts on a set-point
+            step, or the loop does not come to rest and no horizon is given.
+        UnstableLoopError
+            If no horizon is given and the loop without limits is unstable.
+
+        Examples
+        --------
+        An integrator filled at its limit of 1/2 rises by 1/2 in each unit of time:
+
+        >>> from replicate.loops import PI, Loop, Plant
+        >>> loop = Loop(Plant([1.0], [1.0, 0.0]), PI(2.0))
+        >>> response = loop.saturated(limits=(-0.5, 0.5))
+        >>> round(float(response.output(1.0)), 12), [round(x.end, 12) for x in response.at_limit]
+        (0.5, [1.5])
+        """
+        loop = cast("Loop", self)
+        low, high = checked_limits(limits)
+        scheme, tracking = checked_anti_windup(anti_windup, tracking_time, loop.primary_controller)
+        load_at = checks.non_negative("load_at", load_at, allowed="a time >= 0")
+        setpoints, loads = _jumps("setpoint", setpoint, 0.0), _jumps("load", load, load_at)
         if until is not None:
-            steps.run(until / units.time)
-        else:
-            _run_to_rest(loop, steps, last, units.time, comes_back=comes_back)
-    breaks = np.array(steps.breaks) * units.time
+            until = checks.positive("the horizon until", until, allowed="a finite time > 0")
+        if not loop.plant.parts:
+            msg = "limits of the control signal need a rational plant with dead times, not one given by a function"
+            raise LoopError(msg)
+        units, parts = loop.open_loop()
+        chain, g = parts.chain, parts.gains
+        if g[3] * chain.setpoint_impulse and setpoints:
+            msg = "an ideal derivative of a set-point step has no limited response: give derivative_filter > 0 or c = 0"
+            raise LoopError(msg)
+        limited = LimitedController(
+            chain, Row(g @ chain.wx, g @ chain.wv, float(g @ chain.wr)),
+            (low * units.gain, high * units.gain), scheme, tracking / units.time,
+        )  # fmt: skip
+        steps = LimitedSteps(
+            limited, parts.delays, parts.loaded,
+            [(time / units.time, value) for time, value in setpoints],
+            [(time / units.time, value * units.gain) for time, value in loads],
+        )  # fmt: skip
+        last = max([0.0, *(time for time, _ in [*setpoints, *loads])])
+        final_y, final_u, comes_back = _steady_state(loop, setpoints, loads, (low, high))
+        with np.errstate(over="ignore", invalid="ignore"):
+            if until is not None:
+                steps.run(until / units.time)
+            else:
+                _run_to_rest(loop, steps, last, units.time, comes_back=comes_back)
+        breaks = np.array(steps.breaks) * units.time
 
-    def signal(pieces: list[np.ndarray], unit: float, final: float) -> Signal:
-        return Signal(breaks, np.array(pieces) / unit, final=final, stable=loop.is_stable)
+        def signal(pieces: list[np.ndarray], unit: float, final: float) -> Signal:
+            return Signal(breaks, np.array(pieces) / unit, final=final, stable=loop.is_stable)
 
-    return LimitedResponse(
-        signal(steps.output, 1.0, final_y),
-        signal(steps.control, units.gain, final_u),
-        signal(steps.command, units.gain, final_u if comes_back else float("nan")),
-        _intervals(steps, breaks.tolist(), (low, high)),
-    )
+        return LimitedResponse(
+            signal(steps.output, 1.0, final_y),
+            signal(steps.control, units.gain, final_u),
+            signal(steps.command, units.gain, final_u if comes_back else float("nan")),
+            _intervals(steps, breaks.tolist(), (low, high)),
+        )
 
 
 def _jumps(name: str, given: Given, at: float) -> list[Jump]:

@@ -21,6 +21,7 @@ from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.limit_events import Piece, first_end
 from replicate.loops.piece_flow import (
     DEGREE,
+    MOST_PIECES,
     SAME,
     SMALLEST_JUMP,
     SMOOTHEST,
@@ -37,7 +38,6 @@ from replicate.loops.resolution import START, Resolution, as_good_as_it_gets, co
 Array = NDArray[np.float64]
 
 ON_LIMIT = 1e-12  # of the largest command: distance from the limit at which it slides along it
-MOST_PIECES = 100_000
 
 Jump = tuple[float, float]  # time, and the new value
 

@@ -22,6 +22,7 @@ from replicate.loops.proven_pole import proven_pole_with_others
 from replicate.loops.responses import held, responses
 from replicate.loops.set_once import SetOnce
 from replicate.loops.signal import Response, Signal
+from replicate.loops.slow_modes import SETTLED, Pieces, slow_group, with_slow_end
 from replicate.loops.slow_signal import SlowSignal
 from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.steady_state import steady_state
@@ -33,7 +34,6 @@ TAIL = 1e13  # time constants of the slowest mode after which an algebraic tail 
 LONG = 1e-7  # of such a horizon, from which on rounding errors would show in its integrals
 FAR = 1e3  # horizon, in units of the loop's time, from which on it pays to ask when the response is at rest
 CLEAR = 1e-6  # distance of a pole from the imaginary axis, relative to its modulus, that leaves no doubt
-SETTLED = 34.0  # time constants of the slowest mode until it has decayed to rounding, exp(-34) = 2e-15
 
 
 class Loop(LoopViews, SetOnce):
@@ -72,6 +72,8 @@ class Loop(LoopViews, SetOnce):
 
             return super().__new__(PredictorLoop)  # type: ignore[return-value]
         return super().__new__(cls)
+
+    _difference: Plant | None = None  # what a predictor adds to the output in the measurement
 
     def __init__(self, plant: Plant, controller: PID | SmithPredictor) -> None:
         checks.instance("the plant of a loop", plant, Plant, "a Plant (Plant.from_control makes one)")
@@ -227,38 +229,18 @@ class Loop(LoopViews, SetOnce):
 
     def _slowest_decay(self) -> float:
         """Return the decay rate of the slowest mode: of the loop, of its neutral tail, or of the set-point filter."""
-        rates = [abs(self.rightmost_pole().real)]
-        _, filter_den = self.controller.setpoint_filter_polynomials()
-        if filter_den.size > 1:
-            rates += (-np.roots(filter_den).real).tolist()
-        if self._longest and self._transfer.feedthrough:  # the poles' real parts tend to this far from the axis
-            rates.append(-np.log(self._transfer.feedthrough) / self._longest)
-        return float(min(rates))
+        return float(np.min(-self._filter_poles.real, initial=min(-self.rightmost_pole().real, self._crowd)))
 
-    def step(self, until: float | None = None) -> Signal:
-        """Return the output after a unit step of the set-point at t = 0, at rest before.
+    @property
+    def _filter_poles(self) -> ComplexArray:
+        """The poles of the set-point filter."""
+        return np.asarray(np.roots(self.controller.setpoint_filter_polynomials()[1]), dtype=complex)
 
-        Parameters
-        ----------
-        until
-            Horizon; by default the time at which every mode has decayed to rounding.
-
-        Raises
-        ------
-        UnstableLoopError
-            If no horizon is given and the loop is unstable.
-        """
-        return self.respond(until=until).output
-
-    def load_step(self, until: float | None = None) -> Signal:
-        """Return the output after a unit step at the plant input, before the dead time, at t = 0.
-
-        Parameters
-        ----------
-        until
-            Time until which the response is computed; default: when it has settled.
-        """
-        return self.respond(setpoint=0.0, load=1.0, until=until).output
+    @property
+    def _crowd(self) -> float:
+        """The distance from the imaginary axis to which the poles of a neutral loop tend; else ``inf``."""
+        feedthrough = self._transfer.feedthrough
+        return float(-np.log(feedthrough)) / self._longest if self._longest and feedthrough else float("inf")
 
     def respond(
         self, *, setpoint: float = 1.0, load: float = 0.0, load_at: float = 0.0, until: float | None = None
@@ -339,11 +321,26 @@ class Loop(LoopViews, SetOnce):
             found = self.poles(count=8) * self._units.time
             inputs = (setpoint, load)
             return function_responses.respond(self._transfer, self._controller, found, inputs, end, self._units.time)
-        rests = end > FAR and self._stable and self._landmarks.size
-        moving = min(end, self.horizon() / self._units.time) if rests else end
-        [(breaks, y, u)] = responses(self._plant, [self._controller], moving, setpoint=setpoint, load=load)
-        breaks, y, u = held(breaks, y, u, end)
+        if not (end > FAR and self._stable and self._landmarks.size):
+            breaks, y, u = self._marched(setpoint, load, end)
+        else:
+            breaks, y, u = held(*self._to_rest(setpoint, load, min(end, self.horizon() / self._units.time)), end)
         return breaks, y, breaks, u
+
+    def _to_rest(self, setpoint: float, load: float, end: float) -> Pieces:
+        """Return a response over a horizon that is long in units of the loop's time."""
+        time, filters = self._units.time, self._filter_poles
+        all_poles = poles.merged(self._poles, filters[filters.imag >= 0.0] * time, self._poles.size + filters.size)
+        modes, rate = slow_group(all_poles, self._crowd * time)
+        alone = SETTLED / rate + 4.0 * self._longest / time
+        if not modes.size or alone > end:
+            return self._marched(setpoint, load, end)
+        system, steps = (self._plant, self._difference, self._controller), (setpoint, load)
+        return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps)
+
+    def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
+        [found] = responses(self._plant, [self._controller], end, setpoint=setpoint, load=load)
+        return found
 
     def __repr__(self) -> str:
         return f"Loop({self.plant!r}, {self.controller!r})"

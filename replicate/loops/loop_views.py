@@ -8,19 +8,18 @@ from numpy.typing import ArrayLike
 
 from replicate.loops import frequency_response
 from replicate.loops.frequency_response import Bode, ComplexArray
+from replicate.loops.limited_response import LimitedViews
 from replicate.loops.summary import LoopSummary, summarize_loop
 from replicate.loops.to_control import Kind, loop_to_control
 
 if TYPE_CHECKING:
-    from replicate.loops.anti_windup import AntiWindup
     from replicate.loops.controller import PID
     from replicate.loops.experiments import Given
-    from replicate.loops.limited_response import LimitedResponse
     from replicate.loops.loop import Loop
-    from replicate.loops.signal import Response
+    from replicate.loops.signal import Response, Signal
 
 
-class LoopViews:
+class LoopViews(LimitedViews):
     """Methods of `Loop` that only show what other methods know."""
 
     @property
@@ -41,6 +40,31 @@ class LoopViews:
             Takes the place of `primary_controller`.
         """
         return type(self._loop)(self._loop.plant, controller)
+
+    def step(self, until: float | None = None) -> Signal:
+        """Return the output after a unit step of the set-point at t = 0, at rest before.
+
+        Parameters
+        ----------
+        until
+            Horizon; by default the time at which every mode has decayed to rounding.
+
+        Raises
+        ------
+        UnstableLoopError
+            If no horizon is given and the loop is unstable.
+        """
+        return self._loop.respond(until=until).output
+
+    def load_step(self, until: float | None = None) -> Signal:
+        """Return the output after a unit step at the plant input, before the dead time, at t = 0.
+
+        Parameters
+        ----------
+        until
+            Time until which the response is computed; default: when it has settled.
+        """
+        return self._loop.respond(setpoint=0.0, load=1.0, until=until).output
 
     def summary(self) -> LoopSummary:
         """Return stability, peaks, margins, and the metrics of the step and load responses in one record."""
@@ -128,65 +152,6 @@ class LoopViews:
         from replicate.loops.experiments import respond_to
 
         return respond_to(self._loop, setpoint=setpoint, load=load, output=output, noise=noise, until=until)
-
-    def saturated(
-        self,
-        limits: tuple[float, float],
-        anti_windup: AntiWindup = "none",
-        *,
-        tracking_time: float | None = None,
-        setpoint: Given = 1.0,
-        load: Given = 0.0,
-        load_at: float = 0.0,
-        until: float | None = None,
-    ) -> LimitedResponse:
-        r"""Return the exact response when the control signal has limits, with or without anti-windup.
-
-        The instants at which the command meets or leaves a limit are found as roots of the response's polynomials;
-        between them the loop is linear and computed as without limits.
-
-        Parameters
-        ----------
-        limits
-            The least and the largest control signal, before any load; 0, its value at rest, must be between them.
-            ``inf`` and ``-inf`` mean no limit.
-        anti_windup
-            ``"none"``; ``"back-calculation"``: :math:`\dot I = k_i e + (u - v)/T_t`, v being the command and u the
-            control signal; or ``"clamping"``: the integral part is held while v is beyond a limit and the error would
-            drive it further.
-        tracking_time
-            Tt of back-calculation; by default Ti of a PI and the geometric mean of Ti and Td of a PID controller.
-        setpoint, load
-            Numbers (steps), or steps and pulses of `replicate.loops.inputs`, or several.
-        load_at
-            Time that is added to the load's own.
-        until
-            Horizon; by default the time at which the loop has come to rest.
-
-        Raises
-        ------
-        LoopError
-            If an argument is not allowed, the plant is given by a function, an ideal derivative acts on a set-point
-            step, or the loop does not come to rest and no horizon is given.
-        UnstableLoopError
-            If no horizon is given and the loop without limits is unstable.
-
-        Examples
-        --------
-        An integrator filled at its limit of 1/2 rises by 1/2 in each unit of time:
-
-        >>> from replicate.loops import PI, Loop, Plant
-        >>> loop = Loop(Plant([1.0], [1.0, 0.0]), PI(2.0))
-        >>> response = loop.saturated(limits=(-0.5, 0.5))
-        >>> round(float(response.output(1.0)), 12), [round(x.end, 12) for x in response.at_limit]
-        (0.5, [1.5])
-        """
-        from replicate.loops.limited_response import limited_response
-
-        return limited_response(
-            self._loop, limits, anti_windup,
-            tracking_time=tracking_time, setpoint=setpoint, load=load, load_at=load_at, until=until,
-        )  # fmt: skip
 
     def to_control(self, pade: int | None = None, response: Kind = "setpoint") -> Any:
         """Return the closed loop as a python-control transfer function.

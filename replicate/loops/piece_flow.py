@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 DEGREE = 18
 SAME = 1e-12  # relative distance of two times that are one
 
+MOST_PIECES = 200_000  # of a march
 STARTING = 3.5  # first piece of a march, in units of the fastest time constant
 SMOOTHEST = 12  # order of a derivative whose jump, when it arrives, no longer has to fall on the end of a piece
 SMALLEST_JUMP = 1e-17  # of the jump that set it off: one that is rounding

@@ -15,6 +15,7 @@ from replicate.loops.loop import Loop
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
 from replicate.loops.predictor_transfer import PredictorTransfer
+from replicate.loops.slow_modes import Pieces
 from replicate.loops.smith_predictor import SmithPredictor
 from replicate.loops.sum_plant import roots_without, sum_of
 from replicate.loops.to_control import Kind
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from replicate.loops.controller import PID
 
 ComplexArray = NDArray[np.complex128]
-Array = NDArray[np.float64]
 
 
 class PredictorLoop(Loop):
@@ -53,15 +53,15 @@ class PredictorLoop(Loop):
         self.controller = controller  # type: ignore[assignment]
         self.predictor = controller
         self._units = Units.of(plant, controller.controller)
-        self._plant, self._primary = self._units.plant(plant), self._units.controller(controller.controller)
-        scaled = SmithPredictor(self._primary, self._units.plant(controller.model))
+        self._plant, self._controller = self._units.plant(plant), self._units.controller(controller.controller)
+        scaled = SmithPredictor(self._controller, self._units.plant(controller.model))
         self._difference = scaled.difference
-        self._transfer = self._loop_transfer(self._plant, self._primary, self._difference)
+        self._transfer = self._loop_transfer(self._plant, self._controller, self._difference)
         # the loop around plant and model together has the poles of the whole
         self._together = (
             sum_of([*self._plant.parts, *self._difference.parts]) if self._difference is not None else self._plant
         )
-        self._whole = LoopTransfer.of(self._together, self._primary)
+        self._whole = LoopTransfer.of(self._together, self._controller)
 
     @staticmethod
     def _loop_transfer(plant: Plant, primary: PID, difference: Plant | None) -> LoopTransfer:
@@ -121,7 +121,7 @@ class PredictorLoop(Loop):
         return stability.unstable_poles(self._whole) + int(hidden.size + np.sum(hidden.imag > 0.0))
 
     def _found(self, count: int) -> ComplexArray:
-        moved = poles.rightmost_poles(self._together, self._primary, self._whole, count=count)
+        moved = poles.rightmost_poles(self._together, self._controller, self._whole, count=count)
         return poles.merged(moved, self._hidden, count)
 
     _proven = None  # hidden poles belong to the loop, too
@@ -134,14 +134,13 @@ class PredictorLoop(Loop):
 
     def open_loop(self) -> tuple[Units, OpenLoop]:
         """Return the chain of plant and model side by side; the output is the plant's alone."""
-        return self._units, open_loop_of_spaces(self._plant, self._difference, self._primary)
+        return self._units, open_loop_of_spaces(self._plant, self._difference, self._controller)
 
-    def _responses(self, setpoint: float, load: float, end: float) -> tuple[Array, Array, Array, Array]:
+    def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
         _, parts = self.open_loop()
-        breaks, y, u = adaptive_steps.march(
+        return adaptive_steps.march(
             parts.chain, parts.gains, parts.delays, end, setpoint=setpoint, loads=load * parts.loaded
         )
-        return breaks, y, breaks, u
 
     @property
     def _inner_gain(self) -> float:

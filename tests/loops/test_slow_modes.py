@@ -1,0 +1,80 @@
+"""Loops whose slow modes last a million times longer than the others: few pieces, and every digit.
+
+References: de Hoog's inversion of the closed loop's transform in mpmath, and IE = 1/ki of a load response.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from replicate.loops import PI, PID, Loop, Plant, SmithPredictor
+
+Transform = Callable[[mp.mpc], mp.mpc]
+
+MOST_PIECES = 500
+
+
+def lag(gain: float, time_constant: float, dead_time: float) -> Transform:
+    return lambda s: mp.mpf(gain) * mp.exp(-s * mp.mpf(dead_time)) / (1 + s * mp.mpf(time_constant))
+
+
+def pi(k: float, ki: float) -> Transform:
+    return lambda s: mp.mpf(k) + mp.mpf(ki) / s
+
+
+FOPTD, SLOW = Plant.foptd(1.0, 1.0, 1.0), 1e-9
+MODEL = Plant.foptd(1.1, 1.0, 1.2)
+# a loop, its G, C and set-point filter, and the inner feedback C M of a predictor
+LOOPS: dict[str, tuple[Loop, Transform, Transform, Transform, Transform]] = {
+    "weak integral action": (
+        Loop(FOPTD, PI(0.6, SLOW)), lag(1, 1, 1), pi(0.6, SLOW), lambda _: mp.mpf(1), lambda _: mp.mpf(0),
+    ),
+    "slow pair": (
+        Loop(Plant([1.0], [1.0, 0.0], 1.0), PI(1e-6, 1e-12)),
+        lambda s: mp.exp(-s) / s, pi(1e-6, 1e-12), lambda _: mp.mpf(1), lambda _: mp.mpf(0),
+    ),
+    "slow lag that cancels": (
+        Loop(Plant.foptd(1.0, 1e7, 1.0), PI.from_integral_time(5e6, 1e7)),
+        lag(1, 1e7, 1), pi(5e6, 0.5), lambda _: mp.mpf(1), lambda _: mp.mpf(0),
+    ),
+    "slow set-point filter": (
+        Loop(FOPTD, PID(0.6, 0.5, setpoint_filter=1e8)),
+        lag(1, 1, 1), pi(0.6, 0.5), lag(1, 1e8, 0), lambda _: mp.mpf(0),
+    ),
+    "slowly unstable plant": (
+        Loop(Plant([1.0], [1.0, -1e-8], 1.0), PI(0.3, 1e-10)),
+        lambda s: mp.exp(-s) / (s - mp.mpf(1e-8)), pi(0.3, 1e-10), lambda _: mp.mpf(1), lambda _: mp.mpf(0),
+    ),
+    "predictor": (
+        Loop(FOPTD, SmithPredictor(PI(0.6, 1e-8), MODEL)), lag(1, 1, 1), pi(0.6, 1e-8), lambda _: mp.mpf(1),
+        lambda s: pi(0.6, 1e-8)(s) * (lag(1.1, 1, 0)(s) - lag(1.1, 1, 1.2)(s)),
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LOOPS)
+def test_slow_exponentials_are_passed_over(name: str) -> None:
+    loop, plant, controller, setpoint_filter, inner = LOOPS[name]
+    found = loop.respond(setpoint=1.0, load=0.5)
+    assert found.output.breaks.size < MOST_PIECES
+    times = np.array([1e-4, 1.0 / 300.0, 1.0 / 34.0, 0.1]) * loop.horizon()
+
+    def transform(s: mp.mpc) -> mp.mpc:
+        drive = controller(s) * setpoint_filter(s) + (1 + inner(s)) / 2
+        return plant(s) * drive / (s * (1 + inner(s) + controller(s) * plant(s)))
+
+    with mp.workdps(30):
+        expected = np.array([float(mp.invertlaplace(transform, t, method="dehoog", degree=40)) for t in times])
+    np.testing.assert_allclose(found.output(times), expected, rtol=1e-12, atol=1e-13 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("ki", [1e-6, 1e-9, 1e-12, 1e-15])
+@pytest.mark.parametrize("plant", [FOPTD, Plant([0.2, 1.0], [1.0, 1.0], 1.0), Plant([1.0], [1.0, 0.0], 1.0)])
+def test_integrated_error_of_weak_integral_action(plant: Plant, ki: float) -> None:
+    load = Loop(plant, PI(0.6, ki)).load_step()
+    assert load.breaks.size < MOST_PIECES
+    assert load.ie() == pytest.approx(1.0 / ki, rel=1e-12)
