@@ -94,15 +94,20 @@ def test_another_reading_reconstructs() -> None:
 
 
 @pytest.mark.parametrize(
-    ("run", "reading"),
+    ("run", "reading", "remark"),
     [
-        (results(as_written=frame(ax=1.15), authors=frame(ax=1.16)), "as-written"),
-        (results(as_written=frame(ax=1.7), authors=frame(ax=1.16)), "authors"),
+        (results(as_written=frame(ax=1.15), authors=frame(ax=1.16)), "as-written", ""),
+        (
+            results(as_written=frame(ax=1.7), authors=frame(ax=1.16)),
+            "authors",
+            "Near under the reading “authors” only, one of 2.",  # which nothing else speaks for
+        ),
     ],
 )
-def test_near_needs_no_entry(run: dict, reading: str) -> None:  # type: ignore[type-arg]
+def test_near_needs_no_entry(run: dict, reading: str, remark: str) -> None:  # type: ignore[type-arg]
     judgement = judged(run=run)
-    assert (verdict(judgement).verdict, verdict(judgement).reading) == ("near", reading)
+    found = verdict(judgement)
+    assert (found.verdict, found.reading, found.explanation) == ("near", reading, remark)
     assert judgement.problems == []
 
 

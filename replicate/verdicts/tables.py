@@ -212,14 +212,15 @@ class TableJudge:
         return self._verdict_row(key, "unexplained", AS_WRITTEN)
 
     def _remark(self, key: Key, reading: str) -> str:
-        """Say by which convention a near value would hold, or under which reading that is too weak."""
+        """Say by which convention a near value would hold, or that a reading that is too weak to tell brings it near."""
         one = self.computed[reading][key]
         weak = [id for id, found in self.computed.items() if found[key].match.kind == "equal"]
         if weak and not other_convention(one):
             strength = self.strengths[weak[0]]
             return f"Equal under the reading “{weak[0]}”, which is too weak to tell. {strength.sentence}"
         if not other_convention(one):
-            return ""
+            chosen = reading != AS_WRITTEN and not self._strong(reading, key)
+            return f"Near under the reading “{reading}” only, one of {len(self.table.readings)}." if chosen else ""
         count = tallies(self.table, {place: other.match for place, other in self.computed[reading].items()})
         verb = "truncated" if one.match.how == "truncated" else "rounded"
         return f"Holds if it was {verb}; of its column {count[self.table.quantity(*key)].sentence}."
