@@ -212,7 +212,7 @@ class TableJudge:
         return self._verdict_row(key, "unexplained", AS_WRITTEN)
 
     def _remark(self, key: Key, reading: str) -> str:
-        """Say by which convention a near value would hold, or that a reading that is too weak to tell brings it near."""
+        """Say by which convention a near value would hold, or that only a reading too weak to tell brings it near."""
         one = self.computed[reading][key]
         weak = [id for id, found in self.computed.items() if found[key].match.kind == "equal"]
         if weak and not other_convention(one):
