@@ -22,6 +22,7 @@ Run = Callable[..., tuple[int, str, str]]
 
 FRAME = "return table_1.frame(rows)"
 CALL = "return _rows(statistics.stdev)"
+INPUTS = '"sample standard deviation, divided by $n - 1$"'
 SUBPLOTS = "axes = fig.subplots()"
 ENTRY = '\n[[entry]]\nexhibit = "{}"\nrows = ["{}"]\ncolumns = ["mean"]\ncause = "{}"\nexplanation = "x"\n'
 
@@ -69,6 +70,11 @@ def replaced(file: Path, old: str, new: str) -> None:
         (
             "table_1.py", FRAME, f"{FRAME}.astype(str)",
             "gauss/table_1.py:20: the reading returns a wrong cell: row 'A', column 'mean' holds text ('3.8000",
+        ),
+        ("table_1.py", INPUTS, f'{INPUTS}, inputs=("mean",)', "takes 0 positional arguments but 2 were given (gauss/"),
+        (
+            "table_1.py", f"{INPUTS})\ndef as_written()", f'{INPUTS}, inputs=("mean",))\ndef as_written(*_)',
+            "reading 'as-written' returns DataFrame for 'A'; expected: numbers by quantity (gauss/table_1.py:20)",
         ),
         ("table_1.py", FRAME, "return rows", "gauss/table_1.py:20: the reading returns dict; expected: a pandas DataF"),
         ("table_1.py", FRAME, "return pd.concat(2 * [table_1.frame(rows)])", "the reading returns the row 'A' twice"),

@@ -127,7 +127,10 @@ def _case(
         inputs[place] = value
     if not inputs:
         return None
-    found = dict(reading.compute(name, {quantity: float(value.value) for quantity, value in inputs.items()}))
+    found = reading.compute(name, {quantity: float(value.value) for quantity, value in inputs.items()})
+    if not isinstance(found, Mapping):
+        msg = f"reading '{reading.id}' returns {type(found).__name__} for '{name}'; expected: numbers by quantity"
+        raise TypeError(msg)
     known = table.rows if table.cases_are_columns else table.columns
     unknown = [quantity for quantity in found if quantity not in known]
     if unknown:

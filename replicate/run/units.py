@@ -120,7 +120,7 @@ def reason(error: BaseException, function: Callable[..., object] | None = None) 
     Parameters
     ----------
     function
-        What was called: named where the call itself was wrong and nothing of the paper ran.
+        What of the paper was called: named where the call itself was wrong and nothing of the paper ran.
     """
     own, core = "", ""
     for frame, line in traceback.walk_tb(error.__traceback__):
@@ -132,7 +132,7 @@ def reason(error: BaseException, function: Callable[..., object] | None = None) 
             own = place
         elif module.rpartition(".")[0] != __package__:
             core = place
-    place = own or core or (f" ({_place(function)})" if function else "")
+    place = own or (f" ({_place(function)})" if function else core)
     if isinstance(error, SystemExit):
         return f"it tries to end the program, with status {_text(error.code)}{place}"
     text = _text(error)
