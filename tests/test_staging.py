@@ -105,6 +105,8 @@ def test_a_folder_that_is_a_link_to_nothing_is_named(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match="/report: cannot be written: File exists"):
         replace_files(tmp_path, {"report/index.html": b"new"})
     assert [path.name for path in tmp_path.iterdir()] == ["report"]
+    with pytest.raises(OutputError, match="report/lab: cannot be written: File exists"):
+        replace_files(tmp_path / "report" / "lab", {"a": b"new"})
 
 
 def test_a_file_of_ours_that_was_changed_belongs_to_who_changed_it(tmp_path: Path) -> None:

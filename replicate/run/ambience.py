@@ -18,9 +18,18 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
+from replicate.run.replaced_functions import MODULES, functions_now, put_back
+
+if sys.platform != "win32":
+    import resource
+
 SEED = 0
+
+_OF_DECIMAL = ("prec", "rounding", "Emin", "Emax", "capitals", "clamp")
+_TIMERS = ("ITIMER_REAL", "ITIMER_VIRTUAL", "ITIMER_PROF")
 
 
 @dataclass(frozen=True)
@@ -82,10 +91,53 @@ def _set_handlers(handlers: dict[int, Any]) -> None:
             signal.signal(number, handler)
 
 
-def _decimal() -> tuple[Any, ...]:
-    context = decimal.getcontext()
-    traps = tuple(sorted(signal.__name__ for signal, is_set in context.traps.items() if is_set))
-    return context.prec, context.rounding, context.Emin, context.Emax, context.capitals, context.clamp, traps
+def _contexts() -> list[decimal.Context]:
+    """Return the context of decimal, and the one that new ones take their values from."""
+    return [decimal.getcontext(), decimal.DefaultContext]
+
+
+def _decimal() -> list[tuple[Any, ...]]:
+    return [(*(getattr(context, name) for name in _OF_DECIMAL), tuple(_traps(context))) for context in _contexts()]
+
+
+def _traps(context: decimal.Context) -> list[str]:
+    return sorted(trap.__name__ for trap, is_set in context.traps.items() if is_set)
+
+
+def _set_decimal(wanted: list[tuple[Any, ...]]) -> None:
+    for context, (*values, traps) in zip(_contexts(), wanted, strict=True):
+        for name, value in zip(_OF_DECIMAL, values, strict=True):
+            setattr(context, name, value)
+        context.clear_flags()
+        context.clear_traps()
+        for name in traps:
+            context.traps[getattr(decimal, name)] = True
+
+
+def _limits() -> dict[int, tuple[int, int]]:
+    """Return what the system lets this process use: memory, open files, processor time."""
+    if sys.platform == "win32":
+        return {}
+    limits = [getattr(resource, name) for name in dir(resource) if name.startswith("RLIMIT_")]
+    return {limit: resource.getrlimit(limit) for limit in limits}
+
+
+def _set_limits(limits: dict[int, tuple[int, int]]) -> None:
+    if sys.platform == "win32":
+        return
+    for limit, values in limits.items():
+        with contextlib.suppress(OSError, ValueError):  # a hard limit that was lowered stays
+            resource.setrlimit(limit, values)
+
+
+def _blocked() -> set[int]:
+    return set(signal.pthread_sigmask(signal.SIG_BLOCK, ())) if hasattr(signal, "pthread_sigmask") else set()
+
+
+def _timers() -> bool:
+    """Stop the timers of this process; return whether one was running."""
+    running = [signal.setitimer(getattr(signal, name), 0) for name in _TIMERS if hasattr(signal, name)]
+    return any(any(timer) for timer in running)
 
 
 def _numpy() -> Any:
@@ -148,7 +200,10 @@ _ASPECTS = (
     _Aspect("handlers of signals", _handlers, _set_handlers),
     _Aspect("Python's random state", random.getstate, random.setstate),
     _Aspect("the locale", lambda: locale.setlocale(locale.LC_ALL), lambda name: locale.setlocale(locale.LC_ALL, name)),
-    _Aspect("the context of decimal", _decimal, lambda _: decimal.setcontext(decimal.Context())),
+    _Aspect("the context of decimal", _decimal, _set_decimal),
+    _Aspect("the limits of the process", _limits, _set_limits),
+    _Aspect("blocked signals", _blocked, lambda mask: signal.pthread_sigmask(signal.SIG_SETMASK, mask)),
+    _Aspect("the most digits of integers", sys.get_int_max_str_digits, sys.set_int_max_str_digits),
     _Aspect(
         "the filters of warnings",
         lambda: [str(entry) for entry in warnings.filters],
@@ -170,6 +225,10 @@ _ASPECTS = (
         lambda _: _pyplot().close("all"),
         "matplotlib.pyplot",
     ),
+    *(
+        _Aspect(f"functions of {module}", partial(functions_now, module), partial(put_back, module), module)
+        for module in MODULES
+    ),
 )
 
 
@@ -177,6 +236,11 @@ class Ambience:
     """Sets what surrounds a unit, and says what a unit has left changed.
 
     Made once in a process, before any code of a paper runs there.
+
+    Attributes
+    ----------
+    spoilt
+        Whether something could not be set back.
     """
 
     def __init__(self) -> None:
@@ -184,6 +248,7 @@ class Ambience:
         _set_locale()
         decimal.setcontext(decimal.Context())
         _set_warnings()
+        self.spoilt = False
         self._wanted: dict[str, Any] = {}
         self._threads = set(threading.enumerate())
         self._look()
@@ -209,7 +274,8 @@ class Ambience:
             if aspect.name in self._wanted and aspect.read() != self._wanted[aspect.name]:
                 changed.append(aspect.name)
                 aspect.set(self._wanted[aspect.name])
-        if hasattr(signal, "alarm") and signal.alarm(0):
+                self.spoilt |= aspect.read() != self._wanted[aspect.name]
+        if _timers():
             changed.append("an alarm that has not rung")
         return changed
 

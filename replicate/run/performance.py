@@ -93,10 +93,11 @@ class Performer:
         threads = self.ambience.threads()
         if threads:
             changed.append(f"a thread that still runs ({', '.join(threads)})")
+        is_last = bool(threads) or self.ambience.spoilt
         dependencies = self._looked.record(paper, paper.exhibits[unit.exhibit], modules_of(unit.package, self._loaded))
         if self._looked.newest > self._begun:
             dependencies = {}  # a file was written after this process began, which may have loaded it as it was before
-        return Performance(result, dependencies, time.monotonic() - begun, tuple(changed), is_last=bool(threads))
+        return Performance(result, dependencies, time.monotonic() - begun, tuple(changed), is_last)
 
 
 def _whole(unit: Unit, paper: Paper, result: Result) -> Result:

@@ -10,7 +10,7 @@ import importlib
 import inspect
 import math
 import traceback
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -205,7 +205,7 @@ def _elsewhere(paper: Paper, reading: Reading) -> dict[str, PrintedValue]:
     return found
 
 
-def _checked(table: Table, reading: Reading, made: object, printed: Collection[Key]) -> pd.DataFrame:
+def _checked(table: Table, reading: Reading, made: object, printed: Mapping[Key, PrintedValue]) -> pd.DataFrame:
     """Return what a reading has made if it is the table, or say where the reading is defined."""
     try:
         return checked_frame(table, made, printed)

@@ -131,11 +131,13 @@ def _room(target: Path) -> Iterator[Path]:
 
 def unwritable(target: Path, error: OSError) -> OSError | OutputError:
     """Return the error to raise: one about another place, say a file that is read, is none of ours."""
+    folder = target.absolute()
     named = [Path(name).absolute() for name in (error.filename2, error.filename) if isinstance(name, str)]
-    inside = [name.relative_to(target.absolute()) for name in named if name.is_relative_to(target.absolute())]
-    if error.errno in (None, errno.EPIPE) or (named and not inside):
+    ours = [name for name in named if name.is_relative_to(folder) or folder.is_relative_to(name)]
+    if error.errno in (None, errno.EPIPE) or (named and not ours):
         return error
-    place = next((target / name for name in inside if ROOM not in name.parts), target)
+    seen = [name.relative_to(folder) for name in ours if name.is_relative_to(folder)]
+    place = next((target / name for name in seen if ROOM not in name.parts), target)
     return OutputError(f"{place}: cannot be written: {error.strerror or error}")
 
 

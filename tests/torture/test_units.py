@@ -17,7 +17,7 @@ from replicate.run.library import Library
 from replicate.run.parallel import Progress, run
 
 #: Looks at everything around it and returns it as numbers.
-OBSERVER = """import decimal, hashlib, locale, random, signal, threading, warnings
+OBSERVER = """import decimal, hashlib, locale, math, random, resource, signal, threading, warnings
 import matplotlib as mpl
 seen = {
     "folder": os.getcwd(), "environment": sorted(os.environ.items()), "path": sys.path,
@@ -28,7 +28,12 @@ seen = {
     "umask": os.umask(0o22), "signals": str([signal.getsignal(n) for n in sorted(signal.valid_signals())]),
     "stdout": sys.stdout.fileno(), "closed": sys.stdout.closed, "alarm": signal.alarm(0),
     "threads": sorted(thread.name for thread in threading.enumerate()),
+    "limits": [resource.getrlimit(limit) for limit in range(8)],
+    "blocked": signal.pthread_sigmask(signal.SIG_BLOCK, []),
+    "new decimal": str(decimal.Context()), "digits": sys.get_int_max_str_digits(),
+    "functions": [sum([1, 2]), math.sin(1), math.exp(1), np.sin(1.0), np.linalg.solve([[2.0]], [1.0]), pd.isna(1)],
 }
+time.sleep(0.1)
 numbers = [int(hashlib.sha256(str(value).encode()).hexdigest()[:12], 16) for value in seen.values()]
 return pd.DataFrame([numbers], index=["a"], columns=list(seen))"""
 
@@ -55,6 +60,16 @@ CHANGES = {
     "alarm": "import signal\nsignal.alarm(1)",
     "output": "sys.stdout.close()\nsys.stderr = None",
     "descriptors": "os.close(1)\nos.close(2)\nos.close(0)",
+    "soft limits": "import resource\nresource.setrlimit(resource.RLIMIT_NOFILE, (64, 128))",
+    "hard limits": "import resource\nresource.setrlimit(resource.RLIMIT_CPU, (600, 600))",
+    "blocked signals": "import signal\nsignal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGTERM])",
+    "timer": "import signal\nsignal.setitimer(signal.ITIMER_PROF, 0.05, 0.05)",
+    "new contexts": "import decimal\ndecimal.DefaultContext.prec = 3\ndecimal.setcontext(decimal.Context())",
+    "digits": "sys.set_int_max_str_digits(640)",
+    "builtins": "import builtins\nbuiltins.sum = max",
+    "mathematics": "import math\nmath.sin = math.cos\ndel math.exp",
+    "numpy's functions": "np.sin, np.linalg.solve = np.cos, None",
+    "pandas' functions": "pd.isna = len",
     "threads": "import threading\nthreading.Thread(target=time.sleep, args=(5,)).start()",
 }
 
