@@ -31,10 +31,15 @@ def page_name(paper: str, part: str = "") -> str:
     return f"{paper}-{part}.html" if part else f"{paper}.html"
 
 
+def parts_of(paper: Paper) -> dict[str, str]:
+    """Return, by exhibit, the part on whose page it stands; empty on the paper's main page."""
+    known = parts(paper)
+    return {id: part if (part := part_of(id)) in known else "" for id in paper.exhibits}
+
+
 def pages_of(paper: Paper) -> dict[str, str]:
     """Return, by exhibit, the file name of the page on which it stands."""
-    known = parts(paper)
-    return {id: page_name(paper.id, part if (part := part_of(id)) in known else "") for id in paper.exhibits}
+    return {id: page_name(paper.id, part) for id, part in parts_of(paper).items()}
 
 
 def anchor(exhibit: str, row: str, column: str) -> str:

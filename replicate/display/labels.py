@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from replicate.exhibits import Paper
 
@@ -42,6 +43,17 @@ def label(exhibit: str) -> str:
     words = [number for number in numbers if re.match(r"[a-z]{2}", number)]  # what belongs to a numbered exhibit
     plain = ".".join(number for number in numbers if number not in words)
     return f"{_KINDS.get(kind, kind.capitalize())} {', '.join([plain, *words])}"
+
+
+def cell_keys(row: str, column: str, columns: Sequence[str]) -> tuple[str, ...]:
+    """Return the keys that name a cell of a table: the row alone where all that is beside it is its "value".
+
+    Examples
+    --------
+    >>> cell_keys("Ms", "value", ["value"]), cell_keys("Ms", "k", ["k"]), cell_keys("Ms", "value", ["value", "unit"])
+    (('Ms',), ('Ms', 'k'), ('Ms', 'value'))
+    """
+    return (row,) if list(columns) == ["value"] else (row, column)
 
 
 _ROMAN = {"M": 1000, "CM": 900, "D": 500, "CD": 400, "C": 100, "XC": 90, "L": 50, "XL": 40, "X": 10, "IX": 9, "V": 5,

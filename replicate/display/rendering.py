@@ -16,7 +16,7 @@ from markupsafe import Markup
 from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.distance import off
-from replicate.display.labels import cited
+from replicate.display.labels import cell_keys, cited
 from replicate.display.markdown import MarkdownBatch, without_marks
 from replicate.display.safe_html import policy
 from replicate.figures.style import dark_curves
@@ -79,6 +79,7 @@ def render(template: str, name: str, **context: Any) -> str:
         context,
         words=words,
         anchor=anchor,
+        cell_keys=cell_keys,
         cited=cited,
         scores=scores,
         consequences=consequences,

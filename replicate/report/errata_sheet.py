@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from replicate.display import numbers
-from replicate.display.addresses import address, pages_of
+from replicate.display.addresses import address, pages_of, parts_of
 from replicate.display.consequences import errors
-from replicate.display.labels import heading
-from replicate.exhibits import Claims, Paper
+from replicate.display.labels import cell_keys, heading
+from replicate.exhibits import Claims, Paper, Table
 from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
 
 _SENTENCE = re.compile(r"(?<=[\w)$%`*][.])\s+(?=[A-Z$*`])")
@@ -26,20 +26,29 @@ class Erratum:
     rows
         The verdicts; the first speaks for all in what they share.
     exhibit
-        What the exhibit is called.
+        What the exhibit is called on the page of its part.
+    part
+        The part of the paper that it belongs to, empty if the paper has none.
     claim
         The sentence of the paper, for a claim.
+    where
+        Where the paper makes it.
     address
         Where the first of them stands in the report.
     labels
         Display texts of row and column keys.
+    columns
+        Keys of the exhibit's columns, if it is a table.
     """
 
     rows: list[VerdictRow]
     exhibit: str
+    part: str
     claim: str
+    where: str
     address: str
     labels: dict[str, str]
+    columns: Sequence[str]
 
     @property
     def first(self) -> VerdictRow:
@@ -51,9 +60,18 @@ class Erratum:
         """Whether the authors should hear of it."""
         return self.first.verdict in _TOLD or self.first.consequence not in {"", "none"}
 
-    def named(self, key: str) -> str:
-        """Return the display text of a row or column key."""
-        return self.labels.get(key, key.replace("_", " "))
+    @property
+    def title(self) -> str:
+        """What the exhibit is called where other parts are at hand, too."""
+        return f"Part {self.part}, {self.exhibit}" if self.part else self.exhibit
+
+    def keys(self, row: VerdictRow) -> tuple[str, ...]:
+        """Return the keys that name a cell inside its exhibit."""
+        return cell_keys(row.row, row.column, self.columns)
+
+    def named(self, row: VerdictRow) -> str:
+        """Return what a cell is called inside its exhibit."""
+        return ", ".join(self.labels.get(key, key.replace("_", " ")) for key in self.keys(row))
 
     @property
     def page(self) -> str:
@@ -121,7 +139,7 @@ def sheets(papers: Sequence[Paper], judgement: Judgement) -> list[Sheet]:
 
 def _grouped(paper: Paper, verdicts: Iterable[VerdictRow]) -> list[Erratum]:
     """Return verdicts in groups that share an exhibit and an explanation."""
-    pages = pages_of(paper)
+    pages, known = pages_of(paper), parts_of(paper)
     groups: dict[tuple[str, ...], list[VerdictRow]] = {}
     for row in verdicts:
         own = row.row if row.column == CLAIM_COLUMN else ""
@@ -130,8 +148,10 @@ def _grouped(paper: Paper, verdicts: Iterable[VerdictRow]) -> list[Erratum]:
     for rows in groups.values():
         row = rows[0]
         exhibit = paper.exhibits[row.exhibit]
-        claim = exhibit.claims[row.row].text if isinstance(exhibit, Claims) else ""
+        claim = exhibit.claims[row.row] if isinstance(exhibit, Claims) else None
         label, title = heading(row.exhibit, exhibit.title)
         place = address(pages[row.exhibit], row.exhibit, row.row, row.column)
-        found.append(Erratum(rows, label or title, claim, place, getattr(exhibit, "labels", {})))
+        said = (claim.text, claim.where) if claim else ("", "")
+        keys = (exhibit.labels, exhibit.columns) if isinstance(exhibit, Table) else ({}, ())
+        found.append(Erratum(rows, label or title, known[row.exhibit], *said, place, *keys))
     return found

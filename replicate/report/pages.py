@@ -138,12 +138,7 @@ def build_report(
     mistakes = [erratum for sheet in found for erratum in sheet.errata]
     unexplained = [erratum for sheet in found for erratum in sheet.unexplained]
     texts[ERRATA] = render("errata.html", ERRATA, sheets=found, **shared)
-    listed = hits(
-        papers,
-        judgement,
-        {paper.id: pages_of(paper) for paper in papers},
-        {sheet.paper.id: sheet.errata for sheet in found},
-    )
+    listed = hits(papers, judgement, {sheet.paper.id: sheet.errata for sheet in found})
     texts[SEARCH] = render("search.html", SEARCH, hits=listed, kinds=KINDS, **shared)
     for pages in site.values():
         for page in pages:

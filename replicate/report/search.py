@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from replicate.display.addresses import address
+from replicate.display.addresses import address, page_name, parts_of
 from replicate.display.labels import cited, heading
 from replicate.exhibits import Claims, Exhibit, Paper
 from replicate.report.errata_sheet import Erratum
@@ -23,7 +23,7 @@ class Hit:
     title, words
         Markdown: what is shown, and what is searched besides.
     paper
-        Author and year, as one would cite it.
+        Author and year, as one would cite it, and the part.
     verdict
         Of a claim or an erratum; empty for an exhibit.
     """
@@ -36,53 +36,49 @@ class Hit:
     words: str = ""
 
 
-def hits(
-    papers: Sequence[Paper],
-    judgement: Judgement,
-    page_of: Mapping[str, Mapping[str, str]],
-    errata: Mapping[str, Sequence[Erratum]],
-) -> list[Hit]:
+def hits(papers: Sequence[Paper], judgement: Judgement, errata: Mapping[str, Sequence[Erratum]]) -> list[Hit]:
     """Return the entries, paper by paper: exhibits, claims, errata.
 
     Parameters
     ----------
-    page_of
-        By paper and exhibit: the file name of the page.
     errata
         By paper, worst first.
     """
     verdicts = {
         (row.paper, row.exhibit, row.row): row.verdict for row in judgement.verdicts if row.column == CLAIM_COLUMN
     }
-    return [
-        hit
-        for paper in papers
-        for hit in (
-            *(_exhibit(paper, exhibit, page_of[paper.id][exhibit.id]) for exhibit in paper.exhibits.values()),
-            *_claims(paper, page_of[paper.id], verdicts),
-            *(_erratum(paper, erratum) for erratum in errata[paper.id] if not erratum.claim),
-        )
-    ]
+    found: list[Hit] = []
+    for paper in papers:
+        parts = parts_of(paper)
+        found += [_exhibit(paper, exhibit, parts[exhibit.id]) for exhibit in paper.exhibits.values()]
+        found += _claims(paper, parts, verdicts)
+        found += [_erratum(paper, erratum) for erratum in errata[paper.id] if not erratum.claim]
+    return found
 
 
-def _exhibit(paper: Paper, exhibit: Exhibit, page: str) -> Hit:
+def _exhibit(paper: Paper, exhibit: Exhibit, part: str) -> Hit:
     label, title = heading(exhibit.id, exhibit.title)
     name = f"{label}: {title}" if label and title else label or title
-    return Hit(KINDS[0], name, f"{page}#{exhibit.id}", cited(paper), words=getattr(exhibit, "caption", ""))
+    place = f"{page_name(paper.id, part)}#{exhibit.id}"
+    return Hit(KINDS[0], name, place, _cited(paper, part), words=getattr(exhibit, "caption", ""))
 
 
-def _claims(paper: Paper, page_of: Mapping[str, str], verdicts: Mapping[tuple[str, str, str], str]) -> Iterable[Hit]:
+def _claims(paper: Paper, parts: Mapping[str, str], verdicts: Mapping[tuple[str, str, str], str]) -> Iterable[Hit]:
     for exhibit in paper.exhibits.values():
         for claim in exhibit.claims.values() if isinstance(exhibit, Claims) else ():
-            place = address(page_of[exhibit.id], exhibit.id, claim.id, CLAIM_COLUMN)
+            part = parts[exhibit.id]
+            place = address(page_name(paper.id, part), exhibit.id, claim.id, CLAIM_COLUMN)
             verdict = verdicts.get((paper.id, exhibit.id, claim.id), "")
-            yield Hit(KINDS[1], claim.text, place, cited(paper), verdict, claim.where)
+            yield Hit(KINDS[1], claim.text, place, _cited(paper, part), verdict, claim.where)
 
 
 def _erratum(paper: Paper, erratum: Erratum) -> Hit:
     first = erratum.first
-    cell = f"{erratum.named(first.row)}, {erratum.named(first.column)}"
     more = f" and {len(erratum.rows) - 1} more" if len(erratum.rows) > 1 else ""
     right = f", should be {erratum.right(first)}" if erratum.right(first) else ""
-    title = f"{erratum.exhibit}, {cell}{more}: printed {first.printed}{right}"
-    return Hit(KINDS[2], title, erratum.address, cited(paper), first.verdict, first.explanation)
+    title = f"{erratum.exhibit}, {erratum.named(first)}{more}: printed {first.printed}{right}"
+    return Hit(KINDS[2], title, erratum.address, _cited(paper, erratum.part), first.verdict, first.explanation)
+
+
+def _cited(paper: Paper, part: str) -> str:
+    return f"{cited(paper)}, part {part}" if part else cited(paper)
