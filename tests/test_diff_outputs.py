@@ -202,6 +202,26 @@ def test_exhibits_and_papers_that_are_gone(diff: Run, replicate: Run) -> None:
     assert diff()[0] == 0
 
 
+def test_a_figure_that_is_new_or_gone_is_shown(diff: Run) -> None:
+    for file in Path("accepted/lab").glob("fig-1.*"):
+        file.with_stem("fig-8").write_bytes(file.read_bytes())
+        file.unlink()
+    diff()
+    text = index()
+    assert re.findall(r"<figcaption>(\w+), drawn from the data", text) == ["New", "Accepted"]
+    assert text.count("<svg") == 2
+    assert "class=\"pair\"" not in text
+
+
+def test_a_figure_that_is_gone_and_damaged_is_named(diff: Run) -> None:
+    for file in Path("accepted/lab").glob("fig-1.*"):
+        file.with_stem("fig-8").write_bytes(file.read_bytes()[:50])
+    status, out, _ = diff()
+    assert status == 1
+    assert "lab/fig-8: was accepted, but is no longer computed" in out
+    assert "Accepted, drawn" not in index()
+
+
 def test_the_page(diff: Run) -> None:
     edit("fig-1.csv", lift)
     edit("table-1.csv", other_value)

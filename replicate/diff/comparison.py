@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -211,7 +212,23 @@ def _no_longer_computed(outcome: Outcome, folder: Path, known: Collection[str] |
         if path.suffix in ENDINGS
     }
     return [
-        ExhibitDiff(paper, exhibit, "", [Change(paper, exhibit, "removed", REMOVED)])
+        ExhibitDiff(
+            paper,
+            exhibit,
+            "",
+            [Change(paper, exhibit, "removed", REMOVED)],
+            before=_former_figure(folder, paper, exhibit),
+        )
         for paper, exhibit in found
         if (paper, exhibit) not in outcome.results
     ]
+
+
+def _former_figure(folder: Path, paper: str, exhibit: str) -> State | None:
+    """Return the accepted state of an exhibit that was a figure, to be shown; of figures alone there is a picture."""
+    if not (folder / paper / f"{exhibit}.png").is_file():
+        return None
+    with contextlib.suppress(AcceptedStateError):
+        state = read_state(folder, paper, exhibit, FigureResult)
+        return None if isinstance(state, str) else state
+    return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from replicate.diff.accepted import FigureState
 from replicate.diff.comparison import ExhibitDiff
@@ -24,6 +24,8 @@ class Drawings:
 
     Attributes
     ----------
+    accepted, new
+        The figure in each state, empty in one that does not exist.
     not_drawn
         Number of curves that moved, but less than those in `differences`.
     error
@@ -57,36 +59,43 @@ def draw_all(figures: Sequence[tuple[ExhibitDiff, str]], jobs: int | None = None
 
 
 def draw(diff: ExhibitDiff, name: str) -> Drawings:
-    """Draw one figure in both states."""
-    if not isinstance(diff.before, FigureState) or not isinstance(diff.after, FigureState):
-        return Drawings()
+    """Draw one figure in the states that there are."""
     try:
-        return _draw(diff, diff.before, diff.after, name)
+        return _draw(diff, name)
     except Exception as error:  # noqa: BLE001  -- the words are there, whatever the pictures do
         return Drawings(error=" ".join(f"{type(error).__name__}: {error}".split()))
 
 
-def _draw(diff: ExhibitDiff, before: FigureState, after: FigureState, name: str) -> Drawings:
+def _draw(diff: ExhibitDiff, name: str) -> Drawings:
+    before, after = (state if isinstance(state, FigureState) else None for state in (diff.before, diff.after))
+    order = list(dict.fromkeys(curve for state in (before, after) if state for curve in state.curves))
+    accepted, new = (
+        _alone(state, f"{diff.name.replace('/', '-')}-{when}", f"{name}, {when}", order) if state else ""
+        for when, state in (("accepted", before), ("new", after))
+    )
+    both = _together(diff, before, after, len(order), name) if before and after else Drawings()
+    return replace(both, accepted=accepted, new=new)
+
+
+def _alone(state: FigureState, id: str, name: str, order: Sequence[tuple[str, str]]) -> str:
+    return inline_svg(picture(state, id, order), id, name, description("", state.axes))
+
+
+def _together(diff: ExhibitDiff, before: FigureState, after: FigureState, count: int, name: str) -> Drawings:
+    """Return the pictures that hold both states, which have so many different curves."""
     id = diff.name.replace("/", "-")
     same = {(str(pair.axes["panel"]), pair.name) for pair in diff.pairs if not pair.moved}
     moved = sorted((pair for pair in diff.pairs if pair.moved), key=lambda pair: -_size(pair))
-    order = list(dict.fromkeys((*before.curves, *after.curves)))
-    one, other = (
-        inline_svg(
-            picture(state, f"{id}-{when}", order), f"{id}-{when}", f"{name}, {when}", description("", state.axes)
-        )
-        for when, state in (("accepted", before), ("new", after))
-    )
     drawn = [pair for pair in moved if pair.values is not None or len(pair.distance[0].points)][:MOST_CURVES]
     both = curves = ""
     words = " ".join(f"{change.text}." for change in diff.changes)
-    if len(same) < len(order):
+    if len(same) < count:
         svg = overlay(before, after, same, f"{id}-overlay")
         both = inline_svg(svg, f"{id}-overlay", f"{name}: accepted and new curves in one picture", words)
     if drawn:
         svg = differences(drawn, f"{id}-differences")
         curves = inline_svg(svg, f"{id}-differences", f"{name}: how far the curves moved", words)
-    return Drawings(one, other, both, curves, len(moved) - len(drawn) if drawn else 0)
+    return Drawings(overlay=both, differences=curves, not_drawn=len(moved) - len(drawn) if drawn else 0)
 
 
 def _size(pair: Pair) -> float:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from replicate.diff.accepted import FigureState
 from replicate.diff.cells import CellChange
 from replicate.diff.changes import relative
 from replicate.diff.comparison import Comparison, ExhibitDiff
@@ -118,8 +119,9 @@ def page(
 
 
 def _has_pictures(diff: ExhibitDiff) -> bool:
-    """Whether it is a figure, and not just a file is missing."""
-    return bool(diff.pairs) and any(change.kind != "new" or change.where != "picture" for change in diff.changes)
+    """Whether it is a figure in one state at least, and not just its picture is missing."""
+    drawn = any(isinstance(state, FigureState) for state in (diff.before, diff.after))
+    return drawn and any(change.where != "picture" for change in diff.changes)
 
 
 def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:
