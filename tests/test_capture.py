@@ -220,6 +220,14 @@ def test_the_svg_is_ready_for_a_page() -> None:
     assert background == "fill: none"
 
 
+@pytest.mark.parametrize("text", ["三個樣本", "日本", "한국", "नमस्ते", "ไทย", "தமிழ்", "తెలుగు", "ខ្មែរ", "עברית", "عربي"])
+def test_letters_of_many_scripts_are_drawn(text: str) -> None:
+    """Of a letter that no font has, matplotlib draws a box and warns, as the last lines make sure."""
+    on_axes(lambda axes: axes.set_title(text))
+    with pytest.warns(UserWarning, match="missing from font"):
+        on_axes(lambda axes: axes.set_title(text + "\N{EGYPTIAN HIEROGLYPH A001}"))
+
+
 def test_the_png_is_a_png_of_the_right_size() -> None:
     def draw(canvas: Canvas) -> None:
         canvas.subplots().plot([1, 2])

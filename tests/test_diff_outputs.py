@@ -210,7 +210,7 @@ def test_a_figure_that_is_new_or_gone_is_shown(diff: Run) -> None:
     text = index()
     assert re.findall(r"<figcaption>(\w+), drawn from the data", text) == ["New", "Accepted"]
     assert text.count("<svg") == 2
-    assert "class=\"pair\"" not in text
+    assert 'class="pair"' not in text
 
 
 def test_a_figure_that_is_gone_and_damaged_is_named(diff: Run) -> None:

@@ -4,7 +4,7 @@ Curves differ in lightness as well as in hue, so that they stay apart for dichro
 lightness is close differ in their dashes; `tests/test_palette.py` holds the distances. A dark page has colours of its
 own for the same curves. Text, axes and ticks use one ink colour and legends one paper colour, both used for nothing
 else, so that `themed` can hand them over to the page that shows the figure. Letters are those of the formulas of the
-pages: STIX, which comes with matplotlib.
+pages: STIX, which comes with matplotlib; behind it stand fonts of other scripts.
 """
 
 from __future__ import annotations
@@ -45,7 +45,6 @@ _STYLE: Any = {
     "figure.facecolor": "none",
     "figure.edgecolor": "none",
     "figure.titlesize": 11,
-    "font.family": ["STIXGeneral", "DejaVu Sans"],  # both ship with matplotlib: the same glyphs everywhere
     "font.size": 10.5,
     "grid.alpha": 0.3,
     "grid.color": GRID,
@@ -82,11 +81,14 @@ def style(hashsalt: str) -> Iterator[None]:
     import matplotlib as mpl
     from cycler import cycler
 
+    from replicate.figures.fonts import families
+
     first = cycler(color=PALETTE) + cycler(linestyle=DASHES)
     second = cycler(color=PALETTE) + cycler(linestyle=[*DASHES[2:], *DASHES[1:3]])
     with mpl.rc_context():
         mpl.rcdefaults()
         mpl.rcParams.update({**_STYLE, "axes.prop_cycle": first.concat(second), "svg.hashsalt": hashsalt})
+        mpl.rcParams["font.family"] = ["STIXGeneral", *families()]
         yield
 
 

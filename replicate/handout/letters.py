@@ -1,4 +1,4 @@
-"""The letters that a printed handout can show: Libertinus, and behind it fonts of many scripts that packages carry.
+"""The letters that a printed handout can show: Libertinus, and behind it the fonts of `replicate.figures.fonts`.
 
 Typst sets an empty box for a letter that no font has, and says nothing. Here it is named with its line.
 """
@@ -6,14 +6,12 @@ Typst sets an empty box for a letter that no font has, and says nothing. Here it
 from __future__ import annotations
 
 import unicodedata
-from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from replicate.errors import TemplateError
+from replicate.figures.fonts import FALLBACKS
 from replicate.plain_text import read_text
 
 if TYPE_CHECKING:
@@ -24,51 +22,8 @@ if TYPE_CHECKING:
 _MAIN = "Libertinus Serif"  # inside the typst package
 
 
-@dataclass(frozen=True)
-class _Font:
-    """A font of a package.
-
-    Attributes
-    ----------
-    file
-        In the package's folder.
-    number
-        In the file, if that is a collection.
-    """
-
-    family: str
-    package: str
-    file: str
-    number: int = 0
-
-    @property
-    def path(self) -> Path:
-        return Path(str(files(self.package))) / self.file
-
-    @cache  # noqa: B019  -- there are few, and they live as long as the process
-    def letters(self) -> frozenset[int]:
-        from fontTools.ttLib import TTFont
-
-        with TTFont(self.path, fontNumber=self.number, lazy=True) as font:
-            return frozenset(font.getBestCmap())
-
-
-def _noto(script: str) -> _Font:
-    """Return the font of a script from a package that carries nothing else."""
-    package = f"fontpkg_noto_sans_{script.lower()}"
-    return _Font(f"Noto Sans {script}", package, f"files/NotoSans{script}[wdth,wght].ttf")
-
-
-# In the order in which they are tried. DejaVu has Arabic, Armenian, Cyrillic, Georgian, Greek, Hebrew, Lao and Latin.
-_KNOWN = (
-    _Font("DejaVu Sans", "matplotlib", "mpl-data/fonts/ttf/DejaVuSans.ttf"),
-    _Font("Noto Sans CJK SC", "noto_cjk_sans_otc", "NotoSansCJK-Regular.ttc", 2),
-    *map(_noto, ("Devanagari", "Khmer", "Tamil", "Telugu", "Thai")),
-)
-_FALLBACKS = tuple(font for font in _KNOWN if find_spec(font.package))  # a distribution may leave the large ones out
-
 #: For a template of Typst, as its input ``fonts``.
-FAMILIES = ",".join((_MAIN, *(font.family for font in _FALLBACKS)))
+FAMILIES = ",".join((_MAIN, *(font.family for font in FALLBACKS)))
 
 
 @cache
@@ -76,7 +31,7 @@ def fonts() -> typst.Fonts:
     """Return the fonts for Typst, and none of the system."""
     import typst
 
-    paths = [str(font.path.parent) for font in _FALLBACKS]
+    paths = [str(font.path.parent) for font in FALLBACKS]
     return typst.Fonts(include_system_fonts=False, include_embedded_fonts=True, font_paths=paths)
 
 
@@ -113,7 +68,7 @@ def can_be_set(text: str) -> bool:
 def _missing(text: str) -> str:
     """Return the first letter that no font at hand has, or nothing."""
     unknown = {letter for letter in set(text) if _is_shown(letter)}
-    for font in _FALLBACKS:  # the next one is read only if there is need
+    for font in FALLBACKS:  # the next one is read only if there is need
         if not unknown:
             return ""
         unknown = {letter for letter in unknown if ord(letter) not in font.letters()}
