@@ -36,8 +36,9 @@ def number_text(value: object, digits: int = DIGITS) -> str:
     """Return a cell as text: numbers with the given significant digits, nothing for ``None`` and NaN."""
     if value is None:
         return ""
-    if isinstance(value, bool) or not isinstance(value, Real):
-        return "" if str(value) in {"<NA>", "NaT"} else str(value)
+    # whether a number is real is a slow question, which the many cells of curves need not be asked
+    if not isinstance(value, float) and (isinstance(value, str | bool) or not isinstance(value, Real)):
+        return "" if (text := str(value)) in {"<NA>", "NaT"} else text
     number = float(value) + 0.0  # no negative zero
     return "" if number != number else f"{number:.{digits}g}"  # noqa: PLR0124  -- NaN
 

@@ -77,7 +77,7 @@ def imports_of(name: str) -> tuple[str, ...]:
 
 
 def _imported(tree: ast.AST, package: str) -> Iterator[str]:
-    for node in ast.walk(tree):
+    for node in _statements(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
@@ -87,6 +87,16 @@ def _imported(tree: ast.AST, package: str) -> Iterator[str]:
                 continue
             yield base
             yield from (f"{base}.{alias.name}" for alias in node.names)
+
+
+def _statements(tree: ast.AST) -> Iterator[ast.AST]:
+    """Yield all statements, in whatever block; an import is no part of an expression, and most nodes are."""
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        yield node
+        blocks = (ast.stmt, ast.excepthandler, ast.match_case)
+        waiting += [child for child in ast.iter_child_nodes(node) if isinstance(child, blocks)]
 
 
 def distributions_used(packages: Iterable[str]) -> set[str]:

@@ -8,7 +8,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 
 import installed_paper
@@ -70,25 +71,39 @@ def edit(site: Path, replacement: str) -> None:
     exhibits.write_text(exhibits.read_text().replace("2**0.5, 3**0.5", replacement).replace("math.log(", "math.log1p("))
 
 
-def prepared(quick: Path, command: str) -> list[str]:
-    """Run a command once, change the paper, and return the command that will then write something else."""
-    here, site = quick / "here", quick / "site"
-    with installed_paper.installed(site):
-        pass  # the files stay
-    if command == "class set":
-        varied_handout.write(site / "lab_paper")
+@pytest.fixture(scope="module")
+def left(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+    """Return the folder that a command has left behind after its first run, the same for all attacks on it."""
 
-    def arguments(command: str, value: str) -> list[str]:
-        jobs = ["-j1"] if command not in ("chart", "whatif", "new") else []
-        return [*(part.format(value) for part in COMMANDS[command]), *jobs]
+    @cache
+    def left(command: str) -> Path:
+        folder = tmp_path_factory.mktemp("left")
+        here, site = folder / "here", folder / "site"
+        with installed_paper.installed(site):
+            pass  # the files stay
+        if command == "class set":
+            varied_handout.write(site / "lab_paper")
+        (here / "build/report").mkdir(parents=True)
+        (here / "build/report/main.tex").write_text("thesis")
+        (here / "roster.csv").write_text("student,name\n1,Ada\n2,Emil\n", encoding="utf-8")
+        for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
+            replicate(folder, asked(earlier, "0.3"))
+        return folder
 
-    (here / "build/report").mkdir(parents=True)
-    (here / "build/report/main.tex").write_text("thesis")
-    (here / "roster.csv").write_text("student,name\n1,Ada\n2,Emil\n", encoding="utf-8")
-    for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
-        replicate(quick, arguments(earlier, "0.3"))
-    edit(site, "2**0.5, 3**0.51")
-    return arguments(command, "0.4")
+    return left
+
+
+def asked(command: str, value: str) -> list[str]:
+    """Return the arguments of a command, with a value where it takes one."""
+    jobs = ["-j1"] if command not in ("chart", "whatif", "new") else []
+    return [*(part.format(value) for part in COMMANDS[command]), *jobs]
+
+
+def prepared(quick: Path, left: Path, command: str) -> list[str]:
+    """Copy what a command has left, change the paper, and return the command that will then write something else."""
+    shutil.copytree(left, quick, symlinks=True, dirs_exist_ok=True)
+    edit(quick / "site", "2**0.5, 3**0.51")
+    return asked(command, "0.4")
 
 
 def replicate(quick: Path, arguments: list[str], states: Path | None = None) -> None:
@@ -107,9 +122,9 @@ def replicate(quick: Path, arguments: list[str], states: Path | None = None) -> 
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_commands_that_are_killed(attack: Attack, quick: Path, command: str) -> None:
+def test_commands_that_are_killed(attack: Attack, quick: Path, left: Callable[[str], Path], command: str) -> None:
     here, states = quick / "here", quick / "states"
-    arguments = prepared(quick, command)
+    arguments = prepared(quick, left(command), command)
     old = tree(here)
     replicate(quick, arguments, states)
     new = tree(here)
@@ -134,10 +149,12 @@ def test_commands_that_are_killed(attack: Attack, quick: Path, command: str) -> 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system with fork")
 @pytest.mark.parametrize("how", ["once", "full"])
 @pytest.mark.parametrize("command", COMMANDS)
-def test_commands_whose_disk_fails(attack: Attack, quick: Path, command: str, how: str) -> None:
+def test_commands_whose_disk_fails(
+    attack: Attack, quick: Path, left: Callable[[str], Path], command: str, how: str
+) -> None:
     if not attack.everything and how == "once" and command not in ("report", "accept"):
         pytest.skip("in the long form only")
-    arguments = prepared(quick, command)
+    arguments = prepared(quick, left(command), command)
     every = "1" if attack.everything else "17"
     done = run("failing_steps.py", how, str(quick / "here"), str(quick / "site"), every, *arguments, cwd=quick / "here")
     assert done.returncode == 0, done.stderr

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 
+from replicate.exhibits.printed import PrintedValue
 from replicate.loops import PID
 from replicate.papers.panagopoulos import paper
 
 
 def printed_number(table: str, row: str, column: str) -> float:
     """Return a printed number; ``nan`` where the cell is blank."""
-    return paper.printed_numbers(table).get((row, column), math.nan)
+    cell = paper.printed_cells(table).get((row, column))
+    return math.nan if cell is None else float(PrintedValue(cell).value)
 
 
 def printed_pid(table: str, row: str) -> PID:
