@@ -12,6 +12,7 @@ from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
     from replicate.exhibits import Paper
+    from replicate.run.outcome import Outcome
 
 
 @computing
@@ -114,7 +115,6 @@ def check(
     from replicate.handout.legibility import unreadable_handouts
     from replicate.handout.own_code import LONGEST_RUN
     from replicate.report.texts import unreadable
-    from replicate.whatif import unreadable_loops
 
     chosen = run.within.papers(papers or ())
     baseline = accepted_folder(run.within, chosen, accepted)
@@ -129,7 +129,18 @@ def check(
     if outcome.complete and not outcome.failures:  # a text may ask for a result that failed or was not computed
         seconds = min(LONGEST_RUN, run.unit_timeout)
         handouts = unreadable_handouts(outcome.papers, outcome.results, outcome.judgement.verdicts, seconds)
-    broken = handouts | unreadable(outcome) | unreadable_loops(outcome.papers, outcome.results)
+    broken = handouts | unreadable(outcome) | _unreadable_loops(outcome)
     outcome = replace(outcome, broken=outcome.broken | broken)
     status = BROKEN if comparison.broken else DIFFERS if problems else 0
     exit_with(run.within, outcome, status, problems_shown=True)
+
+
+def _unreadable_loops(outcome: Outcome) -> dict[str, str]:
+    """Return what `unreadable_loops` does; without loops, nothing that computes with them is loaded."""
+    from replicate.exhibits.results import TableResult
+
+    if not any(isinstance(one, TableResult) and one.trials.all for one in outcome.results.values()):
+        return {}
+    from replicate.whatif import unreadable_loops
+
+    return unreadable_loops(outcome.papers, outcome.results)

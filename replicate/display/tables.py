@@ -236,7 +236,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
 def _trials(result: TableResult) -> dict[str, list[tuple[str, str]]]:
     """Return by row the cases that can be tried out, each with its address."""
     found: dict[str, list[tuple[str, str]]] = {}
-    for row, case, *loop in (*result.trials.declared, *result.trials.computed):
+    for row, case, *loop in result.trials.all:
         found.setdefault(row, []).append((case, trial_address(*loop)))
     return found
 

@@ -47,6 +47,11 @@ class TableTrials:
     computed: tuple[Trial, ...] = ()
     error: str = ""
 
+    @property
+    def all(self) -> tuple[Trial, ...]:
+        """Those declared, then those computed."""
+        return (*self.declared, *self.computed)
+
 
 def declared_trials(trials: Trials | None, rows: Collection[str] = ()) -> tuple[Trial, ...]:
     """Return the loops that a table declares, in its order.

@@ -95,7 +95,7 @@ def unreadable_loops(papers: Iterable[Paper], results: Results) -> dict[str, str
     found: dict[str, str] = {}
     for paper in papers:
         for exhibit, trials in _trials(paper, results):
-            for row, case, plant, controller in (*trials.declared, *trials.computed):
+            for row, case, plant, controller in trials.all:
                 try:
                     parse_plant(plant)
                     parse_controller(controller)
