@@ -393,13 +393,6 @@ def test_numbered_exhibits_must_be_in_the_inventory() -> None:
     assert judgement.problems == judgement.unused == [problem]
 
 
-def test_an_excuse_is_of_use_where_another_reading_gives_the_print() -> None:
-    run = results(frame(math.nan, 7.0, 8.0, 9.0), frame())
-    held = judged(entry("unavailable"), run=run)
-    assert (verdict(held).verdict, held.problems) == ("reconstructed", [])
-    assert judged(entry("method"), run=run).unused
-
-
 def test_explanations_pull_results_of_any_exhibit() -> None:
     text = (
         "{{ row }} {{ column }}: {{ printed('table-1', 'A', 'x') }} for {{ value('table-1', 'A', 'x', 'authors') }}, "

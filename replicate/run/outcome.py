@@ -11,7 +11,6 @@ from replicate.exhibits import Paper
 from replicate.exhibits.results import Results
 from replicate.run.limits import UNIT_TIMEOUT
 from replicate.run.parallel import Executor, Progress, failures, run
-from replicate.verdicts.blanks import without_blanks
 from replicate.verdicts.inputs import Inputs, read_inputs
 from replicate.verdicts.judge import judge
 from replicate.verdicts.rows import Judgement
@@ -121,7 +120,6 @@ def recompute(
         unit_timeout=unit_timeout,
         executor=executor,
     )
-    results = without_blanks(papers, results, inputs)
     judgements = {}
     for paper in papers:
         exhibits = None if selection is None else [id for owner, id in selection if owner == paper.id]

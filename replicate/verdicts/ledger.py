@@ -51,7 +51,6 @@ Cause = Literal[
 ]
 CAUSES: tuple[Cause, ...] = get_args(Cause)
 CORRECTING_CAUSES: frozenset[Cause] = frozenset({"misprint", "print-or-copy", "scan"})
-EXCUSING_CAUSES: frozenset[Cause] = frozenset({"measured", "unavailable"})  # why nothing is computed
 
 _CONSEQUENCES: tuple[Consequence, ...] = get_args(Consequence)
 

@@ -12,7 +12,7 @@ from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.consequences import with_consequences
 from replicate.verdicts.corrections import Correction, correction
-from replicate.verdicts.ledger import CORRECTING_CAUSES, EXCUSING_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
 from replicate.verdicts.matches import other_convention, reading_matches, share_points
 from replicate.verdicts.rows import ERRORS, Computed, Judgement, ValueVerdict, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
@@ -140,17 +140,15 @@ class TableJudge:
     def _assign(self, open_keys: set[Key]) -> Iterator[tuple[Key, LedgerEntry]]:
         """Give each value that does not hold its ledger entry, and report entries that do not apply."""
         taken: set[Key] = set()
-        nothing = {key for key, one in self.computed[AS_WRITTEN].items() if one.match.kind == "none"}
         for entry in self.ledger.of(self.table.id):
             place = self.ledger.place(entry)
-            excused = nothing if entry.cause in EXCUSING_CAUSES else set()  # also where another reading gives the print
             if entry.explicit:
                 named = [(row, column) for row in entry.rows for column in entry.columns]
                 self._unused(
                     f"{place}: {self.table.id} {_cell(key)} "
                     + ("no longer differs" if key in self.printed else "is blank in the paper")
                     for key in named
-                    if key not in open_keys | excused
+                    if key not in open_keys
                 )
                 found = [key for key in named if key in open_keys]
             else:
@@ -159,7 +157,7 @@ class TableJudge:
                     for key in self.printed
                     if key in open_keys - taken and entry.covers(*key) and not self._by_other_convention(key)
                 ]
-                if not found and not any(entry.covers(*key) for key in excused):
+                if not found:
                     self._unused([f"{place}: {self.table.id}: explains no printed value that differs"])
             right = [key for key in found if self._correction_holds(key, entry)]
             taken.update(right)
