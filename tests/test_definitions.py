@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from replicate.errors import PaperDefinitionError
-from replicate.exhibits import Paper
+from replicate.exhibits import Near, Paper
 from replicate.exhibits.definitions import check_id
 
 Run = Callable[..., tuple[int, str, str]]
@@ -146,6 +147,11 @@ WRONG: list[tuple[Callable[[], object], str]] = [
     (lambda: with_table(rows=("a", 2)), "an element of rows is 2 (int)"),
     (lambda: with_table(labels={"a": 1}), "labels of 'a' is 1 (int)"),
     (lambda: with_table(units="s"), "units is 's' (str); expected: texts by key"),
+    (lambda: with_table(near=2), "near is 2 (int); expected: Near(...)"),
+    (lambda: with_table(notation={"a": "percent"}), "notation of 'a' is 'percent' (str); expected: Notation(...)"),
+    (lambda: with_table(notation=[]), "notation is [] (list); expected: Notation(...)"),
+    (lambda: Near(units=-1), "near: units is -1; expected: a number, 0 or more"),
+    (lambda: Near(fraction=math.nan), "near: fraction is nan; expected: a number, 0 or more"),
     (lambda: with_table(kind="tabel"), "kind is 'tabel'; allowed: 'table', 'example', 'formula'"),
     (lambda: with_figure("fig-1", size="big"), "size is 'big'; expected: width and height in inches"),
     (lambda: with_figure("fig-1", size=(1.0, -1.0)), "size is (1.0, -1.0)"),
@@ -178,6 +184,11 @@ PLACES = [
         '"decimal", "Log',
         '"as-written", "Log',
         "lab_paper/exhibits.py:21: reading of table-1 'as-written' is defined twice",
+    ),
+    (
+        "\n@table.reading",
+        "\n# @table.reading",
+        "lab_paper/exhibits.py: table-1 has no reading; expected: one or more, ",
     ),
     ('"as-written", "As', '"first", "As', "lab_paper/exhibits.py:14: table-1: the first reading must be 'as-written'"),
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime as dt
 import math
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -131,7 +132,7 @@ def test_each_print_has_its_rule(text: str, notation: Notation, equal: object, d
         ("2003-05-17", Notation(date=True), 2003.4, "the number 2003.4; expected: a date"),
     ],
 )
-def test_what_cannot_be_compared_is_no_result(text: str, notation: Notation, given: object, message: str) -> None:
+def test_what_cannot_be_compared_is_no_result(text: str, notation: Notation, given: Any, message: str) -> None:
     table = Table("table-1", "table", "One cell", rows=("A",), columns=("x",), notation=notation)
     printed = {("A", "x"): PrintedValue(text, notation=notation)}
     with pytest.raises(PaperDefinitionError, match=f"row 'A', column 'x' holds .*{message}"):
@@ -150,7 +151,7 @@ def test_what_cannot_be_compared_is_no_result(text: str, notation: Notation, giv
         ("", PLAIN, "where nothing is printed, anything"),
     ],
 )
-def test_what_can_be_compared_is_a_result(text: str, notation: Notation, given: object) -> None:
+def test_what_can_be_compared_is_a_result(text: str, notation: Notation, given: Any) -> None:
     table = Table("table-1", "table", "One cell", rows=("A",), columns=("x",), notation=notation)
     printed = {("A", "x"): PrintedValue(text, notation=notation)} if text else {}
     assert checked_frame(table, table.frame({"A": [given]}), printed).size == 1
@@ -266,6 +267,31 @@ def test_a_number_that_stands_for_several_cells_holds_if_all_do() -> None:
         (row,) = judge(made, results, Inputs(printed)).verdicts
         assert row.verdict == verdict
         assert row.computed == f"{other if verdict == 'unexplained' else 1.0:g}"
+
+
+@pytest.mark.parametrize(
+    ("second", "message"),
+    [
+        (
+            "B,2.0,3",
+            "table-1.csv:3: row 'B', column 'x' is not blank, though the number in row 'A', column 'x' stands f",
+        ),
+        ("B,,3", ""),
+    ],
+)
+@pytest.mark.parametrize("first", ["A,1.0,2", "A,,2"])
+def test_a_number_that_stands_for_several_cells_is_entered_once(
+    first: str, second: str, message: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "table-1.csv"
+    path.write_text(f"row,x,y\n{first}\n{second}\n", encoding="utf-8")
+    table = paper(spans={("A", "x"): [("B", "x")]}).exhibits["table-1"]
+    assert isinstance(table, Table)
+    message = (
+        message if ",1.0," in first else "table-1.csv: row 'A', column 'x' is blank, though it stands for other ce"
+    )
+    with pytest.raises(PrintedFileError, match=message) if message else nullcontext():
+        read_printed(path, table)
 
 
 def test_what_is_near_is_declared_for_a_table() -> None:

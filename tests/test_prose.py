@@ -88,11 +88,11 @@ def test_pulls_results(template: str, text: str) -> None:
         ),
         (
             "{{ printed('table-1', 'A', 'z') }}",
-            "printed('table-1', 'A', 'z'): the paper prints no value there",
+            "printed('table-1', 'A', 'z'): the paper prints no value there; columns in that row: 'x', 'y'",
         ),
         (
             "{{ verdict('claims', 'huge') }}",
-            "verdict('claims', 'huge', 'claim'): the paper prints no value there",
+            "verdict('claims', 'huge', 'claim'): the paper prints no value there; rows: 'big', 'smooth'",
         ),
         (
             "{{ count(verdict='right') }}",

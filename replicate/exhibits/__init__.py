@@ -4,9 +4,9 @@ from replicate.exhibits.claims import Claim, Claims, ClaimVerdict, Consequence, 
 from replicate.exhibits.comparisons import bound, rank
 from replicate.exhibits.drawn import Chart, Figure, FigureKind
 from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.near import Near
 from replicate.exhibits.notation import Notation
 from replicate.exhibits.paper import Paper
-from replicate.exhibits.printed import Near
 from replicate.exhibits.readings import AS_WRITTEN, Reading
 from replicate.exhibits.vocabulary import Exhibit, NotComputable, Table, TableKind
 

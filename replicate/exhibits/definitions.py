@@ -138,6 +138,18 @@ def check_one_of(what: str, name: str, value: object, allowed: Sequence[object])
         refuse(f"{what}: {name} is {value!r}; allowed: {', '.join(repr(one) for one in allowed)}")
 
 
+def check_kind(what: str, name: str, value: object, kind: type) -> None:
+    """Check that a field is of a class of the vocabulary.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it is not.
+    """
+    if not isinstance(value, kind):
+        refuse(f"{what}: {name} is {_typed(value)}; expected: {kind.__name__}(...)")
+
+
 def check_size(what: str, size: object) -> None:
     """Check width and height of a figure in inches.
 

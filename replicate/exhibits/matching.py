@@ -12,7 +12,8 @@ from decimal import ROUND_HALF_UP, Decimal, localcontext
 from functools import partial
 from typing import Literal
 
-from replicate.exhibits.printed import USUAL, Near, PrintedValue
+from replicate.exhibits.near import USUAL, Near
+from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.statements import compare_statement
 
 MatchKind = Literal["equal", "consistent", "near", "differs", "none"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.resources
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
@@ -16,9 +17,11 @@ from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
 from replicate.exhibits.definitions import as_keys, check_id, check_lists, check_paper_id, check_texts, refuse
 from replicate.exhibits.drawn import Chart, Figure, FigureKind
+from replicate.exhibits.file_names import display_name
+from replicate.exhibits.near import USUAL, Near
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import in_listed_order
-from replicate.exhibits.printed import USUAL, Key, Near, PrintedValue, read_transcription
+from replicate.exhibits.printed import Key, PrintedValue, read_transcription
 from replicate.exhibits.read_off import COLUMN, read_points, values_at, with_points
 from replicate.exhibits.readings import AS_WRITTEN
 from replicate.exhibits.vocabulary import Exhibit, NotComputable, Table, TableKind
@@ -84,7 +87,7 @@ class Paper:
         Raises
         ------
         PaperDefinitionError
-            If an exhibit is defined in a module that `modules` does not list.
+            If an exhibit is defined in a module that `modules` does not list, or a table has no reading.
         """
         if not self._loaded:
             for module in self.modules:
@@ -100,6 +103,9 @@ class Paper:
             if isinstance(exhibit, Claims):
                 exhibit.claims = in_listed_order(exhibit.claims, self.package, self.modules)
             elif isinstance(exhibit, Table):
+                if not exhibit.readings:
+                    file = display_name(Path(str(sys.modules[exhibit.module].__file__)))
+                    refuse(f"{file}: {exhibit.id} has no reading; expected: one or more, '{AS_WRITTEN}' first")
                 others = dict(exhibit.readings)
                 first = {id: others.pop(id) for id in (AS_WRITTEN,) if id in others}
                 exhibit.readings = first | in_listed_order(others, self.package, self.modules)

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import cached_property
@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 from replicate.errors import PrintedFileError
 from replicate.exhibits.file_names import display_name
+from replicate.exhibits.near import USUAL, Near
 from replicate.exhibits.notation import PLAIN, Notation, Statement
 from replicate.exhibits.numerals import LOST, last_place
 from replicate.exhibits.statements import scaled
@@ -32,25 +33,6 @@ if TYPE_CHECKING:
 _SAID_DIGITS = 12  # of a repeating decimal, which says them all; numbers are compared with so many
 
 Key = tuple[str, str]
-
-
-@dataclass(frozen=True)
-class Near:
-    """What is near a printed value: within some units of its last digit or a fraction of it, whichever is more.
-
-    Attributes
-    ----------
-    units
-        Units of the last printed digit.
-    fraction
-        Fraction of the printed value.
-    """
-
-    units: float = 2.0
-    fraction: float = 0.01
-
-
-USUAL = Near()
 
 
 @dataclass(frozen=True)
@@ -189,12 +171,15 @@ def read_printed(path: Traversable | Path, table: Table) -> dict[Key, PrintedVal
     (header_line, columns), body = _grid(path, name, table.columns)
     _check_keys(f"{name}:{header_line}", "column", [(header_line, key) for key in columns], table.columns)
     _check_keys(name, "row", [(line, row) for line, row, _ in body], table.rows)
-    return {
+    found = {
         (row, column): _value(name, (text, row, column, line), table)
         for line, row, texts in body
         for column, text in zip(columns, texts, strict=True)
         if not table.notation_of(column).is_blank(text)
     }
+    for entered, others in table.spans.items():
+        _check_once_entered(name, found, entered, others)
+    return found
 
 
 @dataclass(frozen=True)
@@ -285,6 +270,18 @@ def _check_once(place: str, kind: str, found: Sequence[tuple[int, str]]) -> None
             msg = f"{where}: {kind} '{key}' appears twice{also}"
             raise PrintedFileError(msg)
         first_line[key] = line
+
+
+def _check_once_entered(name: str, found: Mapping[Key, PrintedValue], entered: Key, others: Iterable[Key]) -> None:
+    """Demand that a number that stands for several cells is entered in the one that its table names, and there only."""
+    if entered not in found:
+        msg = f"{name}: row '{entered[0]}', column '{entered[1]}' is blank, though it stands for other cells, too"
+        raise PrintedFileError(msg)
+    for other in others:
+        if other in found:
+            where = f"{name}:{found[other].line}: row '{other[0]}', column '{other[1]}'"
+            msg = f"{where} is not blank, though the number in row '{entered[0]}', column '{entered[1]}' stands for it"
+            raise PrintedFileError(msg)
 
 
 def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expected: Sequence[str]) -> None:

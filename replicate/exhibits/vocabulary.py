@@ -18,12 +18,13 @@ from typing import TYPE_CHECKING, Literal, get_args
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
 from replicate.exhibits.comparisons import Comparison
-from replicate.exhibits.definitions import check_id, check_lists, check_mappings, check_one_of, check_texts
+from replicate.exhibits.definitions import check_id, check_kind, check_lists, check_mappings, check_one_of, check_texts
 from replicate.exhibits.drawn import Figure, FigureKind
 from replicate.exhibits.exclusion import Rule
+from replicate.exhibits.near import USUAL, Near
 from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
-from replicate.exhibits.printed import USUAL, Key, Near
+from replicate.exhibits.printed import Key
 from replicate.exhibits.read_off import Point
 from replicate.exhibits.readings import AS_WRITTEN, Compute, Reading
 from replicate.exhibits.rows import Row, frame_of_rows
@@ -116,6 +117,12 @@ class Table:
         check_texts(what, title=self.title, caption=self.caption)
         check_lists(what, rows=self.rows, columns=self.columns)
         check_mappings(what, labels=self.labels, units=self.units)
+        check_kind(what, "near", self.near, Near)
+        if not isinstance(self.notation, Mapping):
+            check_kind(what, "notation", self.notation, Notation)
+        else:
+            for column, notation in self.notation.items():
+                check_kind(what, f"notation of '{column}'", notation, Notation)
 
     def check(self) -> None:
         """Check that what is declared of rows and columns speaks of rows and columns of the table.

@@ -225,7 +225,11 @@ class Prose:
             if isinstance(result, TableResult) and AS_WRITTEN in result.errors:
                 msg = f"{where}: the reading '{AS_WRITTEN}' failed: {result.errors[AS_WRITTEN]}"
                 raise _MissingResultError(msg)
-            msg = f"{where}: the paper prints no value there"
+            printed = [key[1:] for key in self._by_cell if key[0] == exhibit]
+            columns = dict.fromkeys(other for one, other in printed if one == row)
+            allowed = f"columns in that row: {_listed(columns)}" if columns else ""
+            allowed = allowed or f"rows: {_listed(dict.fromkeys(one for one, _ in printed))}"
+            msg = f"{where}: the paper prints no value there; {allowed}"
             raise _MissingResultError(msg)
         return found
 
