@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import importlib
 import json
 import math
 import os
@@ -11,6 +12,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import zipfile
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
@@ -20,6 +22,7 @@ import installed_paper
 import numpy as np
 import pandas as pd
 import pytest
+import synthetic
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -496,3 +499,17 @@ def test_inner_parts_of_installed_packages_count_with_their_package() -> None:
     assert pd.DataFrame().empty
     assert scipy.linalg.norm([0.0]) == 0.0
     assert "_cyutility" not in modules_of("lab_paper", ["lab_paper"])
+
+
+def test_a_module_in_an_archive_counts_with_the_archive(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    paper, archive = synthetic.paper(tmp_path), tmp_path.with_name(f"{tmp_path.name}.zip")
+    monkeypatch.syspath_prepend(str(archive))
+    found = []
+    for content in ("A = 1", "A = 2"):
+        with zipfile.ZipFile(archive, "w") as opened:
+            opened.writestr("archived.py", content)
+        importlib.invalidate_caches()
+        importlib.import_module("archived")
+        found.append(Looked().record(paper, paper.exhibits["table-1"], ["archived"])["module"]["archived"])
+    monkeypatch.delitem(sys.modules, "archived")
+    assert len({*found, "missing"}) == 3

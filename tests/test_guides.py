@@ -3,9 +3,10 @@
 import doctest
 import re
 import runpy
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import typer
@@ -80,6 +81,20 @@ def test_commands_exist(page: Path) -> None:
     named = [name for block in blocks for name in re.findall(r"^replicate (\w+)", block, flags=re.MULTILINE)]
     assert named
     assert set(named) <= set(command.commands)
+
+
+def _options(command: Any, name: str = "replicate") -> Iterator[tuple[str, str]]:
+    """Yield every option of a command and of those below it, with the name of the command."""
+    yield from ((name, option) for parameter in command.params for option in parameter.opts if option.startswith("--"))
+    for below in getattr(command, "commands", {}).values():
+        yield from _options(below, f"{name} {below.name}")
+
+
+def test_every_option_is_documented() -> None:
+    text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    options = list(_options(get_command(app)))
+    assert ("replicate figures accept", "--only") in options
+    assert [one for one in options if not re.search(rf"{one[1]}(?![\w-])", text)] == []
 
 
 def test_the_commands_of_the_first_guide_do_what_it_says(

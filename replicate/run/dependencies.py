@@ -145,7 +145,9 @@ class Looked:
     def _module(self, name: str) -> str:
         if name not in self._modules:
             path = file_of(name)
-            self._modules[name] = self._digest(path) if path is not None and path.is_file() else _GONE
+            places = (path, *path.parents) if path is not None else ()  # a module in an archive has that as a parent
+            file = next((place for place in places if place.is_file()), None)
+            self._modules[name] = self._digest(file) if file is not None else _GONE
         return self._modules[name]
 
     def _data(self, paper: Paper, name: str) -> str:
