@@ -7,6 +7,7 @@ import io
 import re
 import xml.etree.ElementTree as ET
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 
 import nbclient
@@ -17,6 +18,7 @@ import toy_class
 import typst
 from matplotlib.figure import Figure
 
+from replicate.display.words import MATCHES, VERDICTS
 from replicate.errors import ReplicateError
 from replicate.exhibits.variants import rounded
 from replicate.handout import Form
@@ -26,6 +28,7 @@ from replicate.handout.edition import Document, edition, without_solutions
 from replicate.handout.letters import fonts
 from replicate.handout.notebook import notebook
 from replicate.handout.printout import pdf
+from replicate.handout.tree import string
 from replicate.papers.bayhan.handout import exercises as bayhan
 
 W = "{http://schemas.openxmlformats.org/wordprocessingml/2006/main}"
@@ -73,6 +76,13 @@ def test_a_latex_document_asks_for_the_figures_beside_it(sheet: Document) -> Non
     assert sorted(opened) == sorted(closed)
     assert files[picture].startswith(b"%PDF-")
     assert files == tex(sheet)
+
+
+def test_signs_of_tables_are_commands_of_latex(sheet: Document) -> None:
+    signs = "".join(word.symbol for word in VERDICTS.values()) + "".join(sign for sign, _ in MATCHES.values())
+    row = {"t": "Para", "c": [string(f"{signs}\N{FIGURE SPACE}\N{PUNCTUATION SPACE}\N{MINUS SIGN}1")]}
+    source = tex(replace(sheet, blocks=[row]))[".tex"].decode()
+    assert {letter for letter in source if not letter.isascii()} == set()
 
 
 def test_a_typst_document_is_one_file_that_typst_sets(sheet: Document) -> None:

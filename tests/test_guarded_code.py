@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import re
 import signal
 import tempfile
@@ -112,9 +114,18 @@ def numbers(count: int) -> Iterator[int]:
 def ended_early() -> Iterator[int]:
     with watched(Place(__file__, "here.py", "it")):
         yield 1
-        import os
-
         os._exit(3)
+
+
+def on_a_full_disk() -> Iterator[int]:
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    yield 1
+
+
+def test_a_full_disk_for_temporary_files_is_one_line() -> None:
+    with GuardedProcess(5.0) as process, pytest.raises(ReplicateError) as found:
+        list(process.stream(on_a_full_disk))
+    assert str(found.value) == f"a process of this run cannot go on: {os.strerror(errno.ENOSPC)}"
 
 
 def test_what_a_function_yields_arrives_in_order_and_the_process_serves_again() -> None:

@@ -87,6 +87,19 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
         (("digits=3", "digits=3, mistakes=[1]"), r"mine/exercise\.py:9: .*'mistakes' of an answer is \[1\], allowed"),
         (("digits=3", "digits=3, carried=1.0"), r"mine/exercise\.py:9: .*'carried' of an answer is 1\.0, allowed"),
         (("digits=3", "digits=3, asked=3"), r"mine/exercise\.py:9: .*'asked' of an answer is 3, allowed: a text"),
+        (("digits=3", "digits=3, mistakes={'a': 1e999}"), r"mine/exercise\.py:9: .*'mistakes' .*allowed: .* finite"),
+        (
+            ('inputs["x"] / 7', 'inputs.pop("x")'),
+            r"mine/exercise\.py:9: .*'mappingproxy' object has no attribute 'pop'",
+        ),
+        (
+            ('Answer(inputs["x"] / 7, digits=3)', "object()"),
+            r"mine/exercise\.py:8: .*returns object, allowed: an Answer",
+        ),
+        (
+            ("rng.randint(20, 90)", "__import__('random').random()"),
+            r"mine/exercise\.py:4: variant\(rng\) draws other numbers for the same student and seed",
+        ),
         (('inputs["x"] / 7', '"three"'), r"mine/exercise\.py:9: .*'value' of an answer is 'three', allowed: a number"),
         (('inputs["x"] / 7', 'float("nan")'), r"mine/exercise\.py:9: .*does not exist: \[nan"),
         (('{"x": rng.randint(20, 90)}', "None"), r"mine/exercise\.py:4: variant\(rng\) fails: .*returns None, allowed"),

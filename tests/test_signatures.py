@@ -70,6 +70,12 @@ def test_only_what_an_earlier_run_wrote_is_replaced(tmp_path: Path, first: bytes
     assert path.read_bytes() == signed(second)
 
 
+@pytest.mark.skipif(not Path("/dev/zero").is_char_device(), reason="needs a system with devices")
+def test_a_device_that_never_ends_is_not_read() -> None:
+    with pytest.raises(OutputError, match="zero: is in the way, and is not a file"):
+        write_signed(Path("/dev/zero"), SVG)
+
+
 def test_a_link_stays_one_and_a_folder_is_refused(tmp_path: Path) -> None:
     place, link = tmp_path / "place" / "a.svg", tmp_path / "link.svg"
     write_signed(place, SVG)

@@ -70,7 +70,7 @@ class Answer:
             ("digits", self.digits is None or _is_count(self.digits), "a whole number from 1 to 15"),
             ("tolerance", self.tolerance is None or _is_real(self.tolerance), "a number"),
             ("carried", _are_numbers(self.carried), "numbers: (1.2,)"),
-            ("mistakes", _are_named_numbers(self.mistakes), "a dictionary of numbers by the mistakes' words"),
+            ("mistakes", _are_named_numbers(self.mistakes), "a dictionary of finite numbers by their words"),
             ("asked", isinstance(self.asked, str), "a text"),
         ):
             if not holds:
@@ -122,7 +122,9 @@ def _are_numbers(value: object) -> bool:
 
 
 def _are_named_numbers(value: object) -> bool:
-    return isinstance(value, Mapping) and all(isinstance(key, str) and _is_real(one) for key, one in value.items())
+    return isinstance(value, Mapping) and all(
+        isinstance(key, str) and _is_real(one) and math.isfinite(one) for key, one in value.items()
+    )
 
 
 Answers = Mapping[str, Answer]

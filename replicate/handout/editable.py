@@ -27,6 +27,19 @@ from replicate.handout.tree import (
 from replicate.resources import templates_dir
 
 _DATE = "315532800"  # 1 January 1980, the first that a zip file can tell: a document tells no time
+# What tables hold besides words and numbers: no font of pdfLaTeX has it.
+_SIGNS = {
+    "\N{FIGURE SPACE}": r"\phantom{0}",
+    "\N{PUNCTUATION SPACE}": r"\phantom{.}",
+    "✓": r"\ensuremath{\checkmark}",
+    "≈": r"\ensuremath{\approx}",
+    "≠": r"\ensuremath{\neq}",
+    "∈": r"\ensuremath{\in}",
+    "↻": r"\ensuremath{\circlearrowright}",
+    "⊘": r"\ensuremath{\oslash}",
+    "✎": r"\ensuremath{\dagger}",
+    "\N{MINUS SIGN}": r"\ensuremath{-}",
+}
 _TEXT_WIDTH = 15.5  # cm, of a figure as wide as the text
 
 
@@ -53,7 +66,10 @@ def tex(document: Document) -> dict[str, bytes]:
     stem = f"{document.paper.id}-{document.form.split(':')[1]}" if document.form else document.paper.id
     figures = {f"{stem}-{name}.pdf": figure_pdf(one.svg) for name, one in document.drawings.items()}
     made = _pandoc(document, "latex", figures, "--standalone", "-V", "geometry:margin=25mm", "-V", "papersize:a4")
-    return {".tex": made, **figures}
+    text = made.decode()
+    for sign, command in _SIGNS.items():
+        text = text.replace(sign, command)
+    return {".tex": text.encode(), **figures}
 
 
 def typ(document: Document) -> bytes:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from numbers import Real
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from replicate.errors import PaperDefinitionError
@@ -124,43 +125,48 @@ def _same(line: int, _: str) -> int:
 
 def _inputs(value: Any) -> Inputs:
     if not isinstance(value, Mapping) or not value:
-        msg = f"returns {value!r}, allowed: a dictionary of numbers or texts"
+        msg = f"returns {_named(value)}, allowed: a dictionary of numbers or texts"
         raise TypeError(msg)
     for key, one in value.items():
         if not isinstance(one, str | Real) or (isinstance(one, Real) and not math.isfinite(one)):
-            msg = f"the field '{key}' is {one!r}, allowed: a finite number or a text"
+            msg = f"the field '{key}' is {_named(one)}, allowed: a finite number or a text"
             raise TypeError(msg)
-    return value
+    return MappingProxyType(dict(value))  # that no later function changes
 
 
 def _answers(value: Any) -> Answers:
     found = {"answer": value} if isinstance(value, Answer) else value
     if not isinstance(found, Mapping) or not found:
-        msg = f"returns {value!r}, allowed: an Answer, or a dictionary of them"
+        msg = f"returns {_named(value)}, allowed: an Answer, or a dictionary of them"
         raise TypeError(msg)
     for key, one in found.items():
         if not isinstance(one, Answer):
-            msg = f"the field '{key}' is {one!r}, allowed: an Answer"
+            msg = f"the field '{key}' is {_named(one)}, allowed: an Answer"
             raise TypeError(msg)
     return found
 
 
+def _named(value: Any) -> str:
+    """Return a value as a message shows it: an object without a text of its own by its type, not by its address."""
+    return type(value).__name__ if f"{id(value):x}" in repr(value) else repr(value)
+
+
 def _values(value: Any) -> Values:
     if not isinstance(value, Mapping):
-        msg = f"returns {value!r}, allowed: a dictionary of numbers or texts"
+        msg = f"returns {_named(value)}, allowed: a dictionary of numbers or texts"
         raise TypeError(msg)
     return value
 
 
 def _files(value: Any) -> Mapping[str, str]:
     if not isinstance(value, Mapping):
-        msg = f"returns {value!r}, allowed: a dictionary of texts"
+        msg = f"returns {_named(value)}, allowed: a dictionary of texts"
         raise TypeError(msg)
     for name, text in value.items():
         if not isinstance(name, str) or not _FILE_NAME.fullmatch(name):
             msg = f"names a file {name!r}, allowed: letters, digits, '.', '_' and '-', say 'data.csv'"
             raise ValueError(msg)
         if not isinstance(text, str):
-            msg = f"the file '{name}' is {text!r}, allowed: a text"
+            msg = f"the file '{name}' is {_named(text)}, allowed: a text"
             raise TypeError(msg)
     return value

@@ -13,6 +13,7 @@ import runpy
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from replicate.errors import PaperDefinitionError, ReplicateError
@@ -153,13 +154,17 @@ def own_variation(program: Path, name: str) -> Variation:
             raise
         msg = f"{source}:{code.line_of(_defining('requires'))}: {error}"
         raise PaperDefinitionError(msg) from error
-    if not variation.original:
-        variation = replace(variation, original=drawn)
+    if replace(variation).drawn("original") != drawn:  # a copy has drawn nothing yet
+        line = code.line_of(_defining("variant"))
+        msg = f"{source}:{line}: variant(rng) draws other numbers for the same student and seed; draw from rng alone"
+        raise PaperDefinitionError(msg)
+    original = MappingProxyType(dict(variation.original)) if variation.original else drawn
+    variation = replace(variation, original=original)
     variation.answers(drawn)
-    variation.answers(variation.original)
+    variation.answers(original)
     return variation
 
 
 def _defining(field: str) -> str:
     """Return the pattern of the line that defines a name."""
-    return rf"^(def\s+)?{field}\b"
+    return rf"^((async\s+)?def\s+)?{field}\b"

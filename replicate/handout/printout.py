@@ -15,7 +15,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +33,7 @@ from replicate.handout.tree import (
     Element,
     attribute,
     classes,
+    div,
     elements,
     raw_block,
     raw_inline,
@@ -45,6 +46,7 @@ FORM = "form.svg"  # its id, for a camera
 
 # Functions of the template, by the class of a Div or Span.
 _BLOCKS = {"lead", "key", "exercise", "solution"}
+_BEFORE = "before-drawing"  # one more, which no text names
 _SPANS = {"number", "tool", "printed", "computed", "over-badge", "over-sign"}
 _MOST_THREADS = 4
 _LONG = 15  # rows; a table with more of them may break across pages, and repeats its head
@@ -148,7 +150,8 @@ def markup(document: Document) -> str:
 
 def markups(documents: Sequence[Document], look: str = TEMPLATE) -> list[str]:
     """Return the Typst sources of handouts, written by one call of pandoc: what they share, once."""
-    pieces = [[[block] for block in transform(one.blocks, partial(_for_typst, document=one))] for one in documents]
+    whole = (transform(_with_words_before_drawings(one.blocks), partial(_for_typst, document=one)) for one in documents)
+    pieces = [[[block] for block in blocks] for blocks in whole]
     made = iter(written([block for blocks in pieces for block in blocks], "typst"))
     return [
         head(one, look) + "\n".join(islice(made, len(blocks))) for one, blocks in zip(documents, pieces, strict=True)
@@ -206,6 +209,19 @@ def _rows(table: Element) -> list[Any]:
     return list(body[3])
 
 
+def _with_words_before_drawings(blocks: Blocks) -> Blocks:
+    """Return blocks in which a paragraph right before a drawing is marked to stay on its page."""
+    out: Blocks = []
+    for block, after in zip_longest(blocks, blocks[1:]):
+        if block["t"] == "Div":
+            out.append({**block, "c": [block["c"][0], _with_words_before_drawings(block["c"][1])]})
+        elif block["t"] == "Para" and after and "drawing" in classes(after):
+            out.append(div([block], _BEFORE))
+        else:
+            out.append(block)
+    return out
+
+
 def _for_typst(element: Element, document: Document) -> list[Element] | None:
     """Replace what pandoc has no Typst for by calls of the template's functions."""
     match element["t"]:
@@ -251,7 +267,7 @@ def _block(element: Element, document: Document) -> Blocks | None:
         ]
     if "caption" in found:
         return list(content)
-    known = [name for name in found if name in _BLOCKS]
+    known = [name for name in found if name in _BLOCKS or name == _BEFORE]
     if not known:
         msg = f"{document.source}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
         raise TemplateError(msg)

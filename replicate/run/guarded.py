@@ -246,6 +246,9 @@ def _run(function: Callable[..., Iterable[Any]], arguments: tuple[Any, ...]) -> 
             tell(value)
     except ReplicateError as error:
         return _End(str(error), traceback.format_exc())
+    except OSError as error:  # say a full disk, or one for temporary files
+        place = f"{error.filename}: " if error.filename else ""
+        return _End(f"a process of this run cannot go on: {place}{error.strerror or error}", traceback.format_exc())
     except Exception as error:  # noqa: BLE001  -- whatever it is, it is reported
         return _End(f"unexpected {type(error).__name__}: {error} (--debug shows where)", traceback.format_exc())
     return _End()

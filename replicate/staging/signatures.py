@@ -71,6 +71,9 @@ def write_signed(path: Path, content: bytes) -> None:
     """
     place = path.resolve() if path.is_symlink() else path
     new = signed(content)
+    if place.exists() and not (place.is_file() or place.is_dir()):  # a device may never come to an end
+        msg = f"{path}: is in the way, and is not a file; choose another --out"
+        raise OutputError(msg)
     try:
         there = place.read_bytes() if place.exists() else new
     except OSError as error:
