@@ -117,9 +117,8 @@ def ended_early() -> Iterator[int]:
         os._exit(3)
 
 
-def on_a_full_disk() -> Iterator[int]:
+def on_a_full_disk() -> list[int]:
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-    yield 1
 
 
 def test_a_full_disk_for_temporary_files_is_one_line() -> None:

@@ -132,6 +132,7 @@ def test_what_is_wrong_in_the_program_is_one_line(tmp_path: Path, change: tuple[
         ("No heading.\n", r"mine/exercise\.md:1: an exercise must begin with its title"),
         ("## T\n\nOf {{ inputs['y'] }}\n", r"mine/exercise\.md:3: .*'y'"),
         ("## T\n\n$\\unheardof{x}$\n", r"mine/exercise\.md:3: pandoc cannot convert"),
+        ("## T\n\n::: other\nx\n:::\n", r"mine/exercise\.md:3: no block 'other'; allowed: exercise, key, lead, sol"),
         ("## T\n\n<b>x</b>\n", r"mine/exercise\.md:3: raw text"),
         ("## T\n\n```{.python .run}\nx = 1\ny = 1 / 0\n```\n", r"mine/exercise\.md:5: the program fails"),
         ("## T\n\n::: solution\nx\n", r"mine/exercise\.md:\d: pandoc cannot read"),

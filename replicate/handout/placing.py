@@ -150,7 +150,7 @@ class Placing:
     def inputs(self, name: str) -> Inputs:
         """Return the numbers of an exercise on this form."""
         variation = self._variation("inputs", name)
-        return variation.drawn(self.form) if self.form else variation.original
+        return dict(variation.drawn(self.form) if self.form else variation.original)
 
     def stated(self, name: str) -> str:
         """Return how the answers to an exercise are to be rounded, with a space before it, on a form only."""

@@ -27,6 +27,7 @@ from replicate.errors import TemplateError
 from replicate.handout.edition import Document
 from replicate.handout.letters import FAMILIES, check_letters, fonts
 from replicate.handout.pandoc import written
+from replicate.handout.reading import BLOCKS
 from replicate.handout.row_heads import with_row_heads
 from replicate.handout.tree import (
     Blocks,
@@ -45,8 +46,8 @@ TEMPLATE = "handout.typ"
 FORM = "form.svg"  # its id, for a camera
 
 # Functions of the template, by the class of a Div or Span.
-_BLOCKS = {"lead", "key", "exercise", "solution"}
-_BEFORE = "before-drawing"  # one more, which no text names
+_BEFORE = "before-drawing"
+_BLOCKS = {*BLOCKS, _BEFORE}
 _SPANS = {"number", "tool", "printed", "computed", "over-badge", "over-sign"}
 _MOST_THREADS = 4
 _LONG = 15  # rows; a table with more of them may break across pages, and repeats its head
@@ -267,11 +268,8 @@ def _block(element: Element, document: Document) -> Blocks | None:
         ]
     if "caption" in found:
         return list(content)
-    known = [name for name in found if name in _BLOCKS or name == _BEFORE]
-    if not known:
-        msg = f"{document.source}: no block '{' '.join(found)}'; allowed: {', '.join(sorted(_BLOCKS))}"
-        raise TemplateError(msg)
-    return [raw_block("typst", f"#{known[0]}["), *content, raw_block("typst", "]")]
+    known = next(name for name in found if name in _BLOCKS)
+    return [raw_block("typst", f"#{known}["), *content, raw_block("typst", "]")]
 
 
 def _failed(name: str, error: typst.TypstError | typst.TypstWarning, text: str) -> TemplateError:

@@ -12,7 +12,7 @@ from pathlib import Path
 from replicate.display.pandoc import PandocError, convert
 from replicate.errors import TemplateError
 from replicate.handout.formulas import line_of
-from replicate.handout.tree import Blocks, Element, elements
+from replicate.handout.tree import Blocks, Element, classes, elements
 
 Lines = Sequence[tuple[str, int]]  # of a text, each with the line of the source that it stems from
 
@@ -29,6 +29,7 @@ _FOREIGN = {
     "RawBlock": "raw text for one format",
     "Image": "an image from a file",
 }
+BLOCKS = ("exercise", "key", "lead", "solution")  # what a text may begin with ``:::``
 _MARK = "\ue007"  # between two texts
 _FENCE = ":::"
 _WORD_FENCE = '"c":":::'  # in pandoc's JSON: the begin of a block that it took for words of the paragraph before
@@ -107,6 +108,11 @@ def _check(blocks: Blocks, lines: Lines, source: str) -> None:
     for element in elements(blocks):
         if element["t"] in _FOREIGN:
             raise _refused(element, lines, source)
+        if element["t"] == "Div" and not set(BLOCKS).intersection(classes(element)):
+            name = " ".join(classes(element))
+            line = next((number for text, number in lines if re.match(rf":::.*\b{re.escape(name)}\b", text)), 1)
+            msg = f"{source}:{line}: no block '{name}'; allowed: {', '.join(BLOCKS)}"
+            raise TemplateError(msg)
 
 
 def _refused(element: Element, lines: Lines, source: str) -> TemplateError:
