@@ -275,6 +275,19 @@ def test_a_horizon_far_beyond_rest_changes_nothing() -> None:
     assert Loop(FOPTD, PI(0.6, 0.5)).step(until=1e9)(1e9) == pytest.approx(1.0, abs=1e-13)
 
 
+@pytest.mark.parametrize("metric", ["peak_time", "load_peak_time"])
+@pytest.mark.parametrize("until", [None, 400.0])
+def test_a_peak_that_lasts_has_the_time_that_the_single_loop_gives(metric: str, until: float | None) -> None:
+    # the plant comes to rest at the peak before its output has an effect: two dead times of 66 time constants each
+    plant = Plant.foptd(1.3, 1.0, 66.0)
+    controllers = [PI(0.4, 0.0), PI(0.3, 0.0), PI(0.2, 0.0), PI(0.1, 0.0)]
+    controllers += [PI(0.02, 1e-6), PI(0.03, 1e-6), PI(0.04, 1e-6), PI(0.05, 1e-6)]
+    result = sweep(plant, controllers, metrics=metric, until=until)
+    loops = [Loop(plant, controller) for controller in controllers]
+    responses = [loop.step(until) if metric == "peak_time" else loop.load_step(until) for loop in loops]
+    np.testing.assert_allclose(result[metric][0], [y.peak().time for y in responses], rtol=1e-9)
+
+
 def test_a_horizon_beyond_all_pieces_is_a_horizon() -> None:
     result = sweep(FOPTD, [PI(0.6, ki) for ki in (0.3, 0.35, 0.4, 0.45)], metrics=["ie", "stable"], until=1e300)
     np.testing.assert_allclose(result["ie"][0], [1 / 0.3, 1 / 0.35, 1 / 0.4, 1 / 0.45], rtol=1e-9)  # 1/ki

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops import chebyshev, series_roots
+from replicate.loops.piecewise import FLAT
 from replicate.loops.signal import APPROACH, ARRIVAL, ROUNDING
 from replicate.loops.sweep import block_series
 from replicate.loops.sweep.block_series import DEGREE
@@ -71,6 +72,10 @@ class ResponseMetrics(ResponseIntegrals):
         error = np.where(self._exists[:, some], np.maximum(-low[:, some], high[:, some]), 0.0)
         arrives = (error[:-1] > ARRIVAL * scale[some]) & (error[1:] <= level[some])
         self.doubtful[some] |= arrives.any(axis=0)
+        # a peak that lasts, as where a long dead time lets the plant come to rest: when it begins is for one to say
+        noise = FLAT * np.where(self.final == 0.0, scale, scale + np.maximum(-low, high).max(axis=0))
+        lasts = self._exists & (high - low <= noise) & (high >= value - noise)
+        self.doubtful |= lasts.any(axis=0) & ~approaches
         begins_there = np.maximum(-low[0], high[0]) <= level
         return np.where(approaches, np.where(begins_there, 0.0, np.inf), time)
 
