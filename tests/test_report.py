@@ -372,6 +372,16 @@ def test_a_value_by_another_definition_is_not_called_the_right_one() -> None:
     assert Erratum.ours(by_definition) == "9.901"
 
 
+def test_how_far_off_a_print_is_agrees_with_what_it_should_be() -> None:
+    """5.47 for 10 is off by -4.53, whatever else a reading gives; a corrected value that is ours has all our digits."""
+    values = (Computed("authors", 12.558, Match("none")),)
+    row = VerdictRow("toy", "table-1", "A", "ts", "5.47", "misprint", "authors", "12.558", "10", values=values)
+    print_ = replace(row, value=PrintedValue("5.47"))
+    assert Erratum.exact(print_) == 10.0
+    assert Erratum.exact(replace(print_, corrected="12.6")) == 12.558
+    assert Erratum.exact(replace(print_, corrected="")) == 12.558
+
+
 def test_the_first_screen_counts_consequential_errors(make: Make) -> None:
     found = re.search(r"<li><b>(\d+)</b><span><a href=\"errata.html\">consequential", make()["index.html"])
     assert found is not None

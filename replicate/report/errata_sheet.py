@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from replicate.display import numbers
 from replicate.display.addresses import address, pages_of, parts_of
 from replicate.display.consequences import errors
+from replicate.display.distance import off
 from replicate.display.labels import cell_keys, heading
 from replicate.exhibits import Claims, Paper, Table
 from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
@@ -90,6 +91,15 @@ class Erratum:
     def number(row: VerdictRow) -> float | None:
         """Return what the deciding reading gives for a cell."""
         return next((one.number for one in row.values if one.reading == row.reading), None)
+
+    @classmethod
+    def exact(cls, row: VerdictRow) -> float | None:
+        """Return the right value of a cell with all digits known: as computed, if that rounds to the corrected one."""
+        number = cls.number(row)
+        right = replace(row.value, text=row.corrected) if row.corrected and row.value else None
+        if right is None or not right.states_number or (number is not None and not off(right, number)):
+            return number
+        return float(right.value)
 
     @classmethod
     def right(cls, row: VerdictRow) -> str:

@@ -169,6 +169,33 @@ def test_every_cell_claim_and_error_has_one_address(report: Path) -> None:
     assert "khan.html#table-2.CC.ph1_Mp" in addresses
 
 
+def test_exhibits_of_several_parts_are_told_apart(report: Path) -> None:
+    """Four tables of the thesis are called Table 1: wherever parts meet, the part is named."""
+    overview = (report / INDEX).read_text(encoding="utf-8")
+    advice = re.findall(r"<dd>(?:Part (\w+): )?(.*?)</dd>", overview, re.DOTALL)
+    listed = [(part, file) for part, links in advice for file in re.findall(r'href="(panagopoulos[^#"]*)', links)]
+    assert len({part for part, _ in listed}) > 3
+    assert all(file == f"panagopoulos-{part}.html" for part, file in listed)
+    errata = (report / "errata.html").read_text(encoding="utf-8")
+    named = re.findall(r'<a href="panagopoulos-(\w+)\.html#[^"]*">(Part (\w+), )?', errata)
+    assert all(part == said for part, there, said in named if there)
+    assert {part for part, there, _ in named if there} >= {"I", "II", "IIs"}
+
+
+def test_in_forced_colours_no_formula_hides_the_line_above(report: Path, browser: Any) -> None:
+    """A browser lays a plate behind text, as high as its font: that of formulas is several lines high."""
+    with Sight(browser, report / "khan.html", forced_colors="active") as page:
+        assert (
+            page.locator(".wrong math").first.evaluate("(math) => getComputedStyle(math).forcedColorAdjust") == "none"
+        )
+
+
+def test_what_is_wrong_is_read_on_a_phone_without_scrolling_sideways(report: Path, browser: Any) -> None:
+    for name in ("khan.html", "panagopoulos-II.html"):
+        with Sight(browser, report / name, width=360) as page:
+            assert page.locator(".wrong .scroll").evaluate("(region) => region.scrollWidth <= region.clientWidth")
+
+
 def test_filters_need_no_script(report: Path, browser: Any) -> None:
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()

@@ -20,7 +20,7 @@ def _labels() -> dict[str, str]:
         labels[id] = f"{rule.name} ({id}): $K_p = {rule.tex['Kp']}$, $T_i = {rule.tex['Ti']}$"
     for column in COLUMNS:
         quantity, example = column.split("_")
-        labels[column] = f"${quantity[0]}_{quantity[1]}$, {example[0]}.{example[1]}"
+        labels[column] = f"${quantity[0]}_{quantity[1]}$, Example {example[0]}.{example[1]}"
     return labels
 
 

@@ -54,8 +54,9 @@ paper = Paper(
         "example-2-3",
         "example-3-1",
     ),
-    summary="The tables, the rule (7b), its robustness and the fits hold. Misprinted are (7a), which lacks three zeros "
-    "and must read $K_P = -0.0404p^2h + 0.0723p + 0.3852/h$, $K_I = -0.0525p^2 + 0.4104p/h - 0.00024/h^2$; the "
-    "closed-form ISE, whose second numerator must begin with $K_I - K_P p$; two load settling times of Table I, which "
-    "are in each other's rows; and a few digits. In place of the fits there are closed forms, exact for most gains.",
+    summary="Most numbers of the tables hold, and so do the rule (7b), its robustness and the fits. Wrong in the print "
+    "or in the copy at hand: (7a), which lacks three zeros and must read $K_P = -0.0404p^2h + 0.0723p + 0.3852/h$, "
+    "$K_I = -0.0525p^2 + 0.4104p/h - 0.00024/h^2$; the closed-form ISE, whose second numerator must begin with "
+    "$K_I - K_P p$; and single digits. Misprinted: two load settling times of Table I, each in the other's row. In "
+    "place of the fits there are closed forms, exact for most gains.",
 )
