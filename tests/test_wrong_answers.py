@@ -240,6 +240,11 @@ def test_a_csv_as_a_spreadsheet_writes_it_is_read(change: str, project: Path, re
             'out = "papers"',
             "out is 'papers', inside papers/; allowed: a folder of its own",
         ),
+        (
+            'out = "build"',
+            'out = "."',
+            "replicate.toml:10: out is '.', which holds the project itself; allowed: a folder ",
+        ),
         ('out = "build"', 'out = "accepted/x"', "out is 'accepted/x', inside accepted/; allowed: a folder of its own"),
         (
             "papers =",
@@ -254,6 +259,24 @@ def test_a_wrong_project_file_has_file_and_line(
     assert project.is_dir()
     replaced(Path("replicate.toml"), old, new)
     status, _, err = replicate("check", "-j1")
+    assert status == 2
+    assert message in err
+
+
+@pytest.mark.parametrize(
+    ("said", "message"),
+    [
+        (r"intro = 'Well: $\frac{1$'", r"replicate.toml:4: pandoc cannot convert $\frac{1$: unexpected"),
+        ('methods = "how.md"', r"how.md:3: pandoc cannot convert $\sqrt{x$: unexpected"),
+    ],
+)
+def test_a_formula_of_the_project_has_file_and_line(said: str, message: str, project: Path, replicate: Run) -> None:
+    assert project.is_dir()
+    Path("how.md").write_text("# How\n\nBy $\\sqrt{x$.\n", encoding="utf-8")
+    file = Path("replicate.toml")
+    lines = [line for line in file.read_text(encoding="utf-8").splitlines() if "=" in line and "intro" not in line]
+    file.write_text("\n".join([*lines[:1], "", "", said, *lines[1:]]), encoding="utf-8")
+    status, _, err = replicate("report", "-j1")
     assert status == 2
     assert message in err
 

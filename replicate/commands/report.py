@@ -30,7 +30,7 @@ def report(
     from replicate.report.scope import Scope, owner_of
     from replicate.report.site import site_of
     from replicate.report.standing import keep, texts_of
-    from replicate.report.texts import unreadable
+    from replicate.report.texts import placed, unreadable
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import counts_of, print_summary
@@ -56,7 +56,8 @@ def report(
             pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         except TemplateError:  # one paper's text must not take the pages of the others
             outcome = outcome.without(unreadable(outcome))
-            pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
+            with placed(run.within.project):
+                pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
         data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
         index = run.folder / "report" / pages[0].name
         keep_texts = run.kept_texts(ROOMS, DISTRIBUTIONS)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from replicate.display.markdown import MarkdownBatch
@@ -12,6 +14,7 @@ from replicate.exhibits.file_names import display_name
 from replicate.exhibits.results import Results
 from replicate.report.pages import paper_pages
 from replicate.run.outcome import Outcome
+from replicate.run.project import Project
 from replicate.verdicts.rows import Judgement
 
 _BEGINNING = 60  # characters of a text that are shown and looked for
@@ -40,12 +43,23 @@ def _unreadable(paper: Paper, results: Results, judgement: Judgement) -> Templat
                 texts += exhibit.labels.values() if isinstance(exhibit, Table) else ()
             batch.substitute("".join(batch.block(text) for text in texts))
     except TemplateError as error:
-        return located(error, paper)
+        files = (path for path in Path(str(paper.folder())).rglob("*") if path.suffix in _TEXTS)
+        return _located(error, {display_name(file): file for file in sorted(files)})
     return None
 
 
-def located(error: TemplateError, paper: Paper) -> TemplateError:
-    """Return the error with the place of what is wrong in the files of the paper, where it can be found there."""
+@contextmanager
+def placed(project: Project | None) -> Iterator[None]:
+    """Say of a text that cannot be converted in which of the project's own files it stands: inside a ``with`` block."""
+    try:
+        yield
+    except TemplateError as error:
+        files = [] if project is None else [project.file, *([project.methods] if project.methods else [])]
+        raise _located(error, {file.name: file for file in files}) from error
+
+
+def _located(error: TemplateError, files: Mapping[str, Path]) -> TemplateError:
+    """Return the error with the place of what is wrong, where it can be found in files, by what messages call them."""
     if isinstance(error, UnreadableFormulaError):
         wrong, shown = error.tex, f"${error.tex}$"
     elif isinstance(error, UnreadableTextError):
@@ -55,11 +69,10 @@ def located(error: TemplateError, paper: Paper) -> TemplateError:
         return error
     words = r"\s+".join(re.escape(word) for word in wrong.split())
     as_written = re.compile(f"{words}|{words.replace(re.escape(chr(92)), re.escape(chr(92) * 2))}")
-    folder = Path(str(paper.folder()))
-    for file in sorted(path for path in folder.rglob("*") if path.suffix in _TEXTS):
+    for name, file in files.items():
         text = file.read_text(encoding="utf-8", errors="replace")
         found = as_written.search(text)
         if found:
-            place = f"{display_name(file)}:{text.count(chr(10), 0, found.start()) + 1}"
+            place = f"{name}:{text.count(chr(10), 0, found.start()) + 1}"
             return TemplateError(f"{place}: pandoc cannot convert {shown}: {error.why}")
     return error

@@ -150,6 +150,9 @@ def read_project(path: Path) -> Project:
         if taken.resolve() in (out.resolve(), *out.resolve().parents):
             why = f"out is {data.get('out', 'build')!r}, inside {taken.name}/; allowed: a folder of its own"
             raise _wrong(path, "out", why)
+    if out.resolve() in (root.resolve(), *root.resolve().parents):
+        why = f"out is {data['out']!r}, which holds the project itself; allowed: a folder of its own"
+        raise _wrong(path, "out", why)
     return Project(
         root,
         path,
