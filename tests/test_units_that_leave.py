@@ -148,6 +148,18 @@ def test_no_process_is_left(tmp_path: Path) -> None:
     assert "4321.25" not in commands()
 
 
+@POSIX
+def test_a_unit_that_kills_the_process_which_starts_workers_hurts_no_other(tmp_path: Path) -> None:
+    kill = "import signal\nos.kill(os.getppid(), signal.SIGKILL)\nreturn good()"
+    fork = "sys.exit(0)"  # after it, another worker must be started
+    with rogue.installed(tmp_path, {"first": kill, "second": fork, "third": kill, "fourth": "return good()"}):
+        results = run([Library().paper("rogue")], jobs=2, cache_dir=None)
+    result = results["rogue", "table-1"]
+    assert isinstance(result, TableResult)
+    assert list(result.frames) == ["as-written", "first", "third", "fourth"]
+    assert "tries to end the program" in result.errors["second"]
+
+
 @pytest.mark.parametrize("body", [rogue.LOOP, rogue.HELD_LOOP], ids=["loop", "loop that holds the lock"])
 def test_an_endless_unit_is_stopped_by_name(tmp_path: Path, body: str) -> None:
     with rogue.installed(tmp_path, {"endless": body}):

@@ -33,19 +33,11 @@ _TICK = 0.5
 _PATIENCE = 2.0  # seconds in which a worker that is stopped may say where it was
 _SHOWN_OUTPUT = 20_000
 _HEAVY = (
-    "numpy",
-    "pandas",
-    "matplotlib.figure",
-    "matplotlib.backends.backend_agg",
-    "matplotlib.backends.backend_svg",
-    "scipy.integrate",
-    "scipy.interpolate",
-    "scipy.linalg",
-    "scipy.optimize",
-    "control",
-    "schemdraw",
-    "replicate.loops",
+    *("numpy", "pandas", "scipy.integrate", "scipy.interpolate", "scipy.linalg", "scipy.optimize"),
+    *("matplotlib.figure", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
+    *("control", "schemdraw", "replicate.loops"),
 )
+_ATTEMPTS, _BETWEEN_ATTEMPTS = 4, 0.1  # seconds
 _UNKNOWN = 255  # the process that watches over the workers is gone, too
 _FRAME = re.compile(r'File "([^"]+)", line (\d+) in ')
 
@@ -115,7 +107,7 @@ class LocalPool:
     def _harvest(
         self, workers: list[_Worker], waiting: Waiting, units: Mapping[Unit, Exhibit]
     ) -> Iterator[tuple[Unit, Performance]]:
-        ready = wait([entry for worker in workers for entry in (worker.connection, worker.process.sentinel)], _TICK)
+        ready = wait([entry for worker in workers for entry in _signs(worker)], _TICK)
         for worker in list(workers):
             task = worker.task
             if task is None:
@@ -124,7 +116,7 @@ class LocalPool:
             if worker.connection in ready:
                 done, gone = _received(worker)
             elif worker.process.sentinel in ready:
-                gone = True
+                gone = not _orphaned(worker)
             why = (worker.failed or _left(worker)) if gone else "" if done else self._overdue(worker)
             if done is not None:
                 worker.task = None
@@ -161,6 +153,16 @@ class LocalPool:
         yield task.unit, self._finished(task.unit, lost)
 
 
+def _signs(worker: _Worker) -> list[Any]:
+    """Return what tells that a worker has sent something, or has gone."""
+    return [worker.connection] if _orphaned(worker) else [worker.connection, worker.process.sentinel]
+
+
+def _orphaned(worker: _Worker) -> bool:
+    """Whether the process that watches over workers has gone: all seem to have, then, and only the pipes know."""
+    return bool(worker.process.exitcode == _UNKNOWN)
+
+
 def _start(output: Path) -> _Worker:
     process, here = started(serve, output)
     return _Worker(process, here, output)
@@ -184,17 +186,23 @@ def started(service: Callable[[Connection, Surroundings], None], output: Path) -
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context: Any = multiprocessing.get_context(method)
     here, there = context.Pipe(duplex=True)
-    try:
-        if method == "forkserver":
-            _start_server()
-        surroundings = Surroundings(_folder(), dict(os.environ), output)
+    surroundings = Surroundings(_folder(), dict(os.environ), output)
+    attempts = _ATTEMPTS
+    while True:
+        attempts -= 1
         process = context.Process(target=service, args=(there, surroundings), name="replicate worker")
-        process.start()
-    except (OSError, EOFError) as error:
-        msg = f"a worker process cannot be started: {str(error) or type(error).__name__}"
-        raise ReplicateError(msg) from error
-    there.close()
-    return process, here
+        try:
+            if method == "forkserver":
+                _start_server()
+            process.start()
+        except (OSError, EOFError) as error:
+            if not attempts:
+                msg = f"a worker process cannot be started: {str(error) or type(error).__name__}"
+                raise ReplicateError(msg) from error
+            time.sleep(_BETWEEN_ATTEMPTS)  # a unit may have killed the process that starts them
+        else:
+            there.close()
+            return process, here
 
 
 def _start_server() -> None:
