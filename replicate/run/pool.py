@@ -24,6 +24,7 @@ from replicate.errors import ReplicateError
 from replicate.exhibits import Claims, Exhibit
 from replicate.exhibits.file_names import display_name
 from replicate.run.limits import MOST_OUTPUT
+from replicate.run.messages import Messages
 from replicate.run.performance import Performance, with_errors
 from replicate.run.units import Unit, failed
 from replicate.run.waiting import Waiting
@@ -45,13 +46,18 @@ _FRAME = re.compile(r'File "([^"]+)", line (\d+) in ')
 @dataclass
 class _Worker:
     process: Any
-    connection: Connection
+    messages: Messages
     output: Path
     task: Task | None = None
     folders: list[str] = field(default_factory=list)  # whose units it has done, the latest last
     begun: float = 0.0
     claim: str = ""
     failed: str = ""
+
+    @property
+    def connection(self) -> Connection:
+        """The near end of its pipe."""
+        return self.messages.connection
 
 
 @dataclass
@@ -165,7 +171,7 @@ def _orphaned(worker: _Worker) -> bool:
 
 def _start(output: Path) -> _Worker:
     process, here = started(serve, output)
-    return _Worker(process, here, output)
+    return _Worker(process, Messages(here), output)
 
 
 def started(service: Callable[[Connection, Surroundings], None], output: Path) -> tuple[Any, Connection]:
@@ -232,19 +238,17 @@ def _folder() -> str:
 def _received(worker: _Worker) -> tuple[Performance | None, bool]:
     """Return what a worker has sent if it is a result, and whether the worker is lost."""
     try:
-        message = worker.connection.recv_bytes()
-    except (OSError, EOFError):
+        for message in worker.messages.read():
+            kind, content = message[:1], message[1:]
+            if kind == FAILED:
+                worker.failed = content.decode(errors="replace")
+                return None, True
+            if kind != BEGUN:
+                return Performance.from_bytes(content, _output(worker)), False
+            worker.claim, worker.begun = content.decode(errors="replace"), time.monotonic()  # each has the whole time
+    except (OSError, EOFError, ValueError, KeyError, TypeError):  # it has gone, or a unit has written to the pipe
         return None, True
-    if message[:1] == FAILED:
-        worker.failed = message[1:].decode(errors="replace")
-        return None, True
-    if message[:1] == BEGUN:
-        worker.claim, worker.begun = message[1:].decode(errors="replace"), time.monotonic()  # each has the whole time
-        return None, False
-    try:
-        return Performance.from_bytes(message[1:], _output(worker)), False
-    except (ValueError, KeyError, TypeError):  # a unit has written to the pipe
-        return None, True
+    return None, False
 
 
 def _size(path: Path) -> int:
