@@ -65,6 +65,11 @@ class Wanted:
             return made
 
 
+def undrawn(figure: Figure, width: float) -> Drawing:
+    """Return the place of a figure in a text that is only read."""
+    return Drawing(figure.id, "", b"", figure.alt, width)
+
+
 class DrawnLater(Drawing):
     """A figure of the numbers of one form, drawn when it is needed: a sheet without solutions needs fewer.
 

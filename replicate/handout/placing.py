@@ -44,7 +44,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult, errors_of
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
-from replicate.handout.drawings import Drawing, DrawnLater, Wanted, captured, said_by
+from replicate.handout.drawings import Drawing, DrawnLater, Wanted, captured, said_by, undrawn
 from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_code import OwnCode
@@ -224,7 +224,7 @@ class Placing:
             with _refused_by(f"dots('{exhibit}')"):
                 drawn = dot_figure(view, choice, name, size)
             if self.only_read:
-                return self._mark(DrawnLater(self.paper.id, drawn, 1.0))
+                return self._mark(undrawn(drawn, 1.0))
             self.shared[key] = captured(f"dots('{exhibit}')", self.paper.id, drawn), drawn.alt
         result, alt = self.shared[key]
         return self._mark(Drawing(name, result.svg, result.png, alt, min(1.0, size[0] / TEXT_WIDTH)))
@@ -254,7 +254,7 @@ class Placing:
             if size is not None:
                 drawn, width = replace(drawn, size=size), min(1.0, size[0] / TEXT_WIDTH)
             if self.only_read:
-                return self._mark(DrawnLater(self.paper.id, drawn, width))
+                return self._mark(undrawn(drawn, width))
             drawing_key = f"figure {name} {size}"
             if drawing_key not in self.shared:
                 self.shared[drawing_key] = captured(f"figure('{name}')", self.paper.id, drawn)
