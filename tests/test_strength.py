@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import product
 from math import prod
 
@@ -11,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from replicate.exhibits import AS_WRITTEN, Table
+from replicate.exhibits import AS_WRITTEN, Notation, Table
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.verdicts.ledger import Ledger
@@ -51,6 +52,33 @@ def test_a_long_number_explains_more_than_a_short_one() -> None:
     assert found["long"].digits > found["short"].digits + 2.9
     assert found["long"].strong
     assert not found["short"].strong
+
+
+@pytest.mark.parametrize(
+    ("notation", "text", "digits"),
+    [
+        (Notation(interval="ends"), "[6.96, 8.10]", 2 * 2.0),  # each end one of some hundred numbers
+        (Notation(uncertainty=True), "6.96 ± 1.10", 2 * 2.0),
+        (Notation(words=("yes", "no")), "yes", math.log10(2)),
+    ],
+)
+def test_a_pair_explains_the_digits_of_both_its_numbers_and_a_word_next_to_nothing(
+    notation: Notation, text: str, digits: float
+) -> None:
+    table = Table("table-1", "table", "T", rows=("A",), columns=("x",), notation=notation)
+    printed = {("A", "x"): PrintedValue(text, "A", "x", notation=notation)}
+    for id in (AS_WRITTEN, "other"):
+        table.reading(id, "R")(lambda: None)
+    right, off = {
+        "interval": ("6.9604 8.1002", "5.9604 9.1002"),
+        "number": ("6.9604 1.1002", "5.9604 0.6"),
+        "word": ("yes", "no"),
+    }[printed["A", "x"].statement.kind]
+    given_: dict[str, dict[Key, float | str | None]] = {AS_WRITTEN: {("A", "x"): off}, "other": {("A", "x"): right}}
+    found = strengths(table, {id: reading_matches(table, id, printed, cells) for id, cells in given_.items()})
+    assert (found[AS_WRITTEN].met, found["other"].met) == (0, 1)
+    assert found["other"].digits == pytest.approx(digits, abs=0.7)
+    assert found["other"].strong == (digits > 1.0)
 
 
 def judged(prints: np.ndarray, readings: list[np.ndarray], tried: int = 1) -> dict[str, Strength]:

@@ -20,12 +20,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.exhibits.printed import Key
+from replicate.exhibits.printed import Key, PrintedValue
+from replicate.exhibits.statements import numbers_in, scaled
 from replicate.verdicts.rows import Computed
 
 LEVEL = 0.01  # a reading whose matches are less likely than this to be accidents is strong
@@ -145,33 +146,58 @@ def choices_of(table: Table, reading: str) -> int:
 
 
 def _judged(one: Computed, as_written: Computed | None) -> bool:
-    """Say whether a value counts: it must be a number, and another one than as written."""
-    if one.number is None or not math.isfinite(one.number) or one.match.kind == "none":
+    """Say whether a value counts: it must not be infinite, and another one than as written."""
+    if one.match.kind == "none" or (one.number is not None and not math.isfinite(one.number)):
         return False
-    if one.reading == AS_WRITTEN or as_written is None or as_written.number is None:
-        return True
-    return _differ(as_written.number, one)
+    return one.reading == AS_WRITTEN or as_written is None or _differ(as_written, one)
 
 
-def _differ(number: float, one: Computed) -> bool:
-    """Say whether a reading gives another number than one."""
-    return one.number is None or abs(one.number - number) > _SAME * abs(number)
+def _differ(one: Computed, other: Computed) -> bool:
+    """Say whether two readings give different values."""
+    first, second = _numbers(one), _numbers(other)
+    if not first or len(first) != len(second):
+        return one.text != other.text
+    return any(abs(number - rival) > _SAME * abs(number) for number, rival in zip(first, second, strict=True))
+
+
+def _numbers(one: Computed) -> list[float]:
+    """Return the number that a reading gives, or the two of a pair; none for a word, or if it gives nothing."""
+    if one.word:
+        return [float(number) for number in numbers_in(one.word)]
+    return [one.number] if one.number is not None and math.isfinite(one.number) else []
 
 
 def _odds(key: Key, reading: str, computed: Mapping[str, Mapping[Key, Computed]]) -> float:
-    """Return the probability that a value meets its print by accident."""
+    """Return the probability that a value meets its print by accident; both numbers of a pair must."""
     one = computed[reading][key]
-    value = one.printed
-    if value is None or not value.states_number:
+    stated = _stated(one.printed) if one.printed is not None else []
+    if not stated:
         return 0.5  # a bound or a word: one of two
-    printed, unit = float(value.value), float(value.unit)
-    others = [other[key].number for id, other in computed.items() if id != reading and key in other]
-    rivals = [number for number in others if number is not None and math.isfinite(number) and _differ(number, one)]
+    others = [other[key] for id, other in computed.items() if id != reading and key in other]
+    rivals = [_numbers(other) for other in others if _differ(other, one)]
+    spread = 0.0 if one.lower is None or one.upper is None else one.upper - one.lower
+    return math.prod(
+        _chance(*stated[place], spread, [rival[place] for rival in rivals if len(rival) > place])
+        for place in range(min(len(stated), len(_numbers(one))))
+    )
+
+
+def _stated(value: PrintedValue) -> list[tuple[float, float]]:
+    """Return each number that a print states to its last digit, with the unit of that digit."""
+    statement = value.statement
+    if not value.states_number and statement.kind != "interval":
+        return []
+    second = statement.upper or statement.uncertainty
+    parts = [(value.value, value.unit)] + ([scaled(replace(statement, text=second))] if second else [])
+    return [(float(number), float(unit)) for number, unit in parts]
+
+
+def _chance(printed: float, unit: float, spread: float, rivals: Sequence[float]) -> float:
+    """Return the probability that a number meets a print by accident, given what other readings give."""
     distances = [abs(number - printed) for number in rivals]
     limit = abs(printed) or max([*distances, unit])
     width = min(max(distances, default=limit), limit)
-    window = unit if one.lower is None or one.upper is None else unit + one.upper - one.lower
-    return min(window / (2 * width), 1.0) if width else 1.0
+    return min((unit + spread) / (2 * width), 1.0) if width else 1.0
 
 
 def as_many_digits(met: Sequence[float], possible: Sequence[float]) -> float:
