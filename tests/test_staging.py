@@ -336,6 +336,19 @@ def test_only_what_looks_like_a_report_may_be_deleted(replicate: Run) -> None:
     assert "delete" not in replicate("report", "lab", "-j1")[2]
 
 
+@pytest.mark.parametrize("name", ["lab/photo.png", "raw/data.csv", "raw/setup.json"])
+def test_accepting_removes_no_file_of_somebody_else(replicate: Run, name: str) -> None:
+    accept = ("accept", "lab", "-j1", "--reason", "first", "--accepted", "accepted")
+    assert replicate(*accept)[0] == 0
+    mine = Path("accepted", name)
+    mine.parent.mkdir(exist_ok=True)
+    mine.write_text("mine\n")
+    status, _, err = replicate(*accept)
+    assert status == 2
+    assert f"{name}: is not of an accepted state, so it is not removed" in err
+    assert mine.read_text() == "mine\n"
+
+
 def test_accepting_in_a_folder_of_others_is_refused(replicate: Run) -> None:
     Path("lab").mkdir()
     Path("lab/table-1.csv").write_text("mine\n")

@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection
 from pathlib import Path
 
-from replicate.diff.accepted import files_of, state_files
+from replicate.diff.accepted import files_of, is_state, state_files
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import OutputError, ReplicateError
 from replicate.plain_text import steering
@@ -62,7 +62,11 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
         result = outcome.results.get((paper, exhibit))
         made = state_files(outcome, result) if result is not None else {}
         files |= {f"{paper}/{name}": content for name, content in made.items()}
-        obsolete += [f"{paper}/{old.name}" for old in files_of(folder / paper, exhibit) if old.name not in made]
+        old = [path for path in files_of(folder / paper, exhibit) if path.name not in made]
+        if old and not made and not is_state(folder / paper, exhibit):
+            msg = f"{old[0]}: is not of an accepted state, so it is not removed; move it away; nothing was written"
+            raise OutputError(msg)
+        obsolete += [f"{paper}/{path.name}" for path in old]
     files[LOG] = ((log or _TITLE) + _entry(reason, comparison)).encode()
     replace_files(folder, files, obsolete)
     return comparison

@@ -10,12 +10,13 @@ significant digits.
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from replicate.diff.accepted_files import keyed, read_cells, read_curves, read_record
+from replicate.diff.accepted_files import CURVE_COLUMNS, keyed, read_cells, read_curves, read_record
 from replicate.diff.words import Words, read_words, words_of, words_text
 from replicate.display.csv_text import csv_text, curves_text, number_text
 from replicate.errors import AcceptedStateError
@@ -115,6 +116,18 @@ def _read_figure(data: Path, axes: Path) -> FigureState:
 def files_of(folder: Path, exhibit: str) -> list[Path]:
     """Return the files of an exhibit in a paper's folder, those that exist."""
     return [path for end in ENDINGS if (path := folder / f"{exhibit}{end}").is_file()]
+
+
+def is_state(folder: Path, exhibit: str) -> bool:
+    """Whether the files of an exhibit are those of an accepted state, going by the first column of the data.
+
+    Earlier versions had fewer of the others.
+    """
+    data = folder / f"{exhibit}.csv"
+    if not data.is_file():
+        return False
+    first = re.split(rb"[,\r\n]", data.read_bytes(), maxsplit=1)[0].decode(errors="replace")
+    return first in {TABLE_COLUMNS[0], CLAIM_COLUMNS[0], CURVE_COLUMNS[0]}
 
 
 def state_files(outcome: Outcome, result: Result) -> dict[str, bytes]:
