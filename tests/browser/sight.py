@@ -48,6 +48,17 @@ STOPS = """() => [...document.querySelectorAll("[tabindex='0']")]
   .filter((e) => e.checkVisibility() && e.scrollWidth <= e.clientWidth + 1 && e.scrollHeight <= e.clientHeight + 1)
   .map((e) => e.outerHTML.slice(0, 120))"""
 
+# How many pixels the seam between two pictures is away from the middle of its slider's thumb, and the pictures from it.
+SEAM = """() => {
+  const pair = document.querySelector(".pair"), slider = pair.querySelector("input");
+  slider.value = 25;
+  slider.dispatchEvent(new Event("input"));
+  const seam = getComputedStyle(pair, "::after").marginLeft, box = slider.getBoundingClientRect();
+  const left = pair.getBoundingClientRect().left, thumb = box.left + 8 + (box.width - 16) / 4;
+  const pictures = [...pair.querySelectorAll("img, svg[role=img]")].map((one) => one.getBoundingClientRect());
+  return [left + parseFloat(seam) + 1 - thumb, ...pictures.map((one) => one.left + one.width / 4 - thumb)];
+}"""
+
 
 class Sight:
     """A page in a browser, and what went wrong in it."""

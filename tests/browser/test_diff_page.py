@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from kept_results import kept_results
 
-from browser.sight import SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
+from browser.sight import SEAM, SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
 
 ROOT = Path(__file__).parents[2]
@@ -69,6 +69,12 @@ def test_it_is_accessible_and_fits(page: Path, browser: Any, axe: str) -> None:
                 found[f"{width} px, {scheme}: tab stops that are none"] = sight.evaluate(STOPS)
                 found[f"{width} px, {scheme}: axe"] = violations(sight, axe)
     assert {name: what for name, what in found.items() if what} == {}
+
+
+def test_the_thumb_is_on_the_seam(page: Path, browser: Any) -> None:
+    for width in (1280, 800):
+        with Sight(browser, page, width=width) as sight:
+            assert max(map(abs, sight.evaluate(SEAM))) < 2.0
 
 
 def test_the_slider_follows_the_keyboard(page: Path, browser: Any) -> None:

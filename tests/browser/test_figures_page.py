@@ -12,6 +12,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 
+from browser.sight import SEAM
 from replicate.baselines.outcomes import Outcome
 from replicate.baselines.page import page as page_of
 
@@ -79,6 +80,12 @@ def test_the_pictures_are_swept_by_keyboard(page: Any) -> None:
     before = page.evaluate("document.querySelector('.pair').style.getPropertyValue('--cut')")
     page.keyboard.press("ArrowRight")
     assert page.evaluate("document.querySelector('.pair').style.getPropertyValue('--cut')") != before
+
+
+@pytest.mark.parametrize("width", [1280, 800, 360])
+def test_the_thumb_is_on_the_seam(page: Any, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    assert max(map(abs, page.evaluate(SEAM))) < 2.0
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
