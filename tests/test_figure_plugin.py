@@ -72,6 +72,7 @@ def test_accept_compare_change(project: Project) -> None:
     assert status == 0, said
     names = ["by-hand", "test_figures-test_mark-0-5", "test_figures-test_mark-1-0"]
     assert [name for name in project.accepted() if name.endswith(".json")] == [f"{name}.json" for name in names]
+    assert not any(str(project.folder).encode() in content for content in project.accepted().values())
     status, said = project.run()
     assert status == 0
     assert "nothing differs from the accepted state; figures compared: 3" in said

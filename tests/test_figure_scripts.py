@@ -123,6 +123,20 @@ def test_accept_compare_change(folder: Folder, monkeypatch: pytest.MonkeyPatch) 
     assert (folder.path / "comment.md").read_text().startswith("<!-- replicate-figures -->\n## 🟢 Figures\n")
 
 
+def test_a_figure_whose_script_is_gone_is_noticed_and_its_absence_can_be_accepted(folder: Folder) -> None:
+    for name in ("plot_shown.py", "plot_forked.py"):
+        (folder.path / "plots" / name).unlink()
+    assert folder.run("accept", "plots", "--reason", "first")[0] == 0
+    (folder.path / "plots/plot_ended.py").unlink()
+    status, out, _ = folder.run("diff", "plots")
+    assert (status, out.splitlines()[0]) == (1, "plots/plot_ended-1: was accepted, but its script is no longer there")
+    page = (folder.path / "build/figures-diff/index.html").read_text()
+    assert "replicate figures accept plots --only plots/plot_ended-1=" in page
+    assert folder.run("diff", "plots/plot_saved.py")[0] == 0
+    assert folder.run("accept", "plots", "--only", "plots/plot_ended-1", "--reason", "nobody needs it")[0] == 0
+    assert folder.run("diff", "plots")[0] == 0
+
+
 FAILING = [
     ("x = 1\nraise ValueError('no\\nway')\n", ":2: ValueError: no way"),
     ("x = (\n", ":1: SyntaxError:"),

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
+from matplotlib.transforms import Affine2D
 from mpl_toolkits.axes_grid1 import host_subplot
 
 from replicate.figures import Record, capture, compare
@@ -67,6 +69,26 @@ def test_a_contour_of_another_level_is_another_curve(filled: bool, labels: bool)
 
     changes = said(draw, 2.0, 2.5)
     assert any(text.endswith("is missing") for text in changes) or "moved" in changes[0]
+
+
+@pytest.mark.parametrize("kind", ["plot", "scatter", "fill_between"])
+def test_what_is_turned_before_it_is_data_is_seen_where_it_lies(kind: str) -> None:
+    def draw(axes: Any, angle: float) -> None:
+        axes.set(xlim=(-1, 1), ylim=(-1, 1))
+        axes_and_turn = Affine2D().rotate_deg(angle) + axes.transData
+        getattr(axes, kind)([0.2, 0.4, 0.6], [0.1, 0.5, 0.3], transform=axes_and_turn)
+
+    assert said(draw, 20.0, 20.0) == []
+    assert len(said(draw, 20.0, 30.0)) == 1
+    assert "moved" in said(draw, 20.0, 30.0)[0]
+
+
+def test_a_line_that_leads_far_away_keeps_its_direction() -> None:
+    def draw(axes: Any, height: float) -> None:
+        axes.figure.add_artist(Line2D([0.5, 50.0], [0.5, height]))
+
+    assert said(draw, 20.0, 20.0) == []
+    assert [text[:13] for text in said(draw, 20.0, 30.0)] == ["line 1 moved "]
 
 
 def test_texts_of_a_figure_without_axes_are_said_and_placed() -> None:
@@ -156,3 +178,59 @@ def test_periods_are_months_and_no_days() -> None:
         pandas.Series(range(12), index=pandas.period_range(start, periods=12, freq="M")).plot(ax=axes)
 
     assert said(draw, "2024-01", "2024-02")[0] == "x axis now begins at 2024-02 (was 2024-01)"
+
+
+CORNERS = ((0.1, 0.1), (0.6, 0.1), (0.1, 0.6))
+
+
+def panels(figure: Any, order: Any, more: float = 0.0) -> None:
+    """Draw one panel in each corner, made in this order, a steeper line in each."""
+    figure.suptitle("all")
+    for place in order:
+        axes = figure.add_axes((*CORNERS[place], 0.3, 0.3))
+        axes.plot([0, 1], [0, place + 1 + (more if place == 1 else 0.0)])
+        axes.set_ylim(0, 4)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "what"),
+    [
+        ("012", "201", ""),
+        ("012", "12", "panel 'panel 1' is gone"),
+        ("012", "02", "panel 'panel 2' is gone"),
+        ("12", "012", "panel 'panel 1' is new"),
+        ("10", "01", ""),
+    ],
+)
+def test_untitled_panels_are_known_by_what_they_show_and_where_they_stand(before: str, after: str, what: str) -> None:
+    records = []
+    for order in (before, after):
+        figure = Figure()
+        panels(figure, map(int, order))
+        records.append(capture(figure))
+    assert compare(*records).changes == ([what] if what else [])
+
+
+def test_what_changed_in_a_panel_is_said_of_it_in_whatever_order_they_are_made() -> None:
+    records = []
+    for order, more in (((0, 1, 2), 0.0), ((2, 0, 1), 0.4)):
+        figure = Figure()
+        panels(figure, order, more)
+        records.append(capture(figure))
+    changes = compare(*records).changes
+    assert [text[:35] for text in changes] == ["curve 'line 1' in 'panel 2' moved: "]
+
+
+def test_guests_keep_their_hosts_and_lie_where_they_lay_though_another_panel_was_made_first() -> None:
+    records = []
+    for first in (False, True):
+        figure = Figure()
+        if first:
+            figure.add_axes((0.1, 0.8, 0.8, 0.1))
+        host = figure.add_axes((0.1, 0.1, 0.8, 0.6))
+        host.plot([0, 1])
+        host.twinx().plot([0, 5])
+        if not first:
+            figure.add_axes((0.1, 0.8, 0.8, 0.1))
+        records.append(capture(figure))
+    assert compare(*records).changes == []

@@ -19,6 +19,7 @@ Status = Literal["same", "changed", "new", "gone", "accepted", "failed"]
 #: Statuses that an author has to look at; a failed one is not a difference but a broken run.
 DIFFERS = {"changed", "new", "gone"}
 
+_UNREADABLE = "replaces a state that could not be read"
 _PICTURE_DPI = 60
 _MOST_INCHES = 100.0  # each way: of a larger figure there is no picture
 _COLOURS = 64
@@ -99,7 +100,7 @@ def compared(store: Store, name: str, drawn: Drawn, where: str = "") -> Outcome:
     try:
         accepted = store.read(name)
         if accepted is None:
-            said = [f"has no accepted state: {store.path(name)} is missing"]
+            said = [f"has no accepted state: {store.folder.name}/{name}.json is missing"]
             return Outcome(name, "new", where, said, ["named"], new=new)
         found = compare(accepted.record, Record.from_json(drawn.record))
     except FigureRecordError as error:
@@ -145,7 +146,9 @@ def accept(store: Store, outcome: Outcome, drawn: Drawn | None, reason: str, rep
     if drawn is None:
         store.remove(outcome.name, reason)
     else:
-        store.write(outcome.name, drawn.record, drawn.picture, reason, outcome.changes)
+        # What could not be read is said with its path, which is another one on each machine.
+        changes = [_UNREADABLE] if outcome.status == "failed" else outcome.changes
+        store.write(outcome.name, drawn.record, drawn.picture, reason, changes)
     return Outcome(outcome.name, "accepted", outcome.where, outcome.changes, outcome.layers)
 
 

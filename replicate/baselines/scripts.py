@@ -141,9 +141,30 @@ def _read(script: Path, base: str, folder: Path, code: int, words: str) -> Scrip
     return ScriptRun(script, figures, problem)
 
 
-def compare_runs(runs: Sequence[ScriptRun], store: Store) -> list[Outcome]:
-    """Compare the figures of scripts; a script that failed is an outcome, too, and so is a figure that is gone."""
-    return [outcome for run in runs for outcome in _compared(run, store)]
+def compare_runs(runs: Sequence[ScriptRun], store: Store, patterns: Sequence[str] = ()) -> list[Outcome]:
+    """Compare the figures of scripts; a script that failed is an outcome, too, and so is a figure that is gone.
+
+    Parameters
+    ----------
+    patterns
+        What the scripts were found by: of the folders among them, figures whose script is gone are outcomes as well.
+    """
+    outcomes = [outcome for run in runs for outcome in _compared(run, store)]
+    return outcomes + [outcome for pattern in dict.fromkeys(patterns) for outcome in _without_script(pattern, store)]
+
+
+def _without_script(pattern: str, store: Store) -> Iterator[Outcome]:
+    """Yield the accepted figures of the scripts that are no longer in a folder."""
+    folder = Path(pattern)
+    scope = _base(folder / "any.py").rpartition("/")[0]
+    if not folder.is_dir() or not scope:  # in the topmost folder, figures of tests may lie beside those of scripts
+        return
+    there = {_base(script) for script in folder.rglob("*.py")}
+    for name in store.names():
+        base, _, number = name.rpartition("-")
+        if number.isdigit() and base.startswith(f"{scope}/") and base not in there:
+            said = ["was accepted, but its script is no longer there"]
+            yield Outcome(name, "gone", pattern, said, ["named"], digest=store.digest(name))
 
 
 def _compared(run: ScriptRun, store: Store) -> Iterator[Outcome]:
@@ -162,12 +183,18 @@ def _compared(run: ScriptRun, store: Store) -> Iterator[Outcome]:
 
 
 def accept_runs(
-    runs: Sequence[ScriptRun], store: Store, reason: str, only: Mapping[str, str | None] | None = None
+    runs: Sequence[ScriptRun],
+    store: Store,
+    reason: str,
+    only: Mapping[str, str | None] | None = None,
+    patterns: Sequence[str] = (),
 ) -> list[Outcome]:
     """Accept the figures of scripts.
 
     Parameters
     ----------
+    patterns
+        As of `compare_runs`.
     only
         Names of the figures to accept, each with the digest of the state that it replaces, if that is known.
 
@@ -180,7 +207,7 @@ def accept_runs(
     if failed:
         msg = f"nothing is accepted, because a script failed: {failed[0]}"
         raise ReplicateError(msg)
-    outcomes = compare_runs(runs, store)
+    outcomes = compare_runs(runs, store, patterns)
     drawn = {name: figure for run in runs for name, figure in run.figures.items()}
     known = {outcome.name for outcome in outcomes}
     for name, replaces in (only or {}).items():

@@ -46,7 +46,7 @@ def diff(
     from replicate.baselines.scripts import compare_runs
     from replicate.baselines.store import Store
 
-    outcomes = compare_runs(_run(patterns, jobs, timeout), Store(accepted))
+    outcomes = compare_runs(_run(patterns, jobs, timeout), Store(accepted), patterns)
     for outcome in worst_first(outcomes):
         for text in outcome.changes:
             echo(text if outcome.status == "failed" else f"{outcome.name}: {text}", err=outcome.status == "failed")
@@ -85,7 +85,7 @@ def accept(
         msg = "accepting needs a reason: --reason 'why the new state is right'"
         raise ReplicateError(msg)
     chosen = None if only is None else dict(map(chosen_figure, only))
-    outcomes = accept_runs(_run(patterns, jobs, timeout), Store(accepted), reason, chosen)
+    outcomes = accept_runs(_run(patterns, jobs, timeout), Store(accepted), reason, chosen, patterns)
     for outcome in worst_first(outcomes):
         for text in outcome.changes:
             echo(f"{outcome.name}: {text}")

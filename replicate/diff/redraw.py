@@ -14,10 +14,11 @@ import numpy as np
 from replicate.diff.accepted import FigureState
 from replicate.diff.curve_looks import look_of
 from replicate.figures import style as plotstyle
-from replicate.figures.axes import matched_panels, symbol
+from replicate.figures.axes import symbol
 from replicate.figures.distance import exact_distances
 from replicate.figures.off_screen import svg_text
 from replicate.figures.pair import Pair
+from replicate.figures.panel_pairs import matched_panels
 from replicate.figures.polylines import Points
 from replicate.figures.scaling import finite, from_units, in_units
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from replicate.figures.axis_words import on_axis
-from replicate.figures.differences import Difference, same_number
+from replicate.figures.differences import Difference
+from replicate.figures.panel_pairs import matched_panels
+from replicate.figures.sameness import Axes, close, same, same_value
 from replicate.figures.scaling import TOLERANCE, in_units
 
-Axes = Mapping[str, Any]
 Text = Mapping[str, Any]
 
 #: Said elsewhere, by what is compared curve by curve or part by part, or by the tick labels.
@@ -34,8 +35,8 @@ _FIRST = {
     *("title", "xlabel", "ylabel", "xscale", "yscale", "xlim", "ylim", "legend", "texts", "aspect", "hidden"),
     *("points", "areas", "figure_title", "figure_texts", "figure_legend"),
 }
-# Panels are where they were up to this fraction of the figure, or this if their layout follows the size of texts.
-_MOVED, _FITTED = 3e-3, 0.09
+#: What is kept with the first panel, but said of the figure.
+_WHOLE = "figure_"
 _CALLED = {
     "view": "view (elevation, azimuth, roll)",
     "xcategories": "categories of the x axis",
@@ -49,7 +50,7 @@ _MANY = {"xcategories", "ycategories", "titles", "proportions"}
 
 
 def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Difference]:
-    """Compare the panels of a figure, matched by name.
+    """Compare the panels of a figure.
 
     Parameters
     ----------
@@ -69,57 +70,30 @@ def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Differen
     if moved and names[0] != names[1] and sorted(names[0]) == sorted(names[1]):
         shown = [", ".join(f"'{name}'" for name in order) for order in names]
         changes.append(Difference("axes", f"the panels now stand in the order {shown[1]} (was {shown[0]})", "panels"))
+    for first, now in zip(before[:1], after[:1], strict=False):
+        changes += _compare(first, now, [name for name in _names(first, now, known) if name.startswith(_WHOLE)])
     for old, new in matched:
         panel = str((old or new or {})["panel"])
         if old is None or new is None:
             what, kind = ("gone", "removed") if new is None else ("new", "new")
             changes.append(Difference("axes", f"panel '{panel}' is {what}", panel, kind))
             continue
-        for name in (name for name in dict.fromkeys((*old, *new)) if known is None or name in known):
-            one, other = old.get(name), new.get(name)
-            prefix = f"'{panel}': " if several and not name.startswith("figure_") else ""
-            if name not in silent and not _same(one, other) and not _as_drawn(name, old, new):
-                changes += [
-                    Difference("axes", prefix + text, f"{panel} / {name}", _shown(one), _shown(other))
-                    for text in _words(name, old, new)
-                ]
+        own = [name for name in _names(old, new, known) if name not in silent and not name.startswith(_WHOLE)]
+        changes += _compare(old, new, own, f"'{panel}': " if several else "")
     return changes
 
 
-def matched_panels(
-    before: Sequence[Axes], after: Sequence[Axes]
-) -> list[tuple[Axes, Axes] | tuple[Axes, None] | tuple[None, Axes]]:
-    """Match panels by name; where as many are left on both sides, they were renamed and keep their order."""
-    old, new = ({str(axes["panel"]): axes for axes in panels} for panels in (before, after))
-    gone = [panel for panel in old if panel not in new]
-    fresh = [panel for panel in new if panel not in old]
-    renamed = dict(zip(gone, fresh, strict=True)) if len(gone) == len(fresh) else {}
-    matched: list[tuple[Axes, Axes] | tuple[Axes, None] | tuple[None, Axes]] = []
-    for panel, axes in old.items():
-        other = new.get(renamed.get(panel, panel))
-        matched.append((axes, other) if other is not None else (axes, None))
-    matched += [(None, new[panel]) for panel in fresh if panel not in renamed.values()]
-    return matched
+def _names(old: Axes, new: Axes, known: Collection[str] | None) -> list[str]:
+    return [name for name in dict.fromkeys((*old, *new)) if known is None or name in known]
 
 
-def same(one: Axes, other: Axes, name: str) -> bool:
-    """Whether a property of two axes is the same, but for what nobody could see."""
-    return _same(one.get(name), other.get(name)) or _as_drawn(name, one, other)
-
-
-def _as_drawn(name: str, one: Axes, other: Axes) -> bool:
-    """Whether limits that follow the data differ by less than one could see."""
-    if name == "position":
-        apart = max(abs(a - b) for a, b in zip(one[name], other[name], strict=True))
-        return bool(apart <= (_FITTED if one.get("fitted") or other.get("fitted") else _MOVED))
-    if name in {"xtable", "ytable"}:
-        return _same_scale(name[0], one, other)
-    if name not in {"xlim", "ylim"}:
-        return False
-    if one.get("units") == "box" or "polar" in one:
-        return _close(one[name], other[name])
-    ends = [np.column_stack([axes["xlim"], axes["ylim"]]) for axes in (one, other)]
-    return bool(np.all(np.abs(in_units(ends[1], one) - in_units(ends[0], one))[:, "xy".index(name[0])] <= TOLERANCE))
+def _compare(old: Axes, new: Axes, names: Sequence[str], prefix: str = "") -> Iterator[Difference]:
+    """Yield what differs of the properties with these names."""
+    for name in names:
+        if not same(old, new, name):
+            shown = _shown(old.get(name)), _shown(new.get(name))
+            for text in _words(name, old, new):
+                yield Difference("axes", prefix + text, f"{old['panel']} / {name}", *shown)
 
 
 def symbol(axes: Axes, axis: str) -> str:
@@ -184,40 +158,22 @@ def _names_in_both(before: Axes, after: Axes) -> set[str]:
 def _polar(one: Mapping[str, Any], other: Mapping[str, Any]) -> Iterator[str]:
     words = {"offset": "zero of the angle", "direction": "direction of the angle", "rscale": "scale of the radius"}
     for name, called in words.items():
-        if not _same(one.get(name), other.get(name)):
+        if not same_value(one.get(name), other.get(name)):
             yield f"{called} is now {_shown(other.get(name))} (was {_shown(one.get(name))})"
-    if not _close(one.get("rlim", [0.0, 1.0]), other.get("rlim", [0.0, 1.0])):
+    if not close(one.get("rlim", [0.0, 1.0]), other.get("rlim", [0.0, 1.0])):
         yield f"radius now runs over {_shown(other.get('rlim'))} (ran over {_shown(one.get('rlim'))})"
-    if not _close(one.get("matrix", []), other.get("matrix", [])):
+    if not close(one.get("matrix", []), other.get("matrix", [])):
         yield "the axes show another part of the circle"
-
-
-def _close(one: Sequence[float], other: Sequence[float]) -> bool:
-    size = max((abs(value) for value in one), default=1.0) or 1.0
-    return len(one) == len(other) and all(abs(a - b) <= TOLERANCE * size for a, b in zip(one, other, strict=True))
-
-
-def _same_scale(axis: str, one: Axes, other: Axes) -> bool:
-    """Whether values lie where they lay; other limits are said on their own."""
-    if not _same(one[f"{axis}lim"], other[f"{axis}lim"]) or one.get(f"{axis}scale") != other.get(f"{axis}scale"):
-        return True
-    if f"{axis}table" not in one or f"{axis}table" not in other:
-        return False
-    tables = [axes[f"{axis}table"] for axes in (one, other)]
-    low, high = sorted(one[f"{axis}lim"])
-    values = [value for value in tables[0]["data"] if low <= value <= high]
-    places = [np.interp(values, table["data"], table["at"]) for table in tables]
-    return bool(np.abs(places[1] - places[0]).max(initial=0.0) <= 5.0 * TOLERANCE)
 
 
 def _limits(axis: str, before: Axes, after: Axes) -> Iterator[str]:
     one, other = before[f"{axis}lim"], after[f"{axis}lim"]
-    if _same(list(one), list(reversed(other))):
+    if same_value(list(one), list(reversed(other))):
         ends = [_end(value, axis, after) for value in other]
         yield f"{axis} axis now runs from {ends[0]} to {ends[1]}, the other way round"
         return
     for verb, was, now in zip(("begins", "ends"), one, other, strict=True):
-        if not _same(was, now):
+        if not same_value(was, now):
             shown = _end(now, axis, after), _end(was, axis, before)
             if shown[0] == shown[1]:  # dates within one second
                 shown = _shown(now), _shown(was)
@@ -289,16 +245,6 @@ def _place(text: Text) -> str:
 
 def _coordinates(text: Text) -> str:
     return " of the axes" if text.get("in") else " of the data"
-
-
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, int | float) and isinstance(other, int | float):
-        return same_number(repr(float(one)), repr(float(other)))
-    if isinstance(one, list) and isinstance(other, list):
-        return len(one) == len(other) and all(map(_same, one, other))
-    if isinstance(one, dict) and isinstance(other, dict):
-        return one.keys() == other.keys() and all(_same(one[key], other[key]) for key in one)
-    return bool(one == other)
 
 
 def _shown(value: object) -> str:

@@ -9,14 +9,16 @@ from typing import Any
 import numpy as np
 
 from replicate.errors import FigureRecordError
-from replicate.figures.axes import Axes, compare_axes, matched_panels, same
+from replicate.figures.axes import compare_axes
 from replicate.figures.curves import CurveComparison, compare_curves
 from replicate.figures.differences import Difference, same_number
 from replicate.figures.mark_pairs import Frame
 from replicate.figures.pair import Pair
+from replicate.figures.panel_pairs import matched_panels
 from replicate.figures.part_names import names_of_texts
 from replicate.figures.partwise import come_and_gone_by_name, compare_parts
 from replicate.figures.record import Record
+from replicate.figures.sameness import Axes, same
 from replicate.figures.scaling import in_units
 from replicate.figures.stacking_changes import stacking_changes
 
@@ -65,7 +67,7 @@ def _compare(accepted: Record, new: Record) -> Comparison:
     found = [*compare_axes(accepted.panels, new.panels), *curves.changes]
     if accepted.version > 1 and new.version > 1:  # the first version knew no parts
         found += _figure(accepted.figure, new.figure)
-        found += stacking_changes(accepted.figure, new.figure, "figure")
+        found += stacking_changes(accepted.figure, new.figure, "figure", _names_of_panels(accepted, new))
         found += _parts(accepted, new, curves)
         found += _untold(accepted, new, curves, found)
     return Comparison(_once(found), curves.pairs)
@@ -90,6 +92,7 @@ def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Diffe
     fitted = bool(accepted.figure.get("fitted") or new.figure.get("fitted"))
     moved = [(str(pair.axes["panel"]), pair.name) for pair in curves.pairs if pair.moved]
     found = []
+    panels = _names_of_panels(accepted, new)
     for old, fresh in matched_panels(accepted.panels, new.panels):
         if old is None or fresh is None:
             continue
@@ -109,7 +112,7 @@ def _parts(accepted: Record, new: Record, curves: CurveComparison) -> list[Diffe
             other_ticks=ticks,
             moved=frozenset(name for owner, name in moved if owner == panel),
         )
-        found += stacking_changes(old, fresh, panel, own)
+        found += stacking_changes(old, fresh, panel, names | panels, own)
     return found
 
 
@@ -130,6 +133,12 @@ def _untold(
         for name, words in come_and_gone_by_name(*parts, names, said):
             if name not in gone ^ come:  # of these curves it is said already
                 yield Difference("look", f"'{panel}': {words}" if several else words, f"{panel} / {name}")
+
+
+def _names_of_panels(accepted: Record, new: Record) -> dict[str, str]:
+    """Return what the accepted record calls the panels of the new one, as parts of the figure."""
+    pairs = matched_panels(accepted.panels, new.panels)
+    return {f"panel '{now['panel']}'": f"panel '{was['panel']}'" for was, now in pairs if was and now}
 
 
 def _names(curves: CurveComparison, old: Axes, fresh: Axes) -> dict[str, str]:

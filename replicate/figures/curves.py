@@ -11,14 +11,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from replicate.figures.axes import Axes, matched_panels
 from replicate.figures.differences import Difference, FigureChange
 from replicate.figures.distance import Distances, distances, point_distances
 from replicate.figures.envelope import compare_envelopes
 from replicate.figures.grouping import NUMBERED, grouped
 from replicate.figures.pair import Pair
+from replicate.figures.panel_pairs import matched_panels
 from replicate.figures.places import points_apart
 from replicate.figures.polylines import THINNING, Points
+from replicate.figures.sameness import Axes
 from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
 from replicate.figures.showing import hidden_names
 from replicate.figures.values import WINDOW, Array, compare_values, is_function

@@ -70,7 +70,7 @@ def outline(points: Points, most: int = MOST_POINTS, tolerance: float = OUTLINE_
         Shape (n, 2) in box units; a row that is not finite is a break. What lies further than a few boxes away is
         moved to where it is just as invisible.
     """
-    points = np.clip(points, -_FAR, 1.0 + _FAR)
+    points = _within_reach(points)
     there = finite(points)
     edges = np.flatnonzero(np.diff(np.r_[False, there, False].astype(int)))
     runs = [points[start:end] for start, end in zip(edges[::2], edges[1::2], strict=True)]
@@ -87,6 +87,22 @@ def outline(points: Points, most: int = MOST_POINTS, tolerance: float = OUTLINE_
     both = there[:-1] & there[1:]
     waves = line_waves(points[:-1][both], points[1:][both])
     return {"pieces": len(runs), **_place(points[there]), "waves": rounded(waves, 10)}
+
+
+def _within_reach(points: Points) -> Points:
+    """Move what lies far outside to an edge; lines that lead there keep their direction up to that edge."""
+    low, high = -_FAR, 1.0 + _FAR
+    reached = np.clip(points, low, high)
+    if np.array_equal(reached, points, equal_nan=True):
+        return reached
+    starts, steps = points[:-1], np.diff(points, axis=0)
+    with np.errstate(all="ignore"):
+        shares = np.hstack([(edge - starts) / steps for edge in (low, high)])
+        shares = np.sort(np.where((shares > 0.0) & (shares < 1.0), shares, np.nan), axis=1)
+        crossings = starts[:, None] + shares[..., None] * steps[:, None]
+    kept = np.hstack([np.ones((len(starts), 1), dtype=bool), np.isfinite(shares)])
+    along = np.concatenate([starts[:, None], crossings], axis=1)[kept]
+    return np.asarray(np.clip(np.vstack([along, points[-1:]]), low, high))
 
 
 def scattered(points: Points, most: int = MOST_POINTS) -> dict[str, Any]:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from replicate.figures.axes import Axes
 from replicate.figures.distance import Distances
 from replicate.figures.polylines import Points
+from replicate.figures.sameness import Axes
 from replicate.figures.values import ValueDifference
 
 

@@ -272,13 +272,14 @@ def _of_path(path: Path) -> Points:
 
 
 def _to_data(points: Points, transform: Transform, axes: Axes) -> Points:
-    """Return points in data coordinates; a fraction of the axes is mapped through the limits.
+    """Return points in data coordinates, however they are turned or projected before they become that.
 
-    An artist with a coordinate that is neither has no place among the curves and comes back empty.
+    A fraction of the axes is mapped through the limits. An artist with a coordinate that is neither has no place
+    among the curves and comes back empty.
     """
     in_data = transform.contains_branch_seperately(axes.transData)
     if all(in_data):
-        return points
+        return np.asarray((transform - axes.transData).transform(points), dtype=float)
     in_axes = transform.contains_branch_seperately(axes.transAxes)
     if not any(in_data) or not all(data or fraction for data, fraction in zip(in_data, in_axes, strict=True)):
         return np.empty((0, 2))

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from replicate.figures.axes import Axes, symbol
+from replicate.figures.axes import symbol
 from replicate.figures.axis_words import on_axis
 from replicate.figures.differences import percent
 from replicate.figures.pair import Pair
 from replicate.figures.polylines import Points
+from replicate.figures.sameness import Axes
 from replicate.figures.scaling import finite, from_units, in_units, place_of
 from replicate.figures.values import Array, ValueDifference
 
