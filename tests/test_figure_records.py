@@ -6,6 +6,7 @@ import contextlib
 import json
 import subprocess
 import sys
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -14,6 +15,7 @@ import pytest
 from gallery import GALLERY, T
 from matplotlib.figure import Figure
 
+from replicate.baselines.store import Store
 from replicate.errors import FigureError, FigureRecordError
 from replicate.figures import Record, capture, compare
 
@@ -181,3 +183,13 @@ def test_importing_it_is_light() -> None:
     alone = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True).stdout
     assert heavy.strip() == "[]"
     assert float(seconds) < 0.4 * float(alone)
+
+
+def test_an_accepted_figure_that_cannot_be_read_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(path: Path) -> bool:
+        raise PermissionError(13, "Permission denied", str(path))
+
+    monkeypatch.setattr(Path, "is_file", refuse)
+    for look in (Store(tmp_path).read, Store(tmp_path).digest):
+        with pytest.raises(FigureRecordError, match=r"step-1\.json: cannot be read: Permission denied"):
+            look("step-1")

@@ -10,7 +10,8 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -115,8 +116,9 @@ class Store:
             If its record is damaged, newer than this version, or not the one that was accepted last.
         """
         path = self.path(name)
-        finish_interrupted(path.parent)
-        if not path.is_file():
+        with _reading(path):
+            finish_interrupted(path.parent)
+        if not self._has(path):
             return None
         text = self._text(path)
         try:
@@ -129,12 +131,13 @@ class Store:
             why = f"{path}: is not the state that was accepted last, a merge or an edit changed it: accept it again"
             raise FigureRecordError(why)
         picture = self.path(name, ".png")
-        return Accepted(record, digest(text), picture.read_bytes() if picture.is_file() else b"")
+        with _reading(picture):
+            return Accepted(record, digest(text), picture.read_bytes() if picture.is_file() else b"")
 
     def digest(self, name: str) -> str:
         """Return the digest of the accepted state, whatever it is; empty if there is none."""
         path = self.path(name)
-        return digest(self._text(path)) if path.is_file() else ""
+        return digest(self._text(path)) if self._has(path) else ""
 
     def names(self) -> list[str]:
         """Return the names of all accepted figures."""
@@ -159,7 +162,7 @@ class Store:
     def _replace(self, name: str, files: dict[str, bytes], reason: str, changes: Sequence[str], accepted: str) -> None:
         entry = {"reason": reason, "changes": list(changes), "replaces": self.digest(name), "accepted": accepted}
         log = self.path(name, ".log")
-        earlier = self._text(log) if log.is_file() else ""
+        earlier = self._text(log) if self._has(log) else ""
         line = json.dumps(entry, ensure_ascii=False) + "\n"
         fresh = {f"{log.stem}{ending}": content for ending, content in files.items() if content}
         gone = [] if files else [f"{log.stem}{ending}" for ending in (".json", ".png")]
@@ -168,7 +171,7 @@ class Store:
     def _last(self, name: str) -> str | None:
         """Return the digest of the state that was accepted last; ``None`` if nobody wrote that down."""
         log = self.path(name, ".log")
-        if not log.is_file():
+        if not self._has(log):
             return None
         lines = self._text(log).splitlines()
         try:
@@ -179,10 +182,22 @@ class Store:
             raise FigureRecordError(why) from None
 
     @staticmethod
+    def _has(path: Path) -> bool:
+        with _reading(path):
+            return path.is_file()
+
+    @staticmethod
     def _text(path: Path) -> str:
-        try:
+        with _reading(path):
             return path.read_text(encoding="utf-8")
-        except OSError as error:
-            raise FigureRecordError(f"{path}: cannot be read: {error.strerror or error}") from None  # noqa: EM102
-        except UnicodeDecodeError:
-            raise FigureRecordError(f"{path}: is not UTF-8 text") from None  # noqa: EM102
+
+
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Say of a file why it cannot be read."""
+    try:
+        yield
+    except OSError as error:
+        raise FigureRecordError(f"{path}: cannot be read: {error.strerror or error}") from None  # noqa: EM102
+    except UnicodeDecodeError:
+        raise FigureRecordError(f"{path}: is not UTF-8 text") from None  # noqa: EM102
