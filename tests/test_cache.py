@@ -408,11 +408,13 @@ def test_clearing_removes_results_and_nothing_else(kept: tuple[Paper, Path], tmp
     paper, cache = kept
     own = tmp_path / "cache"
     run([paper], TABLE_2, jobs=1, cache_dir=own)
-    (own / "mine.txt").write_text("mine")
+    mine = {"mine.txt", "model.pickle", "fit.result", ".aside-from-mine"}
+    for name in mine:
+        (own / name).write_text("mine")
     count, size = Cache(own).clear()
     assert count == 1
     assert size > 0
-    assert [path.name for path in own.rglob("*")] == ["mine.txt"]
+    assert {path.name for path in own.rglob("*")} == mine
     assert len(list(stored(cache))) == len(UNITS) + 1
 
 

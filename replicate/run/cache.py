@@ -11,6 +11,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +26,7 @@ from replicate.run.storage import SCHEMA, from_text, to_text
 from replicate.run.units import Unit, fits
 
 FORM = "replicate result"
+_NAME = re.compile(rf"([0-9a-f]{{16}}|[0-9a-f]{{24}}){re.escape(SUFFIX)}|\.aside-\w{{8}}")
 _MOST_STATES = 4  # entries of one unit
 
 
@@ -141,11 +143,11 @@ class Entry:
 
 
 def stored(folder: Path | None) -> Iterator[Entry]:
-    """Yield all entries in a folder, also those of earlier versions."""
+    """Yield all entries in a folder, and what runs that were killed have left of some; never files of others."""
     for place, folders, names in os.walk(folder or os.devnull):  # which passes over what another run removes
         folders.sort()
         for name in sorted(names):
-            if name.endswith((SUFFIX, ".pickle")) or name.startswith(".aside-"):
+            if _NAME.fullmatch(name):
                 with contextlib.suppress(OSError):
                     stat = os.stat(os.path.join(place, name))  # noqa: PTH116, PTH118  -- `os.walk` gives texts
                     yield Entry(Path(place, name), stat.st_size, stat.st_mtime_ns)
