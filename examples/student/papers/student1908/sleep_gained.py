@@ -22,4 +22,5 @@ def sleep_gained(fig: Figure) -> None:
     axes.set_xticks(range(1, len(PATIENTS) + 1))
     axes.set_xlabel("patient")
     axes.set_ylabel("additional sleep, hours")
+    axes.margins(0.05)
     axes.legend()
