@@ -469,6 +469,17 @@ def test_pins_saturation_and_mismatch(page: Any) -> None:
     assert page.locator("#output .curve.a").count() == 1
 
 
+@pytest.mark.parametrize("width", [1280, 800, 360])
+def test_no_value_is_hidden_beside_a_controller_of_many_settings(page: Any, address: str, width: int) -> None:
+    page.set_viewport_size({"width": width, "height": 800})
+    page.goto("about:blank")
+    controller = "k%3D4.71756%2Cki%3D5.45382%2Ckd%3D0.200019%2Cderivative_filter%3D0.005"
+    page.goto(f"{address}#plant=e%5E%7B-0.1s%7D%2F(s-1)&controller={controller}")
+    until(page, "window.whatif && document.querySelector('#metrics-head small')?.textContent.includes('filter')")
+    assert page.locator("[aria-label=Metrics]").evaluate("(region) => region.scrollWidth <= region.clientWidth")
+    assert page.locator("#metrics-body td").count() == 10
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 360])
 def test_accessible(page: Any, axe: str, scheme: str, width: int) -> None:
