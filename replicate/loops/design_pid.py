@@ -115,13 +115,13 @@ def _design(
     limits = search_range(plant, pi.k, pi.ki) if named else (0.0, float("inf"))
     asked += [_constraint(item, *limits) for item in shape]
     if _bandwidth_is_free(plant, shaped=len(asked) > 1):
-        return _none("unbounded")
+        return _none("unbounded", shaped=len(asked) > 1)
     search = Search(GridProblem(plant, circle, tuple(asked)))
     starts, gain, frequency = _starts(plant, pi.k, pi.ki, pi.frequency, start)
     # severe constraints may leave room only far below the ki of the PI design, out of reach from its side
     cautious = [(k, CAUTIOUS * ki, kd) for k, ki, kd in starts]
     best = search.best(starts, search.summits(gain, frequency)) or search.best(cautious, [])
-    return best or _none("no-controller")
+    return best or _none("no-controller", shaped=len(asked) > 1)
 
 
 def search_range(plant: Plant, k: float, ki: float) -> tuple[float, float]:
@@ -164,9 +164,9 @@ def _bandwidth_is_free(plant: Plant, *, shaped: bool) -> bool:
     return plant.den.size <= 3 and plant.num.size == 1 if shaped else bool(np.all(plant.zeros().real < 0.0))
 
 
-def _none(status: Status) -> PIDDesign:
+def _none(status: Status, *, shaped: bool) -> PIDDesign:
     nan = float("nan")
-    return PIDDesign(nan, nan, nan, nan, nan, (), status)
+    return PIDDesign(nan, nan, nan, nan, nan, (), status, shaped)
 
 
 def _constraint(item: Constraint | str, low: float, high: float) -> Constraint:

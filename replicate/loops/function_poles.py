@@ -17,7 +17,7 @@ from replicate.loops.bracketed import bracketed_root
 from replicate.loops.function_resonances import resonances
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.pole_starts import asymptotic_starts
-from replicate.loops.zero_search import Box, zeros_in_box
+from replicate.loops.zero_search import Box, newton, zeros_in_box
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -32,6 +32,7 @@ LARGEST_GROWTH = 300.0  # and on the axis also the logarithm of exp(-s dead_time
 NEAREST = 1e-9  # rad from the negative real axis at which it is seen whether a function has a cut there
 CLOSEST, IMAGINARY = 1e-13, 1e-11  # the same where a cut begins like a power of s
 REAL = 1e-6  # imaginary part, relative to the modulus, of a value that is real
+DIFFERENCE, DIRECTIONS = 1e-2, 8  # radius of a difference, relative to |s|, and its points
 OFF_AXES = 1e-6  # distance from the axes, relative to its size, of the box in which unstable pairs are counted
 
 
@@ -60,6 +61,33 @@ def missing_unstable(transfer: LoopTransfer, found: list[complex]) -> ComplexArr
     box = Box(OFF_AXES * top, top, OFF_AXES * top, top)
     zeros = zeros_in_box(transfer.characteristic, transfer.characteristic_slope, box, turning=transfer.dead_time)
     return np.array([zero.place for zero in zeros or ()], dtype=complex)
+
+
+def poles_at_controller_zeros(transfer: LoopTransfer) -> ComplexArray:
+    """Return poles, Im >= 0, that a zero of the controller keeps near a pole of the function, or hides in it.
+
+    Between the two, or on both, lies a closed-loop pole that neither a grid nor f shows: f has a pole next to it.
+    What is analytic there is f/G, the controller's numerator plus its denominator over G.
+    """
+    num, den, plant = transfer.num, transfer.den, transfer.plant
+
+    def inverse(s: ComplexArray) -> ComplexArray:
+        return np.asarray(np.polyval(den, s) / plant(s))
+
+    def excess(s: ComplexArray) -> ComplexArray:
+        return np.asarray(np.polyval(num, s) + inverse(s))
+
+    def slope(s: ComplexArray) -> ComplexArray:
+        step = DIFFERENCE * np.abs(s)
+        turn = np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+        mean = np.mean(inverse(s[:, None] + step[:, None] * turn) / turn, axis=1) / step
+        return np.asarray(np.polyval(np.polyder(num), s) + mean)
+
+    found = [newton(excess, slope, zero) for zero in transfer.zeros.tolist() if zero.imag >= 0.0 and zero]
+    poles = np.array([complex(s.real, abs(s.imag)) for s in found if s is not None], dtype=complex)
+    real = poles.imag <= REAL * np.abs(poles)
+    poles[real] = poles.real[real]
+    return np.asarray(poles[~real | ~has_cut(transfer, poles)])
 
 
 def has_cut(transfer: LoopTransfer, s: ComplexArray) -> NDArray[np.bool_]:

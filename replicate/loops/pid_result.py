@@ -16,6 +16,7 @@ MESSAGES: dict[str, str] = {
     "no-controller": "no stabilising controller that satisfies the constraints was found",
     "unbounded": "the integral gain can be raised without limit: nothing in the plant bounds its bandwidth",
 }
+LIFTED = "; constraints=() lifts those on the shape of the Nyquist curve, and asks for the circle alone"
 
 
 @dataclass(frozen=True)
@@ -44,6 +45,8 @@ class PIDDesign:
         The active constraints with frequencies and multipliers.
     status, message
         What happened, as a word and as a sentence.
+    shaped
+        Whether not only the circle was asked for.
     """
 
     k: float
@@ -53,11 +56,13 @@ class PIDDesign:
     frequency: float
     active: tuple[ActiveConstraint, ...]
     status: Status
+    shaped: bool = False
 
     @property
     def message(self) -> str:
         """The status as a sentence."""
-        return MESSAGES[self.status]
+        lifted = LIFTED if self.shaped and self.status == "no-controller" else ""
+        return MESSAGES[self.status] + lifted
 
     @property
     def integral_time(self) -> float:

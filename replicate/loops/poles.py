@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
-from replicate.loops.function_poles import function_starts, has_cut, missing_unstable
+from replicate.loops.function_poles import function_starts, has_cut, missing_unstable, poles_at_controller_zeros
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
 from replicate.loops.pole_starts import asymptotic_starts, generator_eigenvalues
@@ -77,7 +77,8 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         points = np.append(points[np.abs(points) > 1e-9 * np.abs(points).max(initial=0.0)], 0.0)
     found = _ordered(_distinct(transfer, points, count))
     if not plant.parts:
-        found = _merged(found, missing_unstable(transfer, found).tolist())
+        others = np.concatenate([missing_unstable(transfer, found), poles_at_controller_zeros(transfer)])
+        found = _merged(found, others.tolist())
     elif found and not transfer.is_polynomial and transfer.num.size:
         found = _completed(transfer, found, count)
     if not found and plant.parts:

@@ -9,7 +9,7 @@ are central differences.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -363,6 +363,10 @@ def test_no_controller_is_a_status_and_not_an_error() -> None:
     design = design_pid(Plant([1.0], [1.0, -1.0], dead_time=3.0), ms=1.4, constraints=())
     assert design.status == "no-controller"
     assert "no stabilising controller" in design.message
+    assert not design.shaped
+    # where the shape was asked for, too, the message says what lifts that
+    assert "constraints=()" not in design.message
+    assert "constraints=()" in replace(design, shaped=True).message
     assert np.isnan([design.k, design.ki, design.kd]).all()
 
 

@@ -150,6 +150,28 @@ def test_a_double_pole_where_the_controller_cancels_the_function_s() -> None:
     assert loop.rightmost_pole() == pytest.approx(-1.0, rel=1e-7)
 
 
+@pytest.mark.parametrize("missed", [0.0, 1e-6, -1e-4, 1e-3, 0.03])
+@pytest.mark.parametrize("damping", [0.05, 0.2, 0.8])
+def test_zeros_of_the_controller_on_or_beside_poles_of_the_function(damping: float, missed: float) -> None:
+    polynomial, dead_time, ki = [1.0, 2.0 * damping, 1.0], 0.3, 0.4
+    beside = damping * (1.0 + missed)
+    controller = PID(2.0 * beside * ki, ki, ki, derivative_filter=0.01)
+    loop = Loop(Plant.from_function(lambda s: 1.0 / np.polyval(polynomial, s), dead_time), controller)
+    rational = Loop(Plant([1.0], polynomial, dead_time), controller)
+    start = rational.poles(1)[0]
+
+    def characteristic(s: mp.mpc) -> mp.mpc:
+        lag = 1 + mp.mpf(controller.derivative_filter) * s
+        top = (controller.k * s + mp.mpf(controller.ki)) * lag + controller.kd * s**2
+        return s * lag * mp.polyval(polynomial, s) + top * mp.exp(-mp.mpf(dead_time) * s)
+
+    with mp.workdps(30):
+        pole = complex(polished_root(characteristic, start))
+    assert loop.rightmost_pole() == pytest.approx(pole, rel=1e-10)
+    times = np.array([0.7, 3.0, 11.0])
+    np.testing.assert_allclose(loop.load_step()(times), rational.load_step()(times), atol=1e-11)
+
+
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e6])
 @pytest.mark.parametrize(
     ("function", "gain"),
