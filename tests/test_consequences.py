@@ -81,6 +81,22 @@ def test_a_correction_has_no_more_digits_than_the_reading_shows_elsewhere(neighb
     assert correction(("A", "x"), replace(entry, corrected=corrected), values, numbers).text in {corrected, ""}
 
 
+@pytest.mark.parametrize(
+    ("wrong", "stated", "fits"),
+    [
+        ("5.47", "12.560", False), ("5.47", "12.56", True), ("0.57", "12.56", True), ("5", "12.6", True),
+        ("5", "12.56", True),        ("0.47", "0.04712", False), ("0.47", "0.0471", True),
+    ],
+)  # fmt: skip
+def test_a_stated_correction_has_no_more_digits_than_its_column(wrong: str, stated: str, fits: bool) -> None:
+    entry = LedgerEntry("table-1", ("A",), ("x",), "print-or-copy", "Why.", corrected=stated)
+    texts = {"A": wrong, "B": "2.00", "C": "4.00", "D": "1.00"}
+    values = {(row, "x"): PrintedValue(text, row, "x") for row, text in texts.items()}
+    numbers = {("A", "x"): float(stated), ("B", "x"): 2.0, ("C", "x"): 4.0, ("D", "x"): 1.0}
+    found = correction(("A", "x"), entry, values, numbers)
+    assert (found.text == stated) if fits else ("more digits than its evidence" in found.problem)
+
+
 def test_a_correction_is_measured_by_cells_of_its_own_quantity() -> None:
     """Where the columns are the cases, the neighbours of a cell are the others of its row."""
     paper = synthetic.paper()

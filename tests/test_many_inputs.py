@@ -108,10 +108,16 @@ def test_values_that_are_possible_but_not_together_are_proven_to_be() -> None:
     assert sorted(found.values()) == [("consistent", "witness"), ("near", "joint-proof")]
 
 
+def test_a_search_says_whether_the_print_is_out_of_reach_alone_or_only_with_the_others() -> None:
+    assert judged(made(rules=False), "5.2", "6.0")["sum"] == ("near", "search")
+    found = judged(made(rules=False), "4.91", "6.2")
+    assert sorted(found.values()) == [("consistent", "witness"), ("near", "joint-search")]
+
+
 def test_card_and_note_say_what_the_inputs_leave_open_and_how_certain_that_is() -> None:
     table = made()
     view = table_view(table, *judgement(table, "5.9", "6.0"))
-    (note,) = view.notes
+    _given, note = view.notes
     assert note.ranges == {"none of which gives the print, by proof": [("A", "sum", "4.9 to 5.1")]}
     values = {cell.column: cell.values[0] for _, cells in view.rows for cell in cells if cell.printed}
     assert values["sum"].certainty == "none of which gives the print, by proof"

@@ -132,7 +132,7 @@ def test_a_consistent_value_altered_beyond_its_interval_is_not_consistent(outcom
 def test_a_verdict_without_its_ledger_entry_fails_check(outcome: Outcome) -> None:
     (paper,) = outcome.papers
     before = outcome.judgements[paper.id]
-    cells = [(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in EXPLAINED and v.column != "claim"]
+    cells = [(v.exhibit, v.row, v.column) for v in before.verdicts if v.verdict in EXPLAINED and v.cause]
     after = judge(paper, outcome.results, Inputs(read_inputs(paper).printed))
     told = "\n".join(after.problems)
     changed = {(v.exhibit, v.row, v.column): v.verdict for v in after.verdicts}

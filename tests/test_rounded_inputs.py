@@ -17,6 +17,7 @@ from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.quadratic_model import Function, Search
 from replicate.exhibits.results import TableResult
 from replicate.exhibits.rounded_inputs import compute_reading
+from replicate.verdicts.inventory import inventory_row
 from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.tables import TableJudge
 
@@ -139,6 +140,24 @@ def test_a_cell_within_the_rounding_of_its_inputs_is_consistent(cases: str) -> N
     # 0.7/2.0 = 0.35 is not 0.36, but 0.72/2.0 is; 0.72 + 1.99 = 2.71
     found = verdicts(table(cases))
     assert (found["ki"], found["sum"], found["odd"]) == ("consistent", "consistent", "unexplained")
+
+
+@pytest.mark.parametrize("cases", ["rows", "columns"])
+def test_what_the_first_reading_takes_from_the_print_is_given(cases: str) -> None:
+    made = table(cases)
+    values = printed(made)
+    frame, ranges = compute_reading(made, made.readings["as-written"], values)
+    result = TableResult("toy", made.id, {"as-written": frame}, {}, {"as-written": ranges})
+    judge = TableJudge("toy", made, result, values, Ledger())
+    judge.judge()
+    given = {
+        made.quantity(row.row, row.column): row for row in judge.judgement.verdicts if row.verdict == "not-computable"
+    }
+    assert list(given) == ["k", "Ti"]
+    assert given["k"].explanation.startswith("Given")
+    assert len(judge.judgement.problems) == 1  # the odd one, which has no entry
+    row = inventory_row("toy", made, result, judge.judgement.verdicts)
+    assert (row.status, row.reason) == ("done", "")
 
 
 def test_cells_of_one_case_are_consistent_together_or_not_at_all() -> None:

@@ -17,6 +17,8 @@ def off(printed: PrintedValue | None, number: float | None) -> str:
     --------
     >>> off(PrintedValue("2.10"), 2.0), off(PrintedValue("0.0"), 0.26), off(PrintedValue("1.20"), 1.2)
     ('+5 %, 10 units of the last digit', '3 units of the last digit', '')
+    >>> off(PrintedValue("0.[6]"), 0.5), off(PrintedValue("2.1?"), 2.0)  # no last digit to count in
+    ('+33 %', '+5 %')
     """
     if printed is None or number is None or not math.isfinite(number) or not printed.states_number:
         return ""
@@ -25,12 +27,13 @@ def off(printed: PrintedValue | None, number: float | None) -> str:
     units = abs(gap) / printed.unit
     if units <= Decimal("0.5"):
         return ""
-    counted = f"{_short(units)} unit{'s' if _short(units) != '1' else ''} of the last digit"
-    if not printed.value or not computed:
-        return counted
-    percent = 100 * gap / abs(computed)
-    sign = "+" if percent > 0 else MINUS
-    return f"{sign}{_short(abs(percent), 2)} %, {counted}"
+    found = []
+    if printed.value and computed:
+        percent = 100 * gap / abs(computed)
+        found.append(f"{'+' if percent > 0 else MINUS}{_short(abs(percent), 2)} %")
+    if not (printed.repeating or printed.lost_digit):
+        found.append(f"{_short(units)} unit{'s' if _short(units) != '1' else ''} of the last digit")
+    return ", ".join(found)
 
 
 def _short(value: Decimal, digits: int = 1) -> str:

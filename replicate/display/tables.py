@@ -284,7 +284,7 @@ def _between(low: str, high: str) -> str:
 
 
 def _shortened(table: Table, verdicts: Iterable[VerdictRow]) -> list[tuple[str, str]]:
-    """Return, for every quantity of which some cell is truncated or all are rounded, how many cells are which."""
+    """Return, for every quantity with several cells of which some are truncated, how many are which."""
     matches = {
         (verdict.row, verdict.column): one.match
         for verdict in verdicts
@@ -292,7 +292,7 @@ def _shortened(table: Table, verdicts: Iterable[VerdictRow]) -> list[tuple[str, 
         if one.reading == verdict.reading
     }
     counts = tallies(table, matches)
-    return [(quantity, count.sentence) for quantity, count in counts.items() if count.truncated]
+    return [(quantity, count.sentence) for quantity, count in counts.items() if count.truncated and count.total > 1]
 
 
 def _strengths(table: Table, readings: Iterable[str], verdicts: Mapping[Key, VerdictRow]) -> dict[str, Strength]:

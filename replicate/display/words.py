@@ -45,7 +45,7 @@ VERDICTS = {
         Word("damaged", "⊘", "wrong in the print or in our copy of it; the evidence shows what it should be"),
         Word("discrepant", "≠", "differs for a known, documented cause; there is no single right value"),
         Word("unexplained", "?", "differs, and no cause was found; what was tried is listed"),
-        Word("not-computable", "–", "measured data, or inputs that the paper does not give"),
+        Word("not-computable", "–", "measured data, given numbers, or inputs that the paper does not give"),
     )
 }
 """Verdicts of printed values, best first."""
@@ -75,7 +75,8 @@ MATCHES = {
 CERTAINTIES: dict[Certainty, str] = {
     "proof": "none of which gives the print, by proof",
     "joint-proof": "none of which gives the print and the rest of its case, by proof",
-    "search": "none of which gives the print and the rest of its case, by search",
+    "search": "none of which gives the print, by search",
+    "joint-search": "none of which gives the print and the rest of its case, by search",
 }
 """By what is known of printed inputs that give the print, where none do: what is said of it."""
 
@@ -97,7 +98,7 @@ CONSEQUENCES = {
     word.id: word
     for word in (
         Word("safety", "!!", "a statement about stability or robustness flips"),
-        Word("formula", "!", "the printed formula gives a wrong controller"),
+        Word("formula", "!", "the printed formula gives a wrong result"),
         Word("comparison", "⇅", "a ranking or an inequality of the paper flips"),
         Word("none", "", "changes nothing that the paper uses the number for"),
     )

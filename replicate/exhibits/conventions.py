@@ -29,6 +29,11 @@ class Tally:
     either: int = 0
 
     @property
+    def total(self) -> int:
+        """How many cells hold."""
+        return self.rounded + self.truncated + self.either
+
+    @property
     def sentence(self) -> str:
         """The count in words.
 
@@ -37,11 +42,10 @@ class Tally:
         >>> Tally(40, 0, 2).sentence, Tally(3, 17, 9).sentence, Tally(0, 2, 1).sentence, Tally().sentence
         ('42 of 42 round', '17 truncate, 3 round, 9 do both', '3 of 3 truncate', 'none holds')
         """
-        total = self.rounded + self.truncated + self.either
-        if not total:
+        if not self.total:
             return "none holds"
         if not (self.rounded and self.truncated):
-            return f"{total} of {total} {'truncate' if self.truncated else 'round'}"
+            return f"{self.total} of {self.total} {'truncate' if self.truncated else 'round'}"
         kinds = [(self.truncated, "truncate"), (self.rounded, "round")]
         words = [f"{count} {verb}" for count, verb in sorted(kinds, reverse=True)]
         return ", ".join([*words, f"{self.either} do both"] if self.either else words)

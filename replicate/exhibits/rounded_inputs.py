@@ -104,6 +104,29 @@ def _cases(table: Table) -> tuple[str, ...]:
     return table.columns if table.cases_are_columns else table.rows
 
 
+def given_cells(table: Table, reading: Reading) -> set[Key]:
+    """Return the cells of a reading's own table that it takes from the print, and so does not compute.
+
+    Examples
+    --------
+    >>> table = Table("table-1", "table", "Products", rows=("a", "b"), columns=("x", "y", "xy"))
+    >>> reading = Reading("as-written", "", dict, inputs=("x", "y@b", "p=2.0"))
+    >>> sorted(given_cells(table, reading))
+    [('a', 'x'), ('b', 'x'), ('b', 'y')]
+    """
+    return {
+        _own_cell(table, case, place)
+        for case in _cases(table)
+        for place in reading.inputs_of.get(case, reading.inputs)
+        if not is_elsewhere(place)
+    }
+
+
+def _own_cell(table: Table, case: str, place: str) -> Key:
+    quantity, _, other = place.partition("@")
+    return table.key(other or case, quantity)
+
+
 def places_elsewhere(reading: Reading) -> list[str]:
     """Return the places of the inputs of a reading that are not printed in its own table."""
     places = dict.fromkeys([*reading.inputs, *(place for own in reading.inputs_of.values() for place in own)])
@@ -120,8 +143,7 @@ def _case(
     """Return a case with what its printed inputs give; ``None`` if one of them is blank, or it has none."""
     inputs: dict[str, PrintedValue] = {}
     for place in reading.inputs_of.get(name, reading.inputs):
-        quantity, _, other = place.partition("@")
-        value = elsewhere[place] if is_elsewhere(place) else printed.get(table.key(other or name, quantity))
+        value = elsewhere[place] if is_elsewhere(place) else printed.get(_own_cell(table, name, place))
         if value is None:
             return None
         inputs[place] = value

@@ -1,7 +1,7 @@
 """What a wrong print should be: the value of the reading that shows it, with no more digits than its evidence.
 
-A reading that gives the other cells of the column to their last digit can say every digit of a wrong one. A reading
-that gives them only within some per cent knows the wrong one no better.
+A reading that gives the other cells of the column to their last digit can say as many digits of a wrong one as the
+column prints. A reading that gives them only within some per cent knows the wrong one no better.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ def correction(
     stated = replace(printed[key], text=entry.corrected)
     if match(stated, number).kind != "equal":
         return Correction(problem=f"corrected = '{entry.corrected}', but reading '{entry.reading}' gives {text}")
-    if unit and stated.unit < unit and (stated.unit != 1 or stated.value % unit):
+    too_fine = _finer(stated, unit) if unit else _finer_than_all(stated, printed)
+    if too_fine:
         limit = format_like(printed[key], number, unit)
         return Correction(problem=f"corrected = '{entry.corrected}' has more digits than its evidence: {limit}")
     return Correction(entry.corrected)
@@ -77,6 +78,25 @@ def supported_unit(
     needed = 2 * typical * abs(number)
     place = needed.adjusted() if needed == Decimal(1).scaleb(needed.adjusted()) else needed.adjusted() + 1
     return max(value.unit, Decimal(1).scaleb(min(place, number.adjusted())))
+
+
+def _finer(stated: PrintedValue, unit: Decimal) -> bool:
+    """Say whether a correction has digits below the last one supported; a whole number may end in zeros."""
+    return stated.unit < unit and bool(stated.unit != 1 or stated.value % unit)
+
+
+def _finer_than_all(stated: PrintedValue, printed: Mapping[Key, PrintedValue]) -> bool:
+    """Say whether a correction has more digits than any print of its quantity, after the point and altogether."""
+    return stated.states_number and all(
+        stated.unit < value.unit and _digits(stated) > _digits(value)
+        for value in printed.values()
+        if value.states_number
+    )
+
+
+def _digits(printed: PrintedValue) -> int:
+    """Return the number of significant digits, with trailing zeros."""
+    return printed.value.adjusted() - printed.unit.adjusted() + 1
 
 
 def _distance(printed: PrintedValue, computed: float) -> Decimal:

@@ -49,7 +49,7 @@ def _table(result: TableResult, verdicts: Sequence[VerdictRow]) -> tuple[Status,
     missing = [
         verdict
         for verdict in verdicts
-        if verdict.verdict == "not-computable" or not any(one.text for one in verdict.values)
+        if not _given(verdict) and (verdict.verdict == "not-computable" or not any(one.text for one in verdict.values))
     ]
     if not missing:
         return "done", ""
@@ -59,6 +59,11 @@ def _table(result: TableResult, verdicts: Sequence[VerdictRow]) -> tuple[Status,
         reason += f" ({', '.join(causes)})"
     status: Status = "partly" if len(missing) < len(verdicts) else "not-computable"
     return status, "; ".join([reason, *failed])
+
+
+def _given(verdict: VerdictRow) -> bool:
+    """Say whether a reading takes the value from the print: what cannot be computed for another reason has a cause."""
+    return verdict.verdict == "not-computable" and not verdict.cause
 
 
 def _claims(exhibit: Claims, verdicts: Sequence[VerdictRow]) -> tuple[Status, str]:

@@ -256,7 +256,7 @@ def _text(place: str, raw: dict[str, object], field: str, default: str | None = 
 
 def _keys(place: str, raw: dict[str, object], field: str, allowed: Sequence[str]) -> tuple[str, ...]:
     value = raw[field]
-    if value == ANY:
+    if value in (ANY, [ANY]):
         return (ANY,)
     if not isinstance(value, list) or not value:
         msg = f'{place}: {field} = {value!r}; expected: a list of keys or "{ANY}"'

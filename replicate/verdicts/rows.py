@@ -24,7 +24,7 @@ ValueVerdict = Literal[
     "unexplained",
     "not-computable",
 ]
-Certainty = Literal["", "witness", "proof", "joint-proof", "search"]
+Certainty = Literal["", "witness", "proof", "joint-proof", "search", "joint-search"]
 Verdict = ValueVerdict | ClaimVerdict
 Status = Literal["done", "partly", "not-computable"]
 
@@ -111,7 +111,17 @@ class Computed:
             return ""
         if self.match.kind in {"equal", "consistent"}:
             return "witness"
-        return {"": "search", "alone": "proof", "jointly": "joint-proof"}[self.proof]  # type: ignore[return-value]
+        if self.proof:
+            return "proof" if self.proof == "alone" else "joint-proof"
+        return "joint-search" if self._reaches_print else "search"
+
+    @property
+    def _reaches_print(self) -> bool:
+        """Whether the range and the numbers that round to the print have something in common."""
+        if self.printed is None or self.lower is None or self.upper is None:
+            return False
+        low, high = self.printed.ends
+        return self.lower <= high and low <= self.upper
 
 
 @dataclass(frozen=True)

@@ -87,6 +87,8 @@ class Strength:
         'Meets 18 of 20 values, 31 digits, with 6 alternatives tried: by accident once in more than a million cases.'
         >>> Strength(20, 3, 4.4, 6, 0.31).sentence
         'Meets 3 of 20 values, 4 digits, with 6 alternatives tried: by accident in 31 % of cases.'
+        >>> Strength(9, 1, 0.9, 1, 0.3).sentence
+        'Meets 1 of 9 values, 1 digit, with 1 alternative tried: by accident in 30 % of cases.'
         >>> Strength(1, 0, 0.0, 6, 1.0).sentence
         'Meets none of 1 value.'
         """
@@ -94,7 +96,8 @@ class Strength:
         if not self.met:
             return f"Meets none of {values}."
         tried = f"{self.choices} alternative{'s' if self.choices != 1 else ''} tried"
-        return f"Meets {self.met} of {values}, {self.digits:.0f} digits, with {tried}: {self.odds}."
+        digits = f"{self.digits:.0f} digit{'s' if round(self.digits) != 1 else ''}"
+        return f"Meets {self.met} of {values}, {digits}, with {tried}: {self.odds}."
 
     @property
     def odds(self) -> str:

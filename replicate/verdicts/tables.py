@@ -10,6 +10,7 @@ from replicate.exhibits.conventions import tallies
 from replicate.exhibits.matching import computed_text
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
+from replicate.exhibits.rounded_inputs import given_cells
 from replicate.verdicts.consequences import with_consequences
 from replicate.verdicts.corrections import Correction, correction
 from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
@@ -29,6 +30,7 @@ _CAUSE_VERDICTS: dict[Cause, ValueVerdict] = {
     "unavailable": "not-computable",
     "unknown": "unexplained",
 }
+_GIVEN = "Given: what else is computed of this table takes it from the print."
 
 
 @dataclass
@@ -54,6 +56,7 @@ class TableJudge:
     numbers: dict[str, dict[Key, float]] = field(default_factory=dict)  # by reading
     computed: dict[str, dict[Key, Computed]] = field(default_factory=dict)  # by reading
     strengths: dict[str, Strength] = field(default_factory=dict)  # by reading
+    given: set[Key] = field(default_factory=set)  # cells that the first reading takes from the print
 
     def judge(self) -> list[tuple[int, LedgerEntry]]:
         """Fill the judgement, and return which of its verdicts come from which ledger entry."""
@@ -64,6 +67,7 @@ class TableJudge:
             return []  # what the text says is not known, so nothing can be said of the print
         points = [reading for reading in self.table.readings if reading in self.result.ranges]
         share_points(self.table, self.printed, self.computed, points)
+        self.given = given_cells(self.table, self.table.readings[AS_WRITTEN])
         self.strengths = strengths(self.table, self.computed)
         self.judgement.strengths.update({(self.paper, self.table.id, id): one for id, one in self.strengths.items()})
         held = {key: self._held(key) for key in self.printed}
@@ -203,6 +207,8 @@ class TableJudge:
             return replace(self._verdict_row(key, "near", best), explanation=self._remark(key, best))
         if self.result.errors and not any(key in numbers for numbers in self.numbers.values()):
             return self._verdict_row(key, "unexplained", AS_WRITTEN)  # the failure is on record already
+        if key in self.given and not any(key in numbers for numbers in self.numbers.values()):
+            return replace(self._verdict_row(key, "not-computable", AS_WRITTEN), explanation=_GIVEN)
         computed = [
             f"{reading} {computed_text(self.numbers[reading].get(key)) or 'nothing'}" for reading in self.numbers
         ]
@@ -221,7 +227,9 @@ class TableJudge:
             return f"Near under the reading “{reading}” only, one of {len(self.table.readings)}." if chosen else ""
         count = tallies(self.table, {place: other.match for place, other in self.computed[reading].items()})
         verb = "truncated" if one.match.how == "truncated" else "rounded"
-        return f"Holds if it was {verb}; of its column {count[self.table.quantity(*key)].sentence}."
+        own = count[self.table.quantity(*key)]
+        line = "row" if self.table.cases_are_columns else "column"
+        return f"Holds if it was {verb}; of its {line} {own.sentence}." if own.total > 1 else f"Holds if it was {verb}."
 
     def _verdict_row(self, key: Key, verdict: ValueVerdict, reading: str) -> VerdictRow:
         one = self.computed[reading][key]
