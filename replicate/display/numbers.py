@@ -144,15 +144,18 @@ def full(computed: float | None) -> str:
 
 
 def aligned(texts: Iterable[str]) -> dict[str, str]:
-    r"""Return, by text, the number with spaces after it that bring the points of a column in line.
+    r"""Return, by text, the number with spaces after it that bring the points of a column in line; not a pair.
 
     Examples
     --------
     >>> [text.replace("\u2007", "_").replace("\u2008", ",") for text in aligned(["1.25", "10"]).values()]
     ['1.25', '10__,']
+    >>> aligned(["1.2", "3.0095 ± 0.0777"])["1.2"]
+    '1.2'
     """
     texts = list(texts)
-    decimals = {text: len(text.replace(OVERLINE, "").partition(".")[2]) for text in texts if "e" not in text and text}
+    alone = [text for text in texts if text and "e" not in text and text.count(".") < 2]
+    decimals = {text: len(text.replace(OVERLINE, "").partition(".")[2]) for text in alone}
     most = max(decimals.values(), default=0)
     result = dict.fromkeys(texts, "")
     for text in result:
