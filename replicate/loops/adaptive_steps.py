@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from replicate.loops.chain import Chain, open_loop_of
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
+from replicate.loops.loop_transfer import ILL_POSED
 from replicate.loops.piece_flow import (
     DEGREE,
     MOST_PIECES,
@@ -93,7 +94,7 @@ class _March:
         self.x = self.chain.start * self.setpoint
         self.resolution = Resolution(START * abs(self.setpoint))
         self.algebraic = 1.0 - (float(self.row.v[0]) if self.delays[0] == 0.0 else 0.0)
-        if abs(self.algebraic) < SAME:
+        if abs(self.algebraic) < ILL_POSED:
             msg = "the loop without dead time is not well posed: its algebraic feedback equals one"
             raise ImproperLoopError(msg)
 

@@ -28,6 +28,9 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 EPS = float(np.finfo(float).eps)
+ILL_POSED = 1e-12  # distance of an algebraic loop's gain from -1 that is rounding
+ON_AXIS = 1e-6  # imaginary part, relative to the real one, of a simple root that is real
+JUST_BEYOND = 1e-9  # relative distance from a corner
 LARGEST = 1e70  # of a coefficient: products of four of them must remain numbers
 
 
@@ -65,7 +68,7 @@ class LoopTransfer:
         if transfer.num.size > den.size:
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
             raise ImproperLoopError(msg)
-        if not plant.dead_time and transfer.num.size == den.size and abs(1.0 + transfer.num[0] / den[0]) < 1e-12:
+        if not plant.dead_time and transfer.num.size == den.size and abs(1.0 + transfer.num[0] / den[0]) < ILL_POSED:
             msg = "the loop is not well posed: without dead time L must not tend to -1 at infinite frequency"
             raise ImproperLoopError(msg)
         return transfer
@@ -198,7 +201,7 @@ class LoopTransfer:
         """All frequencies at which |L(i w)| = 1, ascending."""
         n, d = polynomials.squared_magnitude(self.num), polynomials.squared_magnitude(self.den)
         roots = roots_of_difference(n, d)
-        real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= 1e-6 * np.abs(roots.real))]
+        real = roots.real[(roots.real > 0.0) & (np.abs(roots.imag) <= ON_AXIS * np.abs(roots.real))]
         return np.sort([self._polished_crossover(math.sqrt(x)) for x in real.tolist()])
 
     def _polished_crossover(self, w: float) -> float:
@@ -230,7 +233,7 @@ class LoopTransfer:
     def _fall(self, start: float, level: float, ahead: ArrayLike = 1.0) -> float:
         """Return a frequency w from which on |L| is below a level, as seen at ``ahead`` times w."""
         ahead = np.asarray(ahead)
-        w = start * (1.0 + 1e-9)
+        w = start * (1.0 + JUST_BEYOND)
         for _ in range(400):
             gain = np.abs(self(1j * w * ahead))
             if np.all(gain < level):

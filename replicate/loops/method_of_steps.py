@@ -27,6 +27,7 @@ from replicate.loops.chain import Chain, build_chain, gains
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.kept import Kept
+from replicate.loops.loop_transfer import ILL_POSED
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -266,7 +267,7 @@ def _close(chain: Chain, g: Array) -> _Closed:
     # u = g.(W_x X + W_v v + W_r r) with v = u + load
     through, b = float((g @ chain.wv)[0]), chain.b[:, 0]
     algebraic = 1.0 - through
-    if abs(algebraic) < 1e-12:
+    if abs(algebraic) < ILL_POSED:
         msg = "the loop without dead time is not well posed: its algebraic feedback equals one"
         raise ImproperLoopError(msg)
     ux, ud, ur = g @ chain.wx / algebraic, through / algebraic, float(g @ chain.wr) / algebraic

@@ -13,7 +13,7 @@ from replicate.loops.bracketed import bracketed_root
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.function_plant import FunctionPlant
-from replicate.loops.loop_transfer import LoopTransfer, stationary_frequencies
+from replicate.loops.loop_transfer import ILL_POSED, JUST_BEYOND, LoopTransfer, stationary_frequencies
 from replicate.loops.sum_plant import SumPlant
 
 Array = NDArray[np.float64]
@@ -121,7 +121,7 @@ class SumTransfer(LoopTransfer):
         if any(part.size > whole.size for part in nums):
             msg = "the loop gain grows without bound at high frequency: filter the derivative or the measurement"
             raise ImproperLoopError(msg)
-        if not plant.dead_time and abs(1.0 + transfer.limits[0]) < 1e-12:
+        if not plant.dead_time and abs(1.0 + transfer.limits[0]) < ILL_POSED:
             msg = "the loop is not well posed: without dead time L must not tend to -1 at infinite frequency"
             raise ImproperLoopError(msg)
         return transfer
@@ -253,7 +253,7 @@ class SumTransfer(LoopTransfer):
         """Return a frequency beyond which sum |L_i(i w)| provably stays below ``level``."""
         stationary = [w for num in self.nums if num.size for w in stationary_frequencies(num, self.den).tolist()]
         start = max([*stationary, *np.abs(self.corner_frequencies).tolist()], default=1.0 / self.dead_times[-1])
-        w = start * (1.0 + 1e-9)
+        w = start * (1.0 + JUST_BEYOND)
         for _ in range(400):
             s = np.array(1j * w)
             sizes = [abs(np.polyval(num, s) / np.polyval(self.den, s)) for num in self.nums]
