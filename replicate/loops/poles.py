@@ -40,6 +40,12 @@ STRIP, MOST_STRIPS = (
 MOST_TURNS = 3000.0  # rad of the longest dead time up to which poles are counted,
 MANY_TURNS = 30_000.0  # and where more than a few are asked for
 TIE = 1e-9  # relative difference of real parts that are equal
+SAME = 1e-8  # relative distance of two poles that are one,
+ONE = 1e-13  # and of points that are one to rounding, as those around a multiple pole are not
+REAL, REAL_OF_FUNCTION = 1e-10, 1e-9  # imaginary part, relative to the modulus, of a pole that is real
+AT_REST = 1e-9  # of the largest modulus: a pole at s = 0
+SPREAD = 1e-9  # relative distance at which the parts of a multiple zero are set apart
+BEHIND = 1e-6  # relative distance of the next pole to the left that lets a line pass between
 
 
 def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
@@ -74,7 +80,7 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     if not plant.parts:
         points = np.append(points, _stalled(transfer, polished[~converged]))
     if transfer.pole_at_rest:  # Newton's steps are relative to s
-        points = np.append(points[np.abs(points) > 1e-9 * np.abs(points).max(initial=0.0)], 0.0)
+        points = np.append(points[np.abs(points) > AT_REST * np.abs(points).max(initial=0.0)], 0.0)
     found = _ordered(_distinct(transfer, points, count))
     if not plant.parts:
         others = np.concatenate([missing_unstable(transfer, found), poles_at_controller_zeros(transfer)])
@@ -116,19 +122,19 @@ def _distinct(transfer: LoopTransfer, points: ComplexArray, count: int) -> list[
         first = ordered.pop(0)
         near = [p for p in ordered if abs(p - first) <= CLOSE * abs(first)]
         pole = complex(first.real, abs(first.imag))
-        if near and max(abs(p - first) for p in near) > 1e-13 * abs(first):
+        if near and max(abs(p - first) for p in near) > ONE * abs(first):
             others = [abs(p - first) for p in [*found, *ordered] if p not in near]
             multiple = _multiple(transfer, first, near, min(others, default=np.inf))
             if multiple is not None:
                 pole = multiple
                 ordered = [p for p in ordered if p not in near]
-        if abs(pole.imag) < 1e-10 * abs(pole):
+        if abs(pole.imag) < REAL * abs(pole):
             pole = complex(pole.real, 0.0)
-        if not transfer.plant.parts and pole.imag < 1e-9 * abs(pole) and pole.real <= 0.0:
+        if not transfer.plant.parts and pole.imag < REAL_OF_FUNCTION * abs(pole) and pole.real <= 0.0:
             if has_cut(transfer, np.array([pole]))[0]:
                 continue
             pole = complex(pole.real, 0.0)
-        if all(abs(pole - other) > 1e-8 * abs(pole) for other in found):
+        if all(abs(pole - other) > SAME * abs(pole) for other in found):
             found.append(pole)
     return found
 
@@ -182,7 +188,7 @@ def _completed(transfer: LoopTransfer, found: list[complex], count: int) -> list
         if zeros is None:
             return found
         # a multiple zero is where its parts are, as far as they were told apart
-        places = [zero.place * (1.0 + 1e-9 * n) for zero in zeros for n in range(zero.order)]
+        places = [zero.place * (1.0 + SPREAD * n) for zero in zeros for n in range(zero.order)]
         right = _distinct(transfer, np.array(places, dtype=complex), count)
     if few < count and not transfer.feedthrough:
         right = _extended(transfer, right, line, count)
@@ -192,7 +198,7 @@ def _completed(transfer: LoopTransfer, found: list[complex], count: int) -> list
 def _line_after(transfer: LoopTransfer, found: list[complex], count: int) -> float:
     """Return the real part of a vertical line to the left of so many poles, and to the right of the next."""
     last = found[count - 1].real
-    after = [p.real for p in found[count:] if p.real < last - 1e-6 * abs(last)]
+    after = [p.real for p in found[count:] if p.real < last - BEHIND * abs(last)]
     line = 0.5 * (last + after[0]) if after else last - 0.05 * abs(last)
     # the nearer the line is to the poles, the lower the frequencies up to which it has to be followed
     return max(line, last - 0.2 * max(abs(last), 1.0 / _longest(transfer)))
@@ -220,7 +226,7 @@ def _zeros_in(transfer: LoopTransfer, box: Box) -> list[Zero] | None:
 
 def _merged(first: list[complex], second: list[complex]) -> list[complex]:
     """Return two lists of poles as one, equal ones once, in order."""
-    return _ordered([*first, *(p for p in second if all(abs(p - q) > 1e-8 * abs(p) for q in first))])
+    return _ordered([*first, *(p for p in second if all(abs(p - q) > SAME * abs(p) for q in first))])
 
 
 def _longest(transfer: LoopTransfer) -> float:
