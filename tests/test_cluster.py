@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import dask_cluster
@@ -80,6 +82,24 @@ def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch: pytest.Monkey
     monkeypatch.setattr(backends, "ANSWER", 1)
     with pytest.raises(ReplicateError, match=r"^no scheduler answers at tcp://127\.0\.0\.1:9 within 1 s$"):
         list(DaskCluster("tcp://127.0.0.1:9").unordered(abs, [1]))
+
+
+@pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\n\r\n"])
+def test_what_is_no_scheduler_but_takes_calls_is_one_line(says: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(backends, "ANSWER", 1)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+
+        def take_a_call() -> None:
+            with server.accept()[0] as caller:
+                caller.sendall(says)
+                while caller.recv(1024):
+                    pass
+
+        with ThreadPoolExecutor(1) as threads:
+            threads.submit(take_a_call)
+            with pytest.raises(ReplicateError, match=rf"^no scheduler answers at {address} within 1 s$"):
+                list(DaskCluster(address).unordered(abs, [1]))
 
 
 def test_a_scheduler_without_workers_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

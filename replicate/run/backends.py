@@ -7,6 +7,7 @@ when one task cannot be done.
 
 from __future__ import annotations
 
+import asyncio
 import logging
 import os
 import warnings
@@ -112,16 +113,25 @@ class DaskCluster:
                     begun[future.key] = item
                     done.add(future)
 
-            give(_ahead(client))
+            give(self._ahead(client))
             for future in done:
                 item = begun.pop(future.key)
-                give(_ahead(client))
+                give(self._ahead(client))
                 try:
                     made = future.result()
                 except (distributed.KilledWorker, CancelledError) as error:
                     msg = f"{item}: the workers that were at it were lost, or the scheduler {self.scheduler} was"
                     raise ReplicateError(msg) from error
                 yield item, made
+
+    def _ahead(self, client: Any) -> int:
+        """Return how many tasks may be under way."""
+        try:
+            cores: int = sum(client.ncores().values())
+        except OSError as error:
+            msg = f"the scheduler {self.scheduler} was lost"
+            raise ReplicateError(msg) from error
+        return 2 * max(1, cores)
 
 
 def backend_of(name: str, scheduler: str | None, jobs: int | None) -> Backend:
@@ -168,10 +178,12 @@ def _numbered(function: Callable[[Item], Made], number: int, item: Item) -> tupl
 def _client(scheduler: str) -> Iterator[Any]:
     """Yield a client of a scheduler that answers in time; what the library logs of lost connections is not shown."""
     distributed = import_module("distributed")
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
+        asyncio.run(_greet(scheduler))
         client = distributed.Client(scheduler, timeout=ANSWER, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
+    except Exception as error:  # whatever else listens there may say anything
         msg = f"no scheduler answers at {scheduler} within {ANSWER} s"
         raise ReplicateError(msg) from error
     with client:
@@ -183,7 +195,8 @@ def _client(scheduler: str) -> Iterator[Any]:
         yield client
 
 
-def _ahead(client: Any) -> int:
-    """Return how many tasks may be under way."""
-    cores: int = sum(client.ncores().values())
-    return 2 * max(1, cores)
+async def _greet(scheduler: str) -> None:
+    """Connect to a scheduler and leave again: a client waits for ever for one that takes calls and says nothing."""
+    connect, security = import_module("distributed.comm").connect, import_module("distributed").Security()
+    call = connect(scheduler, timeout=ANSWER, **security.get_connection_args("client"))
+    (await asyncio.wait_for(call, ANSWER)).abort()
