@@ -391,3 +391,14 @@ def seen_bytes(folder: Path) -> dict[str, bytes]:
     hidden = {"cache", ".replicate"}
     files = (path for path in sorted(folder.rglob("*")) if path.is_file() and not hidden & {*path.parts})
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def test_a_folder_that_nobody_can_make_is_named_and_not_waited_for(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(path: Path, *_: object, **__: object) -> None:
+        raise FileNotFoundError(2, "No such file or directory", str(path))
+
+    monkeypatch.setattr(Path, "mkdir", refuse)
+    with pytest.raises(OutputError, match="cannot be written: No such file or directory"), staged(tmp_path / "out"):
+        pass

@@ -17,6 +17,7 @@ from typing import IO
 from replicate.errors import OutputError
 
 _PAUSE = 0.2  # seconds between two attempts
+_REMOVALS = 100  # of the folder by other runs; more often than that, it cannot be made
 
 # What the systems say when another process holds the lock; anything else means that this disk has no locks.
 _HELD = {errno.EAGAIN, errno.EACCES, errno.EDEADLK}
@@ -74,12 +75,15 @@ def locked(path: Path, say: Callable[[str], None]) -> Iterator[None]:
 
 
 def _acquire(path: Path, say: Callable[[str], None]) -> IO[str]:
-    waited = False
+    waited, removals = False, 0
     while True:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             file = path.open("a+", encoding="utf-8")
         except FileNotFoundError:  # the run before has just removed the folder
+            removals += 1
+            if removals > _REMOVALS:
+                raise
             continue
         try:
             _try(file)
