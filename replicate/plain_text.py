@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import codecs
 import re
+import sys
 import tomllib
 import unicodedata
 from importlib.resources.abc import Traversable
@@ -113,6 +114,11 @@ def parse_toml(text: str, name: str, error: type[ReplicateError]) -> dict[str, A
         place = re.search(r" \(at (?:line (\d+)|end of document).*", str(why))
         line = (place and place[1]) or text.count("\n") + 1
         msg = f"{name}:{line}: is not readable TOML: {str(why)[: place.start()] if place else why}"
+        raise error(msg) from why
+    except ValueError as why:  # from Python's own `int`
+        digits = re.search(rf"[0-9_]{{{sys.get_int_max_str_digits()},}}", text)
+        line = text.count("\n", 0, digits.start() if digits else 0) + 1
+        msg = f"{name}:{line}: is not readable TOML: an integer of too many digits"
         raise error(msg) from why
     except RecursionError as why:
         msg = f"{name}: is not readable TOML: too many brackets inside each other"

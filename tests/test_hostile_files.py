@@ -85,3 +85,9 @@ def test_a_text_that_keeps_pandoc_busy_is_named(monkeypatch: pytest.MonkeyPatch)
         batch.substitute(page)
     assert caught.value.why.startswith("it takes more than 3 seconds")
     assert time.monotonic() - begun < 60
+
+
+def test_an_integer_that_python_does_not_read_is_named_with_its_line() -> None:
+    text = f"a = 1\nb = {'9' * 5000}\n"
+    with pytest.raises(ReplicateError, match=r"^x\.toml:2: is not readable TOML: an integer of too many digits$"):
+        parse_toml(text, "x.toml", ReplicateError)
