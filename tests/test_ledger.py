@@ -64,8 +64,9 @@ answer = "They agree."
     assert not ledger.entries[1].covers("B", "x")
 
 
-def test_entries_that_name_their_cells_come_first(tmp_path: Path) -> None:
-    wildcard = ENTRY.replace('["A"]', '"*"')
+@pytest.mark.parametrize("every", ['"*"', '["*"]'])
+def test_entries_that_name_their_cells_come_first(tmp_path: Path, every: str) -> None:
+    wildcard = ENTRY.replace('["A"]', every)
     ledger = load(tmp_path, wildcard + ENTRY)
     assert [entry.explicit for entry in ledger.of("table-1")] == [True, False]
     assert ledger.of("table-2") == []
