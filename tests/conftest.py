@@ -9,10 +9,17 @@ from pathlib import Path
 import installed_paper
 import pytest
 from attack import attack, table
+from hypothesis import HealthCheck, settings
 
 from replicate import cli
 
 __all__ = ["attack"]
+
+# Hypothesis tries the same examples in every run, however slow the machine: a test that passes today passes tomorrow.
+settings.register_profile(
+    "reproducible", max_examples=25, derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("reproducible")
 
 Run = Callable[..., tuple[int, str, str]]
 

@@ -23,7 +23,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import synthetic
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import replicate as package
@@ -221,7 +221,6 @@ numbers = st.one_of(
 )  # fmt: skip
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.lists(numbers, min_size=2, max_size=2), max_size=4))
 def test_every_cell_comes_back_as_it_was(cells: list[list[Any]]) -> None:
     rows = [f"r{i}" for i in range(len(cells))]
@@ -239,7 +238,6 @@ def test_every_cell_comes_back_as_it_was(cells: list[list[Any]]) -> None:
                 assert after == before
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(st.tuples(st.sampled_from("ab"), st.floats(), st.floats()), max_size=20), st.binary(max_size=50))
 def test_a_figure_comes_back_as_it_was(points: list[tuple[str, float, float]], png: bytes) -> None:
     curves = pd.DataFrame(

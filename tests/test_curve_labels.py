@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -35,7 +35,6 @@ def apart(axes: Axes, box: Bbox) -> dict[str, float]:
     return found
 
 
-@settings(deadline=None, max_examples=25)  # each draws a figure
 @given(st.lists(st.floats(0.2, 9.0), min_size=1, max_size=5, unique_by=lambda rate: round(rate, 1)))
 def test_each_name_is_nearest_to_its_own_curve(rates: list[float]) -> None:
     with style("names"):

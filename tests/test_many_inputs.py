@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from replicate.display.tables import table_view
@@ -35,7 +35,6 @@ def test_the_range_of_a_sum_is_the_sum_of_the_ranges(weights: list[float]) -> No
 
 
 @given(seed=st.integers(0, 10**6))
-@settings(max_examples=25)
 def test_monotonic_functions_have_their_extremes_at_two_corners(seed: int) -> None:
     rng = np.random.default_rng(seed)
     signs = rng.choice([-1.0, 1.0], 9)

@@ -29,7 +29,7 @@ def searched(function: Function, middle: list[float], widths: list[float], toler
 
 
 @given(a=st.floats(0.5, 5.0), b=st.floats(0.5, 5.0), places=st.tuples(st.integers(1, 3), st.integers(1, 3)))
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_monotonic_functions_have_their_extrema_at_corners(a: float, b: float, places: tuple[int, int]) -> None:
     half = [0.5 * 10.0**-place for place in places]
     low, high = searched(lambda x: np.array([x[0] / x[1], np.sqrt(x[0] * x[1])]), [a, b], half).range()
@@ -39,7 +39,7 @@ def test_monotonic_functions_have_their_extrema_at_corners(a: float, b: float, p
 
 
 @given(place=st.floats(-0.9, 0.9), size=st.floats(0.01, 0.5))
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=40)
 def test_an_extremum_inside_is_found(place: float, size: float) -> None:
     # cos has its maximum 1 at 0, which is inside the box
     low, high = searched(lambda x: np.array([np.cos(x[0]) + x[1]]), [-place * size, 0.0], [size, 0.1], 1e-6).range()
