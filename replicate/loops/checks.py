@@ -71,6 +71,16 @@ def triple(name: str, value: object, allowed: str) -> tuple[Any, Any, Any]:
     return value[0], value[1], value[2]
 
 
+def several(name: str, values: object, allowed: str) -> list[Any]:
+    """Return the items of anything but a text that can be gone through; LoopError otherwise."""
+    if isinstance(values, Iterable) and not isinstance(values, str | bytes):
+        try:
+            return list(values)
+        except TypeError:  # an array without dimensions
+            pass
+    raise LoopError(_message(name, values, allowed))
+
+
 def times(name: str, values: object) -> Array:
     """Return real numbers of any shape as an array of floats; LoopError otherwise."""
     return np.asarray(_converted(name, values, float, "real numbers", kinds="biufO"), dtype=float)

@@ -36,7 +36,7 @@ def design_pid(
     plant: Plant,
     ms: float | None = None,
     mp: float | None = None,
-    constraints: Sequence[Constraint | str] | None = None,
+    constraints: Sequence[Constraint | str] | str | None = None,
     *,
     start: tuple[float, float, float] | None = None,
 ) -> PIDDesign:
@@ -83,7 +83,9 @@ def design_pid(
         k, ki, kd = (sign * units.gain * checks.finite("start", gain) for gain in start)
         start = (k, ki * units.time, kd / units.time)
     if constraints is not None:
-        constraints = [_scaled(item, units.time) for item in constraints]
+        names = "a list of 'curvature', 'phase' and Constraint"
+        given = [constraints] if isinstance(constraints, str) else checks.several("constraints", constraints, names)
+        constraints = [_scaled(item, units.time) for item in given]
     found = _design(scaled if sign > 0.0 else -scaled, ms, mp, circle, constraints, start)
     gain = sign / units.gain
     active = tuple(replace(part, frequency=part.frequency / units.time) for part in found.active)

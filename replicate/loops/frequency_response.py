@@ -66,6 +66,8 @@ def bode(loop: Loop, w: ArrayLike) -> Bode:
         If a frequency is not a positive finite number.
     """
     frequency = checked_frequencies(w)
+    if not frequency.size:
+        return Bode(frequency, frequency, frequency)
     value = loop(1j * frequency)
     ordered = np.unique(frequency)
     phase = _continuous_phase(loop, ordered)[np.searchsorted(ordered, frequency)]

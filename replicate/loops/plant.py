@@ -158,8 +158,8 @@ class Plant(PlantViews, SetOnce):
         """
         from replicate.loops.sum_plant import sum_of
 
-        checks.instance("the terms of a plant", terms, Iterable, "a list of (num, den, dead_time)")
-        return sum_of([Plant(*checks.triple("each term of a plant", term, "(num, den, dead_time)")) for term in terms])
+        given = checks.several("the terms of a plant", terms, "a list of (num, den, dead_time)")
+        return sum_of([Plant(*checks.triple("each term of a plant", term, "(num, den, dead_time)")) for term in given])
 
     # ---- what kind of plant it is ---------------------------------------------------------------------------------
 

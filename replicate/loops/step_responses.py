@@ -35,8 +35,11 @@ def step_responses(
     Raises
     ------
     LoopError
-        If the controllers differ in more than k, ki, kd and b.
+        If the controllers are none, or differ in more than k, ki, kd and b.
     """
+    controllers = checks.several("the controllers", controllers, "a list of PI or PID")
+    for controller in controllers:
+        checks.instance("each controller", controller, PID, "a PI or PID")
     if not controllers:
         return []
     until = checks.positive("the horizon until", until, allowed="a finite time > 0")

@@ -10,7 +10,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from replicate.loops import PI, Circle, Loop, LoopError, Plant, SmithPredictor, design_pi, design_pid, nu_gap, tune
+from replicate.loops import (
+    PI,
+    Circle,
+    Loop,
+    LoopError,
+    Plant,
+    SmithPredictor,
+    design_pi,
+    design_pid,
+    nu_gap,
+    step_responses,
+    sweep,
+    tune,
+)
 from replicate.loops.inputs import Step
 
 PLANT = Plant.foptd(1.0, 1.0, 1.0)
@@ -77,6 +90,24 @@ def test_points_of_the_plane_are_complex_numbers(value: Any) -> None:
             function(value)
     with pytest.raises(LoopError, match=r"must be (positive finite|real) numbers"):
         LOOP.bode(value)
+
+
+@pytest.mark.parametrize("value", [3, "x", np.array(1.0), PI(1.0), [1], np.array([1.0])], ids=repr)
+def test_several_things_are_a_list_of_them(value: Any) -> None:
+    calls: list[tuple[str, Callable[[], object]]] = [
+        ("the terms of a plant|each term", lambda: Plant.from_terms(value)),
+        ("the controllers|each controller", lambda: step_responses(PLANT, value, 5.0)),
+        ("constraint", lambda: design_pid(PLANT, 1.4, constraints=value)),
+        ("metric", lambda: sweep(PLANT, PI(0.2), metrics=value)),
+    ]
+    for named, call in calls:
+        with pytest.raises(LoopError, match=named):
+            call()
+
+
+def test_one_name_is_a_list_of_one_and_no_frequencies_have_no_values() -> None:
+    assert design_pid(PLANT, 1.4, constraints="phase") == design_pid(PLANT, 1.4, constraints=("phase",))
+    assert LOOP.bode([]).magnitude.size == LOOP.nyquist([]).size == 0
 
 
 def test_times_are_real_numbers() -> None:

@@ -56,16 +56,13 @@ def checked_metrics(names: str | Iterable[str]) -> tuple[str, ...]:
     LoopError
         If there is none, or one is unknown; the message lists those that are allowed.
     """
-    try:
-        given = [names] if isinstance(names, str) else list(names)
-    except TypeError:
-        msg = f"metrics must be names of metrics, not {checks.shown(names)}: allowed are {', '.join(ALLOWED)}"
-        raise LoopError(msg) from None
+    allowed = f"names of metrics: {', '.join(ALLOWED)}"
+    given = [names] if isinstance(names, str) else checks.several("metrics", names, allowed)
     if not given:
         msg = f"metrics must name at least one of {', '.join(ALLOWED)}"
         raise LoopError(msg)
     for name in given:
-        if name not in ALLOWED:
+        if not isinstance(name, str) or name not in ALLOWED:
             msg = f"unknown metric {checks.shown(name)}: allowed are {', '.join(ALLOWED)}"
             raise LoopError(msg)
     return tuple(dict.fromkeys(given))
