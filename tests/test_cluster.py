@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
-import socket
+import socketserver
 import subprocess
 import sys
 import threading
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from pathlib import Path
 
 import dask_cluster
@@ -84,22 +85,36 @@ def test_a_scheduler_that_does_not_answer_is_one_line(monkeypatch: pytest.Monkey
         list(DaskCluster("tcp://127.0.0.1:9").unordered(abs, [1]))
 
 
-@pytest.mark.parametrize("says", [b"", b"HTTP/1.1 400 Bad Request\r\n\r\n"])
-def test_what_is_no_scheduler_but_takes_calls_is_one_line(says: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def nobody(request: pytest.FixtureRequest) -> Iterator[str]:
+    """Return the address of something that takes calls, says what the test wants, and is no scheduler."""
+
+    class Answer(socketserver.BaseRequestHandler):
+        def handle(self) -> None:
+            self.request.sendall(request.param)
+            while self.request.recv(1024):
+                pass
+
+    with socketserver.ThreadingTCPServer(("127.0.0.1", 0), Answer) as server:
+        server.block_on_close = False
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        yield f"tcp://127.0.0.1:{server.server_address[1]}"
+        server.shutdown()
+
+
+@pytest.mark.parametrize("nobody", [b"", b"HTTP/1.1 400 Bad Request\r\n\r\n"], indirect=True)
+def test_what_is_no_scheduler_but_takes_calls_is_one_line(nobody: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(backends, "ANSWER", 1)
-    with socket.create_server(("127.0.0.1", 0)) as server:
-        address = f"tcp://127.0.0.1:{server.getsockname()[1]}"
+    with pytest.raises(ReplicateError, match=rf"^no scheduler answers at {nobody} within 1 s$"):
+        list(DaskCluster(nobody).unordered(abs, [1]))
 
-        def take_a_call() -> None:
-            with server.accept()[0] as caller:
-                caller.sendall(says)
-                while caller.recv(1024):
-                    pass
 
-        with ThreadPoolExecutor(1) as threads:
-            threads.submit(take_a_call)
-            with pytest.raises(ReplicateError, match=rf"^no scheduler answers at {address} within 1 s$"):
-                list(DaskCluster(address).unordered(abs, [1]))
+def test_a_loop_that_runs_already_hinders_no_cluster(tmp_path: Path) -> None:
+    async def in_a_notebook(address: str) -> list[tuple[int, int]]:
+        return list(DaskCluster(address).unordered(abs, [-1]))
+
+    with dask_cluster.cluster(tmp_path, workers=1) as cluster:
+        assert asyncio.run(in_a_notebook(cluster.address)) == [(-1, 1)]
 
 
 def test_a_scheduler_without_workers_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import logging
 import os
 import warnings
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -181,7 +181,8 @@ def _client(scheduler: str) -> Iterator[Any]:
     for name in ("distributed", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
-        asyncio.run(_greet(scheduler))
+        with ThreadPoolExecutor(1) as aside:  # a loop may be running here: that of a notebook, say
+            aside.submit(asyncio.run, _greet(scheduler)).result()
         client = distributed.Client(scheduler, timeout=ANSWER, set_as_default=False)
     except Exception as error:  # whatever else listens there may say anything
         msg = f"no scheduler answers at {scheduler} within {ANSWER} s"
