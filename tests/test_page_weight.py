@@ -101,7 +101,7 @@ def test_what_is_wrong_stays_with_its_cards(page: str) -> None:
         assert "99999" in cell
         assert 'class="card unexplained"' in cell
     assert table.count('class="card ') == len(WRONG)
-    assert "press one of the symbols that are buttons" in table
+    assert "Press one of the symbols that are buttons" in table
     assert table.count('<tr class="printed">') == len(ROWS)
 
 

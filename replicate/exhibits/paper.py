@@ -87,7 +87,7 @@ class Paper:
         Raises
         ------
         PaperDefinitionError
-            If an exhibit is defined in a module that `modules` does not list, or a table has no reading.
+            If an exhibit is defined in a module that `modules` does not list, or a printed table has no reading.
         """
         if not self._loaded:
             for module in self.modules:
@@ -103,7 +103,7 @@ class Paper:
             if isinstance(exhibit, Claims):
                 exhibit.claims = in_listed_order(exhibit.claims, self.package, self.modules)
             elif isinstance(exhibit, Table):
-                if not exhibit.readings:
+                if exhibit.printed and not exhibit.readings:
                     file = display_name(Path(str(sys.modules[exhibit.module].__file__)))
                     refuse(f"{file}: {exhibit.id} has no reading; expected: one or more, '{AS_WRITTEN}' first")
                 others = dict(exhibit.readings)
