@@ -10,7 +10,7 @@ from replicate.errors import PaperDefinitionError
 from replicate.exhibits.frames import FrameCells, read_frame
 from replicate.exhibits.notation import Notation, Statement, is_date
 from replicate.exhibits.printed import Key, PrintedValue
-from replicate.exhibits.statements import numbers_in
+from replicate.exhibits.statements import numbers_in, takes_pair
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -103,11 +103,7 @@ def _fits(word: str, notation: Notation, statement: Statement) -> bool:
         return True
     if notation.date:
         return is_date(word)
-    return _takes_pair(statement) and len(numbers_in(word)) == 2
-
-
-def _takes_pair(statement: Statement) -> bool:
-    return bool(statement.uncertainty) or statement.kind == "interval"
+    return takes_pair(statement) and len(numbers_in(word)) == 2
 
 
 def _expected(notation: Notation, statement: Statement) -> str:

@@ -41,6 +41,11 @@ def numbers_in(given: str) -> list[Decimal]:
     return numbers if len(numbers) == len(given.split()) else []
 
 
+def takes_pair(statement: Statement) -> bool:
+    """Say whether two numbers are compared: the ends of an interval, or a value and its uncertainty."""
+    return bool(statement.upper or statement.uncertainty) and statement.kind != "inside"
+
+
 def compare_statement(statement: Statement, given: str, compare: Compare) -> Agreement:
     """Return how what a reading gives compares with a print: ``equal``, ``near`` or ``differs``.
 
@@ -56,7 +61,7 @@ def compare_statement(statement: Statement, given: str, compare: Compare) -> Agr
     if statement.kind in {"below", "above"} and given in _INFINITE:
         return "equal" if _INFINITE[given] == statement.kind else "differs"
     numbers = numbers_in(given)
-    pair = bool(statement.upper or statement.uncertainty) and statement.kind != "inside"
+    pair = takes_pair(statement)
     if len(numbers) != (2 if pair else 1):
         return "differs"
     if pair:

@@ -59,6 +59,10 @@ class LimitedResponse(Response):
 class LimitedViews:
     """Methods of `Loop` that answer what limits of the control signal do."""
 
+    @property
+    def _loop(self) -> Loop:
+        return cast("Loop", self)
+
     def saturated(
         self,
         limits: tuple[float, float],
@@ -111,7 +115,7 @@ class LimitedViews:
         >>> round(float(response.output(1.0)), 12), [round(x.end, 12) for x in response.at_limit]
         (0.5, [1.5])
         """
-        loop = cast("Loop", self)
+        loop = self._loop
         low, high = checked_limits(limits)
         scheme, tracking = checked_anti_windup(anti_windup, tracking_time, loop.primary_controller)
         load_at = checks.non_negative("load_at", load_at, allowed="a time >= 0")

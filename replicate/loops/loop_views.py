@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
@@ -21,10 +21,6 @@ if TYPE_CHECKING:
 
 class LoopViews(LimitedViews):
     """Methods of `Loop` that only show what other methods know."""
-
-    @property
-    def _loop(self) -> Loop:
-        return cast("Loop", self)
 
     @property
     def primary_controller(self) -> PID:
