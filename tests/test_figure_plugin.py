@@ -240,3 +240,46 @@ def test_what_is_to_be_awaited_is_not_taken_as_passed(project: Project) -> None:
     status, said = project.run("--accept-figures", "--reason", "first")
     assert (status, "1 failed, 1 passed" in said) == (1, True), said
     assert "test_figures-TestOuter-TestInner-test_it.json" in project.accepted()
+
+
+SEVERAL = """
+import pytest
+from matplotlib.figure import Figure
+
+def drawn(style):
+    figure = Figure()
+    figure.subplots().plot([0, 1], style, label="ZN")
+    return figure
+
+def test_three(figure_diff):
+    for name in ("one", "two", "three"):
+        figure_diff(drawn(STYLES[name]), name)
+    assert GOOD, "the test itself"
+
+def test_NAME(figure_diff):
+    figure_diff(drawn("-"))
+"""
+
+
+def several(style: str, name: str, *, good: bool = True) -> str:
+    styles = {"one": style, "two": "-", "three": style}
+    return SEVERAL.replace("STYLES", str(styles)).replace("GOOD", str(good)).replace("NAME", name)
+
+
+def test_all_figures_of_a_test_are_compared_and_what_no_test_draws_is_said(project: Project) -> None:
+    project.write(several("-", "old"))
+    assert project.run("--accept-figures", "--reason", "first")[0] == 0
+    project.write(several("--", "old", good=False))
+    status, said = project.run()
+    assert status == 1
+    assert "the test itself" in said
+    assert all(f"figure '{name}' differs" in said for name in ("one", "three"))
+    assert "2 of 4 figures differ" in said
+    project.write(several("-", "new") + "\ndef test_other(): pass\n")
+    assert "not drawn" not in project.run("-k", "three or other")[1]
+    gone = "'test_figures-test_old' is accepted, but no test draws it"
+    status, said = project.run("-n", "2", "--accept-figures", "--reason", "renamed")
+    assert (status, gone in said) == (0, True), said
+    status, said = project.run("tests", "--all-figures-drawn")
+    assert (status, gone in said) == (1, True), said
+    assert gone.partition("' ")[2] in (project.folder / "build/figures-diff/index.html").read_text()

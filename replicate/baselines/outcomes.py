@@ -14,7 +14,7 @@ from replicate.figures import Record, compare
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Status = Literal["same", "changed", "new", "gone", "accepted", "failed"]
+Status = Literal["same", "changed", "new", "gone", "accepted", "failed", "not drawn"]
 
 #: Statuses that an author has to look at; a failed one is not a difference but a broken run.
 DIFFERS = {"changed", "new", "gone"}

@@ -34,16 +34,16 @@ def counted(outcomes: Sequence[Outcome]) -> str:
     >>> counted([Outcome("a", "same"), Outcome("b", "changed", changes=["x"])])
     '1 of 2 figures differs from its accepted state'
     """
-    if not outcomes:
-        return "nothing was compared"
-    names = {"accepted": "accepted", "failed": "failed"}
+    names = {"accepted": "accepted", "failed": "failed", "not drawn": "accepted, but not drawn"}
     count = {status: sum(outcome.status == status for outcome in outcomes) for status in names}
-    differ, total = sum(outcome.differs for outcome in outcomes), len(outcomes)
+    differ, total = sum(outcome.differs for outcome in outcomes), len(outcomes) - count["not drawn"]
+    if not total:
+        return "nothing was compared"
     parts = []
     if differ:
         whose = "differs from its" if differ == 1 else "differ from their"
         parts.append(f"{differ} of {total} figure{'s' if total != 1 else ''} {whose} accepted state")
-    elif not any(count.values()):
+    elif not count["accepted"] + count["failed"]:
         parts.append(f"nothing differs from the accepted state; figures compared: {total}")
     parts += [f"{names[status]}: {number}" for status, number in count.items() if number]
     return "; ".join(parts)
@@ -51,7 +51,7 @@ def counted(outcomes: Sequence[Outcome]) -> str:
 
 def worst_first(outcomes: Sequence[Outcome]) -> list[Outcome]:
     """Return what has to be looked at: what failed, then what is gone or new, then what moved most."""
-    rank = {"failed": 0, "gone": 1, "new": 2, "changed": 3, "accepted": 4}
+    rank = {"failed": 0, "gone": 1, "new": 2, "changed": 3, "not drawn": 4, "accepted": 5}
     told = [outcome for outcome in outcomes if outcome.status != "same"]
     return sorted(told, key=lambda one: (rank[one.status], -one.size, -len(one.changes), one.name))
 
@@ -112,7 +112,11 @@ def as_json(outcomes: Sequence[Outcome]) -> str:
         }
         for one in outcomes
     ]
-    content = {"summary": counted(outcomes), "compared": len(outcomes), "figures": entries}
+    content = {
+        "summary": counted(outcomes),
+        "compared": sum(one.status != "not drawn" for one in outcomes),
+        "figures": entries,
+    }
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
