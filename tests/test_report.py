@@ -212,7 +212,7 @@ def test_every_printed_and_computed_value_stands_with_its_verdict(make: Make) ->
 def test_figures_have_a_text_alternative_a_label_and_downloads(make: Make) -> None:
     text = make()["synthetic.html"]
     assert re.search(r'<svg id="svg-fig-1" role="img" aria-labelledby="svg-fig-1-title svg-fig-1-desc"', text)
-    assert re.search(r'<desc id="svg-fig-1-desc">output from .* over time \$t\$ from .*PA &amp; ZN', text)
+    assert re.search(r'<desc id="svg-fig-1-desc">output from .* over time t from .*PA &amp; ZN', text)
     assert "standing in for a measurement" in text
     for suffix in ("svg", "png", "csv"):
         assert f'href="data/figures/synthetic/fig-1.{suffix}"' in text

@@ -59,6 +59,14 @@ def test_what_the_line_above_says_is_marked() -> None:
     assert [line.readings for line in shown.lines(second)] == [["as-written", "other"]]
 
 
+def test_readings_that_agree_in_the_promised_digits_share_a_line() -> None:
+    shown = view([[1.0, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0]], [[1.0 + 1e-11, 2.0, 3.0, 4.0], [5.0, 6.0, 7.0, 8.0001]])
+    (_, first), (_, second) = shown.rows
+    assert [line.readings for line in shown.lines(first)] == [["as-written", "other"]]
+    assert [ids for ids, _ in first[0].alike] == [["as-written"], ["other"]]  # a card shows all digits
+    assert len(shown.lines(second)) == 2
+
+
 def test_very_many_columns_stand_below_each_other() -> None:
     many = [f"c{place}" for place in range(60)]
     table = Table("table-1", "table", "Wide", rows=("A",), columns=tuple(many), printed=False)

@@ -9,7 +9,9 @@ from typing import Any
 from xml.etree import ElementTree as ET
 
 from replicate.display.live_curves import mark_curves, tag
+from replicate.display.numbers import minus_signs
 from replicate.display.repeated_labels import SHARED, share_labels
+from replicate.display.unmarked import unmarked
 from replicate.figures.style import themed
 
 # What an SVG file says about itself; in a page, the element's own title and description do.
@@ -32,7 +34,8 @@ def inline_svg(svg: str, id: str, title: str, description: str, axes: Sequence[M
     id
         Id of the element, unique on the page; all ids inside begin with it.
     title, description
-        Plain text for `<title>` and `<desc>`, which say what the image shows to those who cannot see it.
+        Texts for `<title>` and `<desc>`, which say what the image shows to those who cannot see it; their markup is
+        left out.
     axes
         What its axes hold; with it the curves are marked, so that a script can read values off them.
 
@@ -66,9 +69,13 @@ def inline_svg(svg: str, id: str, title: str, description: str, axes: Sequence[M
     return (
         f'<svg id="{id}" role="img" aria-labelledby="{id}-title {id}-desc" viewBox="{view_box}" '
         f'fill="currentColor" style="aspect-ratio: {width:g} / {height:g}; --width: {width:g}{smallest}">'
-        f'<title id="{id}-title">{html.escape(title)}</title>'
-        f'<desc id="{id}-desc">{html.escape(description)}</desc>{themed(body)}</svg>'
+        f'<title id="{id}-title">{_said(title)}</title>'
+        f'<desc id="{id}-desc">{_said(description)}</desc>{themed(body)}</svg>'
     )
+
+
+def _said(text: str) -> str:
+    return html.escape(minus_signs(unmarked(text)))
 
 
 def _name(tag: str) -> str:

@@ -140,4 +140,4 @@ def with_policy(page: str) -> str:
 
 def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:
     """Return the display text of a row or column key: its label, or the key in words."""
-    return batch.inline(labels[key]) if key in labels else Markup.escape(key.replace("_", " "))
+    return batch.inline(labels[key]) if key in labels else Markup.escape(numbers.minus_signs(key.replace("_", " ")))

@@ -20,6 +20,7 @@ from replicate.exhibits.results import Ranges, TableResult
 from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
+_PROMISED = 10  # digits in which a computed number is right
 _WRONG = {*ERRORS, "unexplained"}
 
 
@@ -31,6 +32,8 @@ class Value:
     ----------
     text, full
         The number as shown, and with all digits.
+    number
+        The number itself; none where a word is computed, or nothing.
     match
         How it compares with the print.
     range
@@ -51,11 +54,13 @@ class Value:
     point: str = ""
     certainty: str = ""
     off: str = ""
+    number: float | None = None
 
     @property
     def same(self) -> tuple[str, ...]:
-        """What two readings have to share to be shown as one."""
-        return self.full or self.text, self.match.kind, self.range
+        """What two readings share whose lines are one: the digits that are promised of a number, match and range."""
+        number = f"{self.number:.{_PROMISED}g}" if self.full and self.number is not None else ""
+        return number or self.full or self.text, self.match.kind, self.range
 
 
 @dataclass(frozen=True)
@@ -75,7 +80,8 @@ class Cell:
         """The computed values with the readings that agree in them, in the order of the readings."""
         groups: dict[tuple[str, ...], tuple[list[str], Value]] = {}
         for value in self.values:
-            groups.setdefault(value.same, ([], value))[0].append(value.reading.id)
+            all_digits = value.full or value.text, value.match.kind, value.range
+            groups.setdefault(all_digits, ([], value))[0].append(value.reading.id)
         return list(groups.values())
 
     def padded(self, text: str) -> str:
@@ -90,7 +96,7 @@ class Line:
     readings: list[str]
     values: list[Value]
     places: str  # of the readings among those of the table, from 2 on: the first choice of a list is "all"
-    repeats: list[bool]  # which values the line above shows already
+    repeats: list[bool]  # which values the line above shows already, if with another range
 
 
 @dataclass(frozen=True)
@@ -165,8 +171,8 @@ class TableView:
         found: list[Line] = []
         told = [line for line in lines.values() if any(value.text for value in line[1])]
         for ids, shown in told if told or self.verdicts else lines.values():
-            above = [value.same for value in found[-1].values] if found else [None] * len(shown)
-            repeats = [one.same == said for one, said in zip(shown, above, strict=True)]
+            above = [value.same[:2] for value in found[-1].values] if found else [None] * len(shown)
+            repeats = [one.same[:2] == said for one, said in zip(shown, above, strict=True)]
             found.append(Line(ids, shown, " ".join(places[id] for id in ids), repeats))
         return found
 
@@ -257,12 +263,11 @@ def _cell(
             )
             continue
         number = cells.numbers.get(key)
+        text, full = numbers.shown(number, printed), numbers.full(number)
         texts = _range(table, result.ranges.get(id), key, printed)
         apart = off(printed, number) if found.kind in {"near", "differs"} else ""
         certainty = CERTAINTIES.get(judged[id].certainty, "") if id in judged else ""
-        values.append(
-            Value(reading, numbers.shown(number, printed), numbers.full(number), found, *texts, certainty, apart)
-        )
+        values.append(Value(reading, text, full, found, *texts, certainty, apart, number))
     return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
 
 

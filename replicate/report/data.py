@@ -15,7 +15,7 @@ from replicate.display.csv_text import csv_text, curves_text, table_text
 from replicate.display.junit import junit
 from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.results import FigureResult, Results, TableResult
-from replicate.report.columns import COLUMN_COLUMNS, column_rows
+from replicate.report.columns import COLUMN_COLUMNS, column_rows, named_curves, named_drawing
 from replicate.report.pages import DATA
 from replicate.verdicts.rows import ExhibitRow, Judgement, RangeRow, ResultRow, VerdictRow
 
@@ -120,9 +120,9 @@ def data_files(papers: Sequence[Paper], results: Results, judgement: Judgement) 
         elif isinstance(result, FigureResult) and not result.error:
             place = f"figures/{paper}/{exhibit}"
             found |= {
-                f"{place}.svg": result.svg,
+                f"{place}.svg": named_drawing(result.svg),
                 f"{place}.png": result.png,
-                f"{place}.csv": curves_text(result.curves),
+                f"{place}.csv": curves_text(named_curves(result)),
             }
     return {name: text.encode() if isinstance(text, str) else text for name, text in found.items()}
 

@@ -169,6 +169,19 @@ def test_every_cell_claim_and_error_has_one_address(report: Path) -> None:
     assert "khan.html#table-2.CC.ph1_Mp" in addresses
 
 
+def test_no_markup_is_left_where_only_characters_can_stand(report: Path) -> None:
+    """Titles and descriptions of drawings, names of parts for assistive technology, panels and curves as data."""
+    said = r' (?:aria-label|title|alt)="([^"]*)"|<(?:title|desc)\b[^>]*>([^<]*)<'
+    found = [(page.name, "".join(one)) for page in pages(report) for one in re.findall(said, page.read_text("utf-8"))]
+    for path in (report / "data" / "figures").rglob("*.*"):
+        if path.suffix == ".csv":
+            found += {(path.name, row[key]) for row in read(path) for key in ("panel", "curve")}
+        elif path.suffix == ".svg":
+            found += [(path.name, one) for one in re.findall(r"title>([^<]*)<", path.read_text("utf-8"))]
+    assert len(found) > 1000
+    assert [one for one in found if re.search(r"[$\\]|\*\w", one[1])] == []
+
+
 def test_exhibits_of_several_parts_are_told_apart(report: Path) -> None:
     """Four tables of the thesis are called Table 1: wherever parts meet, the part is named."""
     overview = (report / INDEX).read_text(encoding="utf-8")

@@ -113,7 +113,7 @@ def eq_10_11() -> Finding:
         "holds" if largest < 1e-12 else "fails",
         largest,
         f"They satisfy (10) to {largest:.1g}, relative, in 500 random cases; the determinant of (10) in a "
-        "and b is ω_A > 0.",
+        "and b is $\\omega_A > 0$.",
     )
 
 
@@ -132,7 +132,7 @@ def not_sufficient() -> Finding:
     return Finding(
         "holds" if unstable > 0 and left > 0 else "fails",
         unstable,
-        f"For τ = {tau}, 60 degrees and ω_A above {end_frequency(tau, 60.0):.4g}, (11) gives a < 0 and an "
+        f"For τ = {tau}, 60 degrees and $\\omega_A$ above {end_frequency(tau, 60.0):.4g}, (11) gives a < 0 and an "
         f"unstable loop; from {w[first]:.4g} on it gives a > 0 again, and a loop with {unstable} unstable "
         "poles.",
     )
@@ -209,7 +209,7 @@ def stability_boundary_check() -> Finding:
 
 @claims.claim(
     "later-crossings-unstable",
-    "Where the phase at ω_A is −(2k + 1)π with k > 0 the loop is unstable.",
+    "Where the phase at $\\omega_A$ is −(2k + 1)π with k > 0 the loop is unstable.",
     where="section 3",
 )
 def later_crossings_unstable() -> Finding:
@@ -244,6 +244,6 @@ def m_curves_inside() -> Finding:
     return Finding(
         "holds" if largest < 1.0 and ends < 1e-12 else "fails",
         largest,
-        f"Along nine curves g stays below 1, at most {largest:.4g}; the ends are at (0, −cos m) and (0, "
-        f"b_u), |a| < {1e-12:g}.",
+        f"Along nine curves g stays below 1, at most {largest:.4g}; the ends are at $(0, -\\cos m)$ and "
+        f"$(0, b_u)$, |a| < {1e-12:g}.",
     )

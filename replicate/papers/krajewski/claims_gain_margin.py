@@ -55,8 +55,8 @@ def margins_compatible_iff_curves_cross() -> Finding:
 
 @claims.claim(
     "fig-8-corners",
-    "The curves of 60 degrees and g = 0.3 intersect at (1, 0.91666...) for ω_A = 0.96 and at (0.221, "
-    "−0.200) for ω_A = 0.21.",
+    "The curves of 60 degrees and g = 0.3 intersect at (1, 0.91666...) for $\\omega_A = 0.96$ and at (0.221, "
+    "−0.200) for $\\omega_A = 0.21$.",
     where="section 7, Fig. 8",
 )
 def fig_8_corners() -> Finding:
@@ -69,7 +69,7 @@ def fig_8_corners() -> Finding:
         off,
         f"Close to them. They intersect at ({upper[0]:.4f}, {upper[1]:.4f}) and ({lower[0]:.4f}, "
         f"{lower[1]:.4f}). The printed lower point has {at['m_phi']:.4g} degrees, but g = {at['g']:.4g} "
-        f"and ω_A = {at['omega_A']:.4g}.",
+        f"and $\\omega_A = {at['omega_A']:.4g}$.",
     )
 
 

@@ -31,7 +31,7 @@ from replicate.papers.krajewski.table_1 import MARGINS
 
 @claims.claim(
     "ellipses",
-    "The curves of constant ω_A are the ellipses (16), with the half axes (17) and (18).",
+    "The curves of constant $\\omega_A$ are the ellipses (16), with the half axes (17) and (18).",
     where="section 4",
 )
 def ellipses() -> Finding:
@@ -42,13 +42,16 @@ def ellipses() -> Finding:
         for a, b in ((0.0, np.sqrt(1.0 + w * w)), (w * np.sqrt(1.0 + w * w), 0.0)):  # (17), (18)
             worst = max(worst, abs(float(np.abs(frequency_response(a, b, 0.5, w))) - 1.0))
     return Finding(
-        "holds" if worst < 1e-12 else "fails", worst, f"On them, and at their vertices, |G(jω_A)| is 1 to {worst:.1g}."
+        "holds" if worst < 1e-12 else "fails",
+        worst,
+        f"On them, and at their vertices, $|G(j\\omega_A)|$ is 1 to {worst:.1g}.",
     )
 
 
 @claims.claim(
     "ellipse-shape",
-    "ω_A = 1 gives a circle of radius √2; below it the horizontal axis is the smaller one, above it the vertical one.",
+    "$\\omega_A = 1$ gives a circle of radius √2; below it the horizontal axis is the smaller one, above it the "
+    "vertical one.",
     where="section 4",
 )
 def ellipse_shape() -> Finding:
@@ -66,18 +69,18 @@ def ellipse_shape() -> Finding:
     )
 
 
-@claims.claim("bisector", "The ellipse of ω_A meets the line b = a at a = b = ω_A.", where="section 4")
+@claims.claim("bisector", "The ellipse of $\\omega_A$ meets the line b = a at $a = b = \\omega_A$.", where="section 4")
 def bisector() -> Finding:
     worst = max(abs(float(np.abs(frequency_response(w, w, 0.5, w))) - 1.0) for w in FREQUENCIES)
     return Finding(
         "holds" if worst < 1e-14 else "fails",
         worst,
         "With a = b the controller's zero cancels the pole at −1 and |G| = a/ω exactly; "
-        f"the largest error of |G(jω_A)| = 1 is {worst:.1g}.",
+        f"the largest error of $|G(j\\omega_A)| = 1$ is {worst:.1g}.",
     )
 
 
-@claims.claim("ellipses-without-tau", "The curves of constant ω_A do not depend on τ.", where="section 4")
+@claims.claim("ellipses-without-tau", "The curves of constant $\\omega_A$ do not depend on τ.", where="section 4")
 def ellipses_without_tau() -> Finding:
     a, b = 0.3, 0.5
     found = [loop(a, b, tau).margins().gain_crossovers[0] for tau in TAUS]
@@ -119,8 +122,8 @@ def omega_b_above_a() -> Finding:
     return Finding(
         "holds" if least > 1.0 else "fails",
         least,
-        "In every stable loop, since |G| falls and is 1 at ω_A and g < 1 at ω_B; the least ratio of 400 "
-        f"random designs is {least:.4g}.",
+        "In every stable loop, since |G| falls and is 1 at $\\omega_A$ and g < 1 at $\\omega_B$; the least ratio of "
+        f"400 random designs is {least:.4g}.",
     )
 
 
@@ -177,7 +180,7 @@ def ends_include_origin() -> Finding:
     return Finding(
         verdict,
         nearest,
-        "True if it means that the origin lies between them: they are (0, −g) and (0, g b_u). It is not "
+        "True if it means that the origin lies between them: they are $(0, -g)$ and $(0, g\\,b_u)$. It is not "
         f"one of them: on 30 curves the nearest is {nearest:.3g} away.",
     )
 
@@ -193,14 +196,14 @@ def ends_include_0_1() -> Finding:
     return Finding(
         verdict,
         nearest,
-        "True if it means that (0, 1) lies between them: they are (0, −cos m) and (0, b_u). No curve "
+        "True if it means that (0, 1) lies between them: they are $(0, -\\cos m)$ and $(0, b_u)$. No curve "
         f"passes through (0, 1): the nearest end of 60 curves is {nearest:.3g} away.",
     )
 
 
 @claims.claim(
     "omega-b-lines",
-    "The curves of constant ω_B are lines b = pa through the origin (29), (30); p depends on τ but not on g.",
+    "The curves of constant $\\omega_B$ are lines b = pa through the origin (29), (30); p depends on τ but not on g.",
     where="section 7",
 )
 def omega_b_lines() -> Finding:
@@ -215,8 +218,8 @@ def omega_b_lines() -> Finding:
     return Finding(
         "holds" if worst < 1e-10 and np.all(np.diff(slopes) > 0.0) else "fails",
         worst,
-        f"For ω_B = 2 and ten dead times b = pa and ω_B = 2 on the line hold to {worst:.1g}; p rises from "
-        f"{slopes[0]:.3g} at τ = 0.1 to {slopes[-1]:.3g} at τ = 1.",
+        f"For $\\omega_B = 2$ and ten dead times b = pa and $\\omega_B = 2$ on the line hold to {worst:.1g}; p rises "
+        f"from {slopes[0]:.3g} at τ = 0.1 to {slopes[-1]:.3g} at τ = 1.",
     )
 
 

@@ -128,7 +128,7 @@ def fig_9_settling_grows() -> Finding:
 
 @claims.claim(
     "fig-10-position",
-    "On the ellipse ω_A = 1.5 the points of 60 and 75 degrees lie above the line b = a, that of 45 "
+    "On the ellipse $\\omega_A = 1.5$ the points of 60 and 75 degrees lie above the line b = a, that of 45 "
     "degrees below but close to it.",
     where="section 8",
 )
@@ -144,7 +144,7 @@ def fig_10_position() -> Finding:
 
 @claims.claim(
     "fig-10-c-coordinates",
-    "The ellipse ω_A = 1.5 and the curve of 75 degrees meet at (0.2842, 1.7859).",
+    "The ellipse $\\omega_A = 1.5$ and the curve of 75 degrees meet at (0.2842, 1.7859).",
     where="section 8, Fig. 10",
 )
 def fig_10_c_coordinates() -> Finding:
@@ -242,7 +242,8 @@ def almost_minimal_settling() -> Finding:
 
 @claims.claim(
     "fig-11-trend",
-    "Towards the origin along b = a the phase margin rises from 60 to 75.7 degrees and ω_A falls from 0.96 to 0.5.",
+    "Towards the origin along b = a the phase margin rises from 60 to 75.7 degrees and $\\omega_A$ falls from 0.96 to "
+    "0.5.",
     where="section 8",
 )
 def fig_11_trend() -> Finding:
@@ -250,7 +251,7 @@ def fig_11_trend() -> Finding:
     return Finding(
         "holds" if _rising(margins) and _rising(crossovers[::-1]) else "fails",
         margins[-1],
-        f"{listed(margins)} degrees, ω_A = {listed(crossovers)}.",
+        f"{listed(margins)} degrees, $\\omega_A$ = {listed(crossovers)}.",
     )
 
 

@@ -118,7 +118,7 @@ def arc_p1_p2() -> Finding:
 
 @claims.claim(
     "very-well-approximated",
-    "For τ between 0.1 and 1 the dependence of b_u on τ is very well approximated by the hyperbola (22).",
+    "For τ between 0.1 and 1 the dependence of $b_u$ on τ is very well approximated by the hyperbola (22).",
     where="section 5",
 )
 def very_well_approximated() -> Finding:
@@ -131,7 +131,7 @@ def very_well_approximated() -> Finding:
         "holds-partly" if min(of_omega.values()) < 0.01 < worst else "holds",
         worst,
         f"For {', '.join(MARGINS)} degrees the least-squares hyperbola is off by up to {percent_b} % in "
-        f"b_u, and by up to {percent_omega} % in the crossover frequency it is made for. Good for 30 "
+        f"$b_u$, and by up to {percent_omega} % in the crossover frequency it is made for. Good for 30 "
         "and 45 degrees; for more solve arctan ω + τω = π − m instead.",
     )
 
@@ -192,14 +192,16 @@ def nearest_chart() -> Finding:
     return Finding(
         "holds-partly" if first > 5.0 > last else "holds",
         first,
-        "For τ half a step above the chart's, the phase margin is smaller by ω_A Δτ. At the upper end of "
-        f"the curve of 60 degrees that is {first:.3g} degrees on the chart τ = 0.1 and {last:.3g} degrees "
+        "For τ half a step above the chart's, the phase margin is smaller by $\\omega_A \\Delta\\tau$. At the upper "
+        f"end of the curve of 60 degrees that is {first:.3g} degrees on the chart τ = 0.1 and {last:.3g} degrees "
         "on τ = 1: charts for small τ must be interpolated, or drawn for the actual τ.",
     )
 
 
 @claims.claim(
-    "eq-24", "A changed process moves the loop to a′ = K′K_I T′, b′ = K′K_P, τ′ = L′/T′ (24).", where="section 6"
+    "eq-24",
+    "A changed process moves the loop to $a' = K'K_I T'$, $b' = K'K_P$, $\\tau' = L'/T'$ (24).",
+    where="section 6",
 )
 def eq_24() -> Finding:
     random = np.random.default_rng(5)
@@ -224,7 +226,7 @@ def eq_24() -> Finding:
 
 @claims.claim(
     "worst-vertex",
-    "For the phase margin the worst case usually is the vertex [K_M, L_M, T_m].",
+    "For the phase margin the worst case usually is the vertex $[K_M, L_M, T_m]$.",
     where="section 6",
 )
 def worst_vertex() -> Finding:
@@ -243,8 +245,8 @@ def worst_vertex() -> Finding:
         "holds-partly" if 0.25 < shares[20] < 0.75 else ("holds" if shares[20] >= 0.75 else "fails"),
         shares[20],
         f"In {100 * shares[10]:.3g}, {100 * shares[20]:.3g} and {100 * shares[30]:.3g} % of "
-        f"{len(designs())} designs for ±10, 20 and 30 %. L_M is always worst; the shortest T is worst for "
-        "fast designs only (for b = a and small deviations iff τω_A² > 1), otherwise the longest is. Of "
+        f"{len(designs())} designs for ±10, 20 and 30 %. $L_M$ is always worst; the shortest T is worst for "
+        "fast designs only (for b = a and small deviations iff $\\tau\\omega_A^2 > 1$), otherwise the longest is. Of "
         f"the paper's own points {sum(own.values())} of {len(own)} have their worst case there; for the "
         f"others the vertex overstates the worst phase margin by {min(too_high):.2g} to "
         f"{max(too_high):.2g} degrees at ±20 %.",
