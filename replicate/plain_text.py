@@ -1,7 +1,8 @@
 """Texts of papers, fit for a terminal and a page: UTF-8, and none of the characters that steer what shows them.
 
-An escape sequence can repaint a terminal, a bidirectional control can show ``1.2`` where ``2.1`` stands. A text that is
-defined or read is refused with its place; whatever else is shown has such characters written out.
+An escape sequence can repaint a terminal, a bidirectional control can show ``1.2`` where ``2.1`` stands, and two words
+that differ by what has no width look the same. A text that is defined or read is refused with its place; whatever else
+is shown has such characters written out. Which characters these are is decided by Unicode's categories.
 """
 
 from __future__ import annotations
@@ -11,19 +12,20 @@ import re
 import sys
 import tomllib
 import unicodedata
+from collections.abc import Iterator
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
+from unicodedata import category
 
 from replicate.errors import ReplicateError
 
-# C0 and C1 controls but for tab and line ends, DEL, marks and overrides of the writing direction, separators of lines
-# and paragraphs, surrogates.
-_STEERING = re.compile(
-    "[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
-)
-
-
+_CANDIDATE = re.compile(r"[^\t\n\r -~]|\r(?!\n)")
+_STEERING = {"Cc", "Cf", "Cs", "Zl", "Zp"}  # controls, formats, surrogates, separators of lines and of paragraphs
+# Formats with a shape: signs that stand before Arabic, Syriac and Kaithi numbers.
+_SHOWN = {*"\u0600\u0601\u0602\u0603\u0604\u0605\u06dd\u070f\u0890\u0891\u08e2\U000110bd\U000110cd"}
+_JOINERS = "\u200c\u200d"  # within words of scripts without capitals, and between the parts of a pictograph
+_JOINED = {"Lo", "Mc", "Mn", "Sk", "So"}
 _ARCHIVE = b"PK\x03\x04"
 LARGEST = 16 * 2**20  # bytes of a text
 
@@ -38,7 +40,7 @@ def steering(text: str) -> str:
     >>> steering("1\u202e2")
     'U+202E RIGHT-TO-LEFT OVERRIDE'
     """
-    found = _STEERING.search(text)
+    found = next(_found(text), None)
     return _named(found[0]) if found else ""
 
 
@@ -50,7 +52,25 @@ def visible(text: str) -> str:
     >>> visible("a\x1b[2Jb")
     'a\\x1b[2Jb'
     """
-    return _STEERING.sub(lambda found: found[0].encode("unicode_escape", "backslashreplace").decode("ascii"), text)
+    pieces, end = [], 0
+    for found in _found(text):
+        written = found[0].encode("unicode_escape", "backslashreplace").decode("ascii")
+        pieces += [text[end : found.start()], written]
+        end = found.end()
+    return "".join([*pieces, text[end:]])
+
+
+def _found(text: str) -> Iterator[re.Match[str]]:
+    """Yield the characters of a text that steer."""
+    return (match for match in _CANDIDATE.finditer(text) if category(match[0]) in _STEERING and not _belongs(match))
+
+
+def _belongs(match: re.Match[str]) -> bool:
+    """Say whether a format character is part of how its script is written."""
+    if match[0] not in _JOINERS:
+        return match[0] in _SHOWN
+    before, after = match.string[max(0, match.start() - 1) : match.start()], match.string[match.end() : match.end() + 1]
+    return bool(before and after) and {category(before), category(after)} <= _JOINED
 
 
 def read_text(
@@ -96,7 +116,7 @@ def read_text(
         msg = f"{name}:{line}: is not UTF-8 text"
         raise error(msg) from why
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
-    found = _STEERING.search(text)
+    found = next(_found(text), None)
     if found:
         line = text.count("\n", 0, found.start()) + 1
         msg = (

@@ -59,6 +59,7 @@ READINGS: dict[str, str] = {
     "generator-exit": "raise GeneratorExit",
     "closes-everything": "os.closerange(3, 256)\nreturn good()",
     "stop-iteration": "raise StopIteration",
+    "pipe": "for n in range(3, 64):\n    try: os.write(n, b'garbage')\n    except OSError: pass\ntime.sleep(60)",
 }
 
 #: Units that hurt nobody if they are held apart: they must succeed.

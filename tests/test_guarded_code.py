@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import pickle
 import re
 import signal
 import tempfile
@@ -38,6 +39,17 @@ requires = {{"small": lambda inputs: {in_requires}}}
 """
 NOTHING = {"at_import": "", "in_variant": "pass", "in_answers": "pass", "in_requires": "True"}
 PYTHON, C, REGEX = "while True: pass", "sum(range(10**18))", "__import__('re').match('(a+)+$', 'a' * 64 + 'b')"
+PIPE = "import os, time, replicate.run.guarded as g; pipe = g._watch.connection.fileno(); "
+WRITTEN = "fails: it has written into the pipe of its process"
+
+
+class _Bomb:
+    def __reduce__(self) -> tuple[object, ...]:
+        return Path.touch, (Path("exploded"),)
+
+
+_BOMB = pickle.dumps(_Bomb())
+PICKLE = len(_BOMB).to_bytes(4, "big") + _BOMB
 STOPPED = r" did not end within 0\.7 s; it was stopped in this line"
 
 
@@ -55,6 +67,9 @@ STOPPED = r" did not end within 0\.7 s; it was stopped in this line"
         ("in_answers", "import os; os._exit(0)", r":11: answers\(inputs\) fails: it has ended its process"),
         ("in_answers", "import os; os.kill(os.getpid(), 11)", r":12: .*has ended its process \(SIGSEGV\)"),
         ("in_answers", "raise SystemExit(0)", r":12: answers\(inputs\) fails: SystemExit: 0"),
+        ("in_answers", f"{PIPE}os.write(pipe, b'garbage'); time.sleep(60)", rf":12: answers\(inputs\) {WRITTEN}"),
+        ("in_answers", f"{PIPE}os.write(pipe, {PICKLE!r}); time.sleep(60)", rf":12: answers\(inputs\) {WRITTEN}"),
+        ("in_answers", f"{PIPE}os.write(pipe, b'\\0\\0\\0\\x09p'); time.sleep(9)", rf":12: answers\(inputs\){STOPPED}"),
         ("in_answers", "while True: print('x' * 1000)", r":1[12]: answers\(inputs\) has written more than 1 MB"),
     ],
 )
@@ -74,6 +89,7 @@ def test_a_lecturers_code_is_stopped_and_named(
         list(process.stream(check_order, Order((), Sheet(), (home,))))
     assert re.match(rf"mine/exercise\.py{said}", str(raised.value)), raised.value
     assert not list((tmp_path / "temporary").glob("replicate-*"))  # whatever has ended it
+    assert not Path("exploded").exists()
 
 
 SET = ("handout", "lab", "--variants", "2", "--format", "html")
@@ -115,6 +131,19 @@ def ended_early() -> Iterator[int]:
     with watched(Place(__file__, "here.py", "it")):
         yield 1
         os._exit(3)
+
+
+def forked() -> Iterator[str]:
+    with watched(Place(__file__, "here.py", "it")):
+        os.fork()
+    yield "once"
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system that forks")
+def test_what_a_child_of_the_code_would_send_is_not_sent() -> None:
+    with GuardedProcess(5.0) as process:
+        assert list(process.stream(forked)) == ["once"]
+        assert list(process.stream(numbers, 1)) == [0]
 
 
 def on_a_full_disk() -> list[int]:

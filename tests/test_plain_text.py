@@ -15,7 +15,12 @@ from replicate.terminal.console import console
 
 Run = Callable[..., tuple[int, str, str]]
 
-STEERING = ["\x00", "\x1b[2J", "\x07", "\x7f", "\x9b31m", "\u202e", "\u2066", "\u200f", "\u2028"]
+STEERING = [
+    *("\x00", "\x1b[2J", "\x07", "\x7f", "\x9b31m", "\r", "\u202e", "\u2066", "\u200f", "\u2028"),
+    *("\u200b", "\u200c", "\u200d", "\u2060", "\u2061", "\u2064", "\u206a", "\ufeff", "\u00ad", "\U000e0041"),
+]
+#: Persian, Hindi, a pictograph of three, and a sign that stands before Arabic numbers.
+WRITTEN = ["می\u200cخواهم", "क्\u200dष", "👩🏽\u200d🔬", "\u0600١", "one\r\ntwo\t–\u00a0é"]
 
 
 @pytest.mark.parametrize("text", STEERING)
@@ -24,12 +29,25 @@ def test_what_steers_is_named_and_written_out(text: str) -> None:
     assert text[0] not in visible(f"a{text}b")
 
 
+@pytest.mark.parametrize("text", WRITTEN)
+def test_how_a_script_is_written_is_left(text: str) -> None:
+    assert not steering(text)
+    assert visible(text) == text
+
+
 @given(st.text())
 def test_nothing_that_steers_is_left_and_nothing_else_is_changed(text: str) -> None:
     shown = visible(text)
     assert not steering(shown)
     assert steering(text) or shown == text
     shown.encode("utf-8")
+
+
+def test_what_has_no_width_in_a_file_is_refused_by_name(tmp_path: Path) -> None:
+    path = tmp_path / "notes.md"
+    path.write_text("one\nMis\u200bprint\n", encoding="utf-8")
+    with pytest.raises(TemplateError, match=r"^notes\.md:2: holds the character U\+200B ZERO WIDTH SPACE"):
+        read_text(path, "notes.md", TemplateError)
 
 
 @pytest.mark.parametrize(

@@ -38,6 +38,7 @@ SAID = {
     "generator-exit": "GeneratorExit",
     "closes-everything": "ended its worker process",
     "stop-iteration": "StopIteration",
+    "pipe": "it has written into the pipe of its process",
 }
 
 CLAIMS = """

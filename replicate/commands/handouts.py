@@ -72,7 +72,6 @@ def handout(
         Form,
         Order,
         Sheet,
-        Sheets,
         check_order,
         checked_format,
         make,
@@ -138,11 +137,11 @@ def handout(
             with counted_progress_on(console(stderr=True), "sheets") as report:
                 order = replace(order, packages=tuple(paper.package for paper in outcome.papers))
                 for made in process.stream(make, order, outcome.results, outcome.judgement.verdicts):
-                    if isinstance(made, Sheets):
-                        report(made.done, made.total, 0)
-                    else:
-                        name, content = made
-                        written.append(_written(fresh / "handouts" / name, content))
+                    match made:
+                        case (int(done), int(total)):
+                            report(done, total, 0)
+                        case (str(name), bytes(content)):
+                            written.append(_written(fresh / "handouts" / name, content))
             # Exercises link to this page.
             written += write_whatif(
                 outcome.papers, outcome.results, fresh / "handouts", keep=run.kept_texts(ROOMS, DISTRIBUTIONS)

@@ -11,13 +11,15 @@ _FORMULA = re.compile(
 )
 _LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
 _VERY_LONG = 34
+_OPERATORS = re.compile("[\u200b\u2061-\u2064]")  # invisible; application of a function, times, separator, plus
 _BREAKS = {"=", "≤", "≥", "<", ">", "≈", "≠", "→", "+", "−"}  # a line may break before these, as in a printed text
 
 
 def formulas(text: str) -> str:
     r"""Return pandoc's HTML with its formulas made fit for a page.
 
-    A third of the elements of a page would only carry TeX. A displayed formula that may be too wide for a phone
+    A third of the elements of a page would only carry TeX. Invisible operators are written as references, since a page
+    shows such characters where they are raw. A displayed formula that may be too wide for a phone
     scrolls, so the keyboard has to reach it; one in a line is cut before its outer relations and signs, since a
     browser does not break a formula.
 
@@ -28,7 +30,22 @@ def formulas(text: str) -> str:
     >>> formulas(f'<math display="inline"><semantics><mrow>{math}</mrow>{tex}</semantics></math>').count("<math")
     3
     """
-    return _FORMULA.sub(_formula, text)
+    return _FORMULA.sub(lambda found: _OPERATORS.sub(_reference, _formula(found)), text)
+
+
+def without_operators(text: str) -> str:
+    r"""Return a text taken out of formulas with spaces in place of invisible operators.
+
+    Examples
+    --------
+    >>> without_operators("ln\u206110")
+    'ln 10'
+    """
+    return _OPERATORS.sub(" ", text)
+
+
+def _reference(match: re.Match[str]) -> str:
+    return f"&#{ord(match[0])};"
 
 
 def _formula(match: re.Match[str]) -> str:

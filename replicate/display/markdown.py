@@ -14,7 +14,7 @@ from typing import Literal
 
 from markupsafe import Markup
 
-from replicate.display.formulas import formulas
+from replicate.display.formulas import formulas, without_operators
 from replicate.display.numbers import minus_signs
 from replicate.display.pandoc import PandocError, SlowTextError, convert, refusal
 from replicate.display.safe_html import sanitised
@@ -181,4 +181,4 @@ def strip_elements(text: str) -> str:
     >>> strip_elements("<em>a</em> &lt; <math><mi>b</mi></math>")
     'a < b'
     """
-    return html.unescape(re.sub(r"<[^>]*>", "", text)).strip()
+    return without_operators(html.unescape(re.sub(r"<[^>]*>", "", text))).strip()

@@ -4,7 +4,7 @@ from replicate.handout.build import handouts, with_handout
 from replicate.handout.class_set import ClassSet
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, SLIDES, checked_format
-from replicate.handout.making import Order, Sheets, check_order, make, stress_test
+from replicate.handout.making import Order, check_order, make, stress_test
 from replicate.handout.own_code import LONGEST_RUN
 from replicate.handout.own_exercises import own_exercises
 from replicate.handout.roster import read_roster
@@ -19,7 +19,6 @@ __all__ = [
     "Form",
     "Order",
     "Sheet",
-    "Sheets",
     "check_order",
     "checked_format",
     "handouts",

@@ -61,14 +61,6 @@ class Order:
         return bool(self.students) or self.again is not None
 
 
-@dataclass(frozen=True)
-class Sheets:
-    """How many sheets of how many are done."""
-
-    done: int
-    total: int
-
-
 def check_order(order: Order) -> Iterator[None]:
     """Refuse what cannot be made, before anything is computed; yields nothing.
 
@@ -93,8 +85,8 @@ def stress_test(order: Order, draws: int) -> Iterator[str]:
             yield from stressed(variation, draws)
 
 
-def make(order: Order, results: Results, verdicts: Sequence[VerdictRow]) -> Iterator[tuple[str, bytes] | Sheets]:
-    """Yield the name and content of each file, and for a class set how far it is.
+def make(order: Order, results: Results, verdicts: Sequence[VerdictRow]) -> Iterator[tuple[str, bytes]]:
+    """Yield the name and content of each file, and `tell` for a class set how many sheets of how many are done.
 
     Raises
     ------
@@ -109,7 +101,7 @@ def make(order: Order, results: Results, verdicts: Sequence[VerdictRow]) -> Iter
         )
         return
     ((paper, sheet),) = opened
-    progress = lambda done, total: tell(Sheets(done, total))  # noqa: E731
+    progress = lambda done, total: tell((done, total))  # noqa: E731
     class_set = ClassSet(paper, results, verdicts, order.solutions == (True,), sheet, order.file_format, progress)
     if order.again is not None:
         yield from class_set.again(order.again)

@@ -29,6 +29,7 @@ if sys.platform != "win32":
 SEED = 0
 
 _OF_DECIMAL = ("prec", "rounding", "Emin", "Emax", "capitals", "clamp")
+_TOOLS = range(6)  # of `sys.monitoring`
 _TIMERS = ("ITIMER_REAL", "ITIMER_VIRTUAL", "ITIMER_PROF")
 
 
@@ -130,6 +131,34 @@ def _set_limits(limits: dict[int, tuple[int, int]]) -> None:
             resource.setrlimit(limit, values)
 
 
+def _traced() -> tuple[Any, ...]:
+    return sys.gettrace(), threading.gettrace()
+
+
+def _set_traced(functions: tuple[Any, ...]) -> None:
+    here, in_threads = functions
+    sys.settrace(here)
+    threading.settrace(in_threads)
+
+
+def _profiled() -> tuple[Any, ...]:
+    tools: list[str | None] = []
+    if sys.version_info >= (3, 12):
+        tools = [sys.monitoring.get_tool(tool) for tool in _TOOLS]
+    return sys.getprofile(), threading.getprofile(), tools
+
+
+def _set_profiled(functions: tuple[Any, ...]) -> None:
+    here, in_threads, tools = functions
+    sys.setprofile(here)
+    threading.setprofile(in_threads)
+    if sys.version_info >= (3, 12):
+        for tool, name in zip(_TOOLS, tools, strict=True):
+            if name is None and sys.monitoring.get_tool(tool) is not None:
+                sys.monitoring.set_events(tool, 0)
+                sys.monitoring.free_tool_id(tool)
+
+
 def _blocked() -> set[int]:
     return set(signal.pthread_sigmask(signal.SIG_BLOCK, ())) if hasattr(signal, "pthread_sigmask") else set()
 
@@ -192,6 +221,8 @@ def _set_rc(settings: dict[str, Any]) -> None:
 
 
 _ASPECTS = (
+    _Aspect("functions that trace", _traced, _set_traced),  # first: they see whatever else is done here
+    _Aspect("functions that profile", _profiled, _set_profiled),
     _Aspect("the current folder", _folder, os.chdir),
     _Aspect("environment variables", _environment, _set_environment),
     _Aspect("the mask of new files (umask)", _umask, os.umask),

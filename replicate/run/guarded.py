@@ -15,7 +15,7 @@ import tempfile
 import time
 import traceback
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass, field
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from types import TracebackType
@@ -23,6 +23,7 @@ from typing import Any
 
 from replicate.errors import ReplicateError
 from replicate.run.limits import MOST_OUTPUT
+from replicate.run.messages import WRITTEN, Messages, NoMessageError, packed, unpacked
 from replicate.run.pool import started
 from replicate.run.worker import Surroundings, settled
 
@@ -30,6 +31,7 @@ _FRAME = re.compile(r'File "([^"\n]+)", line (\d+) in ')
 _OVERDUE, _FAULT = "Timeout (", "Fatal Python error"  # what the fault handler writes first
 _PATIENCE = 5.0  # seconds after which a process is ended whose fault handler is gone
 _TICK = 0.5
+_AT, _ITEM, _END = b"p", b"i", b"e"  # kinds of messages: what it is at, what a function yields, that it has ended
 
 
 @dataclass(frozen=True)
@@ -58,18 +60,18 @@ _NOWHERE = Place("", "", "")  # in nothing that is watched
 
 
 @dataclass(frozen=True)
-class _Item:
-    """What a function yields."""
-
-    value: Any
-
-
-@dataclass(frozen=True)
 class _End:
     """A function has ended, or failed: with the text for the user, and the traceback."""
 
     error: str = ""
     trace: str = ""
+
+
+_READERS: dict[bytes, Callable[[bytes], Any]] = {
+    _AT: lambda content: Place(*unpacked(content)),
+    _ITEM: unpacked,
+    _END: lambda content: _End(*unpacked(content)),
+}
 
 
 class GuardedProcess:
@@ -84,7 +86,7 @@ class GuardedProcess:
     def __init__(self, seconds: float) -> None:
         self._seconds = seconds
         self._process: Any = None
-        self._connection: Connection
+        self._messages: Messages
         self._folder = tempfile.TemporaryDirectory(prefix="replicate-", ignore_cleanup_errors=True)
         self._output = Path(self._folder.name) / "output"
 
@@ -98,57 +100,66 @@ class GuardedProcess:
         self._folder.cleanup()
 
     def stream(self, function: Callable[..., Iterable[Any]], *arguments: Any) -> Iterator[Any]:
-        """Yield what a function of a module yields, or `tell`s, there.
+        """Yield what a function of a module yields, or `tell`s, there: numbers, texts, bytes and tuples of them.
 
         Raises
         ------
         ReplicateError
-            If it raises one, or something that is watched does not end in time or ends the process.
+            If it raises one, or something that is watched does not end in time, ends the process or writes into its
+            pipe.
         """
         if self._process is None:
-            self._process, self._connection = started(_serve, self._output)
-        place = _NOWHERE
-        begun = time.monotonic()
+            self._process, connection = started(_serve, self._output)
+            self._messages = Messages(connection, _READERS)
+        self._at(_NOWHERE)
         with contextlib.suppress(OSError):  # the process is gone: noticed below
-            self._connection.send((function, arguments, self._seconds))
+            self._messages.connection.send((function, arguments, self._seconds))
         while True:
-            ready = wait([self._connection, self._process.sentinel], _TICK)
-            if not ready:
-                self._check(place, begun)
-                continue
-            message = self._received() if self._connection in ready else None
-            if message is None:
-                raise self._lost(place)
-            if isinstance(message, _Item):
-                yield message.value
-            elif isinstance(message, Place):
-                place, begun = message, time.monotonic()
-            elif message.error:
-                raise _error(message)
-            else:
-                return
+            for kind, content in self._received():
+                if kind == _ITEM:
+                    yield content
+                elif kind == _AT:
+                    self._at(content)
+                elif content.error:
+                    raise _error(content)
+                else:
+                    return
 
-    def _received(self) -> _Item | _End | Place | None:
-        """Return the next message, if there is one; what was sent before the process ended is still there."""
+    def _at(self, place: Place) -> None:
+        self._place, self._since = place, time.monotonic()
+
+    def _received(self) -> Iterator[tuple[bytes, Any]]:
+        """Wait a moment for messages and yield them; what was sent before the process ended is still there."""
+        ready = wait([self._messages.connection, self._process.sentinel], _TICK)
+        if not ready:
+            self._check()
+            return
         try:
-            message: _Item | _End | Place = self._connection.recv()
+            if self._messages.connection in ready:
+                yield from self._messages.read()
+                return
+        except NoMessageError:
+            why = f"fails: {WRITTEN}"
+            raise self._lost(why) from None
         except (OSError, EOFError):
-            return None
-        return message
+            pass
+        raise self._lost()
 
-    def _check(self, place: Place, begun: float) -> None:
+    def _check(self) -> None:
         """End a process whose fault handler does not, or which fills the disk."""
-        if place != _NOWHERE and time.monotonic() - begun > self._seconds + _PATIENCE:
-            raise self._lost(place, self._too_long)
+        if self._place != _NOWHERE and time.monotonic() - self._since > self._seconds + _PATIENCE:
+            raise self._lost(self._too_long)
         if self._output.exists() and self._output.stat().st_size > MOST_OUTPUT:
-            raise self._lost(place, f"has written more than {MOST_OUTPUT // 2**20} MB of output")
+            why = f"has written more than {MOST_OUTPUT // 2**20} MB of output"
+            raise self._lost(why)
 
     @property
     def _too_long(self) -> str:
         return f"did not end within {self._seconds:g} s"
 
-    def _lost(self, place: Place, why: str = "") -> ReplicateError:
+    def _lost(self, why: str = "") -> ReplicateError:
         """Say where the process was when it was ended, or ended itself; the next function gets another one."""
+        place = self._place
         if self._process.is_alive() and why:
             with contextlib.suppress(OSError):
                 os.kill(self._process.pid, signal.SIGABRT)  # its fault handler writes where it is
@@ -169,7 +180,7 @@ class GuardedProcess:
     def _end(self) -> None:
         if self._process is None:
             return
-        self._connection.close()
+        self._messages.connection.close()
         with contextlib.suppress(OSError):
             if hasattr(os, "killpg"):
                 os.killpg(self._process.pid, signal.SIGKILL)  # with everything that it has started
@@ -198,6 +209,10 @@ class _Watch:
     connection: Connection
     seconds: float
     busy: bool = False
+    pid: int = field(default_factory=os.getpid)
+
+    def send(self, kind: bytes, value: Any) -> None:
+        self.connection.send_bytes(kind + packed(value))
 
 
 _watch: _Watch | None = None  # in a process that is guarded
@@ -211,20 +226,22 @@ def watched(place: Place) -> Iterator[None]:
         yield
         return
     watch.busy = True
-    watch.connection.send(place)
+    watch.send(_AT, astuple(place))
     faulthandler.dump_traceback_later(watch.seconds, exit=True, file=2)
     try:
         yield
     finally:
+        if os.getpid() != watch.pid:
+            os._exit(0)  # a child that the code made: the parent reports
         faulthandler.cancel_dump_traceback_later()
-        watch.connection.send(_NOWHERE)
+        watch.send(_AT, astuple(_NOWHERE))
         watch.busy = False
 
 
 def tell(value: Any) -> None:
     """Have a value yielded by the `stream` that this guarded process works for; elsewhere nothing."""
     if _watch is not None:
-        _watch.connection.send(_Item(value))
+        _watch.send(_ITEM, value)
 
 
 def _serve(connection: Connection, surroundings: Surroundings) -> None:
@@ -236,7 +253,7 @@ def _serve(connection: Connection, surroundings: Surroundings) -> None:
         while True:
             function, arguments, seconds = connection.recv()
             _watch = _Watch(connection, seconds)
-            connection.send(_run(function, arguments))
+            _watch.send(_END, astuple(_run(function, arguments)))
     os._exit(0)
 
 

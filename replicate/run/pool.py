@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Generator, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
@@ -24,11 +24,11 @@ from replicate.errors import ReplicateError
 from replicate.exhibits import Claims, Exhibit
 from replicate.exhibits.file_names import display_name
 from replicate.run.limits import MOST_OUTPUT
-from replicate.run.messages import Messages
+from replicate.run.messages import WRITTEN, Messages, NoMessageError
 from replicate.run.performance import Performance, with_errors
 from replicate.run.units import Unit, failed
 from replicate.run.waiting import Waiting
-from replicate.run.worker import BEGUN, FAILED, Surroundings, Task, serve
+from replicate.run.worker import BEGUN, DONE, FAILED, Surroundings, Task, serve
 
 _TICK = 0.5
 _PATIENCE = 2.0  # seconds in which a worker that is stopped may say where it was
@@ -41,6 +41,11 @@ _HEAVY = (
 _ATTEMPTS, _BETWEEN_ATTEMPTS = 4, 0.1  # seconds
 _UNKNOWN = 255  # the process that watches over the workers is gone, too
 _FRAME = re.compile(r'File "([^"]+)", line (\d+) in ')
+_READERS: dict[bytes, Callable[[bytes], Any]] = {
+    BEGUN: bytes.decode,
+    DONE: Performance.from_bytes,
+    FAILED: bytes.decode,
+}
 
 
 @dataclass
@@ -171,7 +176,7 @@ def _orphaned(worker: _Worker) -> bool:
 
 def _start(output: Path) -> _Worker:
     process, here = started(serve, output)
-    return _Worker(process, Messages(here), output)
+    return _Worker(process, Messages(here, _READERS), output)
 
 
 def started(service: Callable[[Connection, Surroundings], None], output: Path) -> tuple[Any, Connection]:
@@ -238,15 +243,17 @@ def _folder() -> str:
 def _received(worker: _Worker) -> tuple[Performance | None, bool]:
     """Return what a worker has sent if it is a result, and whether the worker is lost."""
     try:
-        for message in worker.messages.read():
-            kind, content = message[:1], message[1:]
+        for kind, content in worker.messages.read():
             if kind == FAILED:
-                worker.failed = content.decode(errors="replace")
+                worker.failed = content
                 return None, True
-            if kind != BEGUN:
-                return Performance.from_bytes(content, _output(worker)), False
-            worker.claim, worker.begun = content.decode(errors="replace"), time.monotonic()  # each has the whole time
-    except (OSError, EOFError, ValueError, KeyError, TypeError):  # it has gone, or a unit has written to the pipe
+            if kind == DONE:
+                return replace(content, output=_output(worker)), False
+            worker.claim, worker.begun = content, time.monotonic()  # each has the whole time
+    except NoMessageError:
+        worker.failed = WRITTEN
+        return None, True
+    except (OSError, EOFError):  # it has gone
         return None, True
     return None, False
 

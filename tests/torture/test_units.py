@@ -31,6 +31,7 @@ seen = {
     "limits": [resource.getrlimit(limit) for limit in range(8)],
     "blocked": signal.pthread_sigmask(signal.SIG_BLOCK, []),
     "new decimal": str(decimal.Context()), "digits": sys.get_int_max_str_digits(),
+    "tracing": [sys.gettrace(), threading.gettrace()], "profiling": [sys.getprofile(), threading.getprofile()],
     "functions": [sum([1, 2]), math.sin(1), math.exp(1), np.sin(1.0), np.linalg.solve([[2.0]], [1.0]), pd.isna(1)],
 }
 time.sleep(0.1)
@@ -70,6 +71,8 @@ CHANGES = {
     "mathematics": "import math\nmath.sin = math.cos\ndel math.exp",
     "numpy's functions": "np.sin, np.linalg.solve = np.cos, None",
     "pandas' functions": "pd.isna = len",
+    "tracing": "import threading\ndef traced(*_): return traced\nsys.settrace(traced)\nthreading.settrace(traced)",
+    "profiling": "import threading\nsys.setprofile(lambda *_: None)\nthreading.setprofile(print)",
     "threads": "import threading\nthreading.Thread(target=time.sleep, args=(5,)).start()",
 }
 
