@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from conftest import Run
 
+from replicate.display import markdown, pandoc
 from replicate.run.cache import Cache, stored
 from replicate.run.kept_texts import KeptTexts
 from replicate.whatif import DISTRIBUTIONS, ROOMS, Row, whatif_page
@@ -118,7 +121,7 @@ def test_a_folder_that_cannot_be_written_costs_time_only(tmp_path: Path) -> None
 def test_kept_texts_count_and_go_with_the_results(tmp_path: Path) -> None:
     _kept(tmp_path, Said())("one", lambda: "1")
     (tmp_path / "notes.txt").touch()
-    assert Cache(tmp_path).clear()[0] == 1
+    assert [entry.path.parent.name for entry in Cache(tmp_path).clear()] == ["texts"]
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 
@@ -150,3 +153,60 @@ def test_the_page_names_all_rooms_whose_code_it_loads() -> None:
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     # what renders the page around the kept texts need not be named
     assert set(run.stdout.split()) - {"verdicts", "run"} <= set(ROOMS)
+
+
+# --------------------------------------------------------------------------------------- the texts of a report's pages
+
+
+@pytest.fixture
+def converted(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Note every text that pandoc converts."""
+    noted: list[str] = []
+
+    def convert(text: str, *options: str) -> str:
+        noted.append(text)
+        return original(text, *options)
+
+    original = pandoc.convert
+    monkeypatch.setattr(markdown, "convert", convert)
+    return noted
+
+
+def _pages() -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in Path("build", "report").glob("*.html")}
+
+
+def test_only_the_page_whose_text_changes_is_converted_again(
+    replicate: Run, folder: Path, converted: list[str]
+) -> None:
+    command = ("report", "--papers", str(folder.parent), "-v")
+    notes = folder / "notes.md"
+    notes.write_text("It was *cold*.\n")
+    replicate(*command)
+    first = _pages()
+    Path("build", "cache", "report.json").unlink()
+    converted.clear()
+    replicate(*command)
+    assert (converted, _pages()) == ([], first)
+    notes.write_text("It was *warm*.\n")
+    _, _, said = replicate(*command)
+    assert all("warm" in text for text in converted)
+    assert "computed texts of lab.html\n    because its source has changed" in said
+    changed = _pages()
+    assert b"<em>warm</em>" in changed["lab.html"]
+    shutil.rmtree("build")
+    replicate(*command)
+    assert _pages() == changed
+
+
+def test_what_is_kept_is_made_safe_each_time(tmp_path: Path) -> None:
+    def page() -> str:
+        batch = markdown.MarkdownBatch("page", KeptTexts(tmp_path, markdown.ROOMS, markdown.DISTRIBUTIONS))
+        return batch.substitute(str(batch.inline("*one*")))
+
+    assert page() == "<em>one</em>"
+    path = _entry(tmp_path)
+    head, recorded, text = path.read_text().splitlines()
+    forged = json.dumps(json.loads(text).replace("one", "one<script>steal()</script>"))
+    _write(path, json.loads(head), [recorded, forged])
+    assert page() == "<em>one</em>"

@@ -7,6 +7,9 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
+
+import pytest
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -41,6 +44,18 @@ def test_verbose_says_why_a_result_is_computed_and_what_its_code_writes(folder: 
     assert "hello" not in errors
 
 
+def test_no_unit_depends_on_the_program_that_starts_the_run(
+    tmp_path: Path, replicate: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = ModuleType("__main__")
+    program.__file__ = str(tmp_path / "program.py")
+    Path(program.__file__).write_text("from pathlib import Path\nPath(__file__).with_name('ran').touch()\n")
+    monkeypatch.setitem(sys.modules, "__main__", program)
+    assert replicate("report", "lab")[0] == 0
+    assert sys.modules["__main__"] is program
+    assert not (tmp_path / "ran").exists()
+
+
 def test_a_unit_that_takes_too_long_breaks_the_run_by_name(folder: Path, replicate: Run) -> None:
     add(folder, "\n@table.reading('slow', 'Slow')\ndef _slow():\n    import time\n    time.sleep(60)\n")
     status, _, errors = replicate("report", "lab", "--unit-timeout", "3")
@@ -57,7 +72,7 @@ def test_a_time_limit_is_more_than_nothing(replicate: Run) -> None:
 
 def test_what_is_kept_is_counted_and_removed(folder: Path, replicate: Run) -> None:
     assert folder.is_dir()
-    assert replicate("cache")[:2] == (0, "build/cache: 0 results, 0.0 MB of at most 1024 MB\n")
+    assert replicate("cache")[:2] == (0, "build/cache: 0 results, 0 texts, 0.0 MB of at most 1024 MB\n")
     replicate("report", "lab")
     assert replicate("cache")[1].startswith("build/cache: 4 results, ")
     assert replicate("cache", "--clear")[1].startswith("removed: 4 results, ")

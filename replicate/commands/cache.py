@@ -16,13 +16,12 @@ def cache(
 ) -> None:
     """Show how much the kept results take, or remove them."""
     from replicate.run.cache import Cache, stored
+    from replicate.run.kept_texts import FOLDER
     from replicate.run.limits import MOST_KEPT
 
     folder = output_folder(library(), out) / "cache"
-    if clear:
-        count, size = Cache(folder).clear()
-        echo(f"removed: {count} results, {size / 2**20:.1f} MB, from {folder}")
-        return
-    entries = list(stored(folder))
-    size = sum(entry.size for entry in entries)
-    echo(f"{folder}: {len(entries)} results, {size / 2**20:.1f} MB of at most {MOST_KEPT / 2**20:g} MB")
+    entries = Cache(folder).clear() if clear else list(stored(folder))
+    texts = sum(entry.path.parent == folder / FOLDER for entry in entries)
+    size = sum(entry.size for entry in entries) / 2**20
+    held = f"{len(entries) - texts} results, {texts} texts, {size:.1f} MB"
+    echo(f"removed: {held}, from {folder}" if clear else f"{folder}: {held} of at most {MOST_KEPT / 2**20:g} MB")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from replicate.commands.computing import Computing, computing
@@ -25,6 +26,8 @@ def report(
 
     Of papers that are named, their pages are written and what all pages share.
     """
+    from replicate import whatif
+    from replicate.display import markdown
     from replicate.report.data import expected_files, write_outputs
     from replicate.report.pages import INDEX, build_report, single_page
     from replicate.report.scope import Scope, owner_of
@@ -34,7 +37,6 @@ def report(
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import counts_of, print_summary
-    from replicate.whatif import DISTRIBUTIONS, ROOMS, unreadable_loops, write_whatif
 
     chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
@@ -51,17 +53,18 @@ def report(
     with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
         outcome = run.recompute(everyone)
-        outcome = outcome.without(unreadable_loops(outcome.papers, outcome.results))
+        outcome = outcome.without(whatif.unreadable_loops(outcome.papers, outcome.results))
+        kept = run.kept_texts(markdown.ROOMS, markdown.DISTRIBUTIONS)
+        build = partial(build_report, out_dir=fresh / "report", about=about, keep=kept)
         try:
-            pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
+            pages = build(outcome.papers, outcome.results, outcome.judgement)
         except TemplateError:  # one paper's text must not take the pages of the others
             outcome = outcome.without(unreadable(outcome))
             with placed(run.within.project):
-                pages = build_report(outcome.papers, outcome.results, outcome.judgement, fresh / "report", about)
+                pages = build(outcome.papers, outcome.results, outcome.judgement)
         data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
-        index = run.folder / "report" / pages[0].name
-        keep_texts = run.kept_texts(ROOMS, DISTRIBUTIONS)
-        write_whatif(outcome.papers, outcome.results, fresh / "report", back=INDEX, keep=keep_texts)
+        kept = run.kept_texts(whatif.ROOMS, whatif.DISTRIBUTIONS)
+        whatif.write_whatif(outcome.papers, outcome.results, fresh / "report", back=INDEX, keep=kept)
         mailed = [paper for paper in outcome.papers if paper.id in named] if single_file else []
         for paper in mailed:
             text = single_page(paper, outcome.results, outcome.judgement, data, about)
@@ -75,7 +78,7 @@ def report(
     print_summary(counts, console())
     if texts and not outcome.broken and not outcome.failures and not outcome.judgement.unreadable:
         keep(run.folder, chosen, texts, [run.folder / path for path in written], counts, outcome.judgement.unused)
-    echo(f"\nreport: {index}")
+    echo(f"\nreport: {run.folder / 'report' / pages[0].name}")
     for paper in mailed:
         echo(f"in one file: {run.folder / paper.id}.html")
     exit_with(run.within, outcome)

@@ -15,6 +15,7 @@ from typing import Literal
 from markupsafe import Markup
 
 from replicate.display.formulas import formulas, without_operators
+from replicate.display.keeping import Keep, made_anew
 from replicate.display.numbers import minus_signs
 from replicate.display.pandoc import PandocError, SlowTextError, convert, refusal
 from replicate.display.safe_html import sanitised
@@ -40,6 +41,10 @@ _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 _VERBATIM = re.compile(r"(<(?:code|pre|math)\b.*?</(?:code|pre|math)>|<[^>]*>)", re.DOTALL)
 _MARKS = re.compile("[\ue000-\ue007]")
 
+#: Rooms of the framework whose code has texts converted, and what converts them: what a `Keep` of them looks at.
+ROOMS = ("display/markdown", "display/pandoc")
+DISTRIBUTIONS = ("pypandoc_binary",)
+
 
 def without_marks(text: str) -> str:
     r"""Return a text in which the private characters that hold places of a page are written out.
@@ -63,9 +68,10 @@ class MarkdownBatch:
     "<h1>Is <em>this</em> true?</h1><a title='Yes'>"
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, keep: Keep = made_anew) -> None:
         """Start an empty batch; `name` says in error messages which page the texts belong to."""
         self.name = name
+        self._keep = keep
         self._texts: dict[str, int] = {}
 
     def block(self, text: str) -> Markup:
@@ -114,8 +120,10 @@ class MarkdownBatch:
         if not self._texts:
             return []
         marked = [f"\ue004{i}\ue005\n\n{text}\n" for text, i in self._texts.items()]
+        source = "\n".join(marked)
         try:
-            document = convert("\n".join(marked), "html", _FORMAT, *_OPTIONS)
+            # What pandoc wrote is kept as it was, and made safe below each time: an entry is not trusted.
+            document = self._keep(f"texts of {self.name}", lambda: convert(source, "html", _FORMAT, *_OPTIONS), source)
         except SlowTextError as error:
             raise UnreadableTextError(self.name, self._slowest(), str(error)) from error
         except PandocError as error:

@@ -16,6 +16,7 @@ from markupsafe import Markup
 from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.distance import off
+from replicate.display.keeping import Keep, made_anew
 from replicate.display.labels import cell_keys, cited
 from replicate.display.markdown import MarkdownBatch, without_marks
 from replicate.display.safe_html import policy
@@ -55,7 +56,7 @@ def _written(value: Any) -> Any:
     return without_marks(value) if isinstance(value, str) and not isinstance(value, Markup) else value
 
 
-def render(template: str, name: str, **context: Any) -> str:
+def render(template: str, name: str, keep: Keep = made_anew, **context: Any) -> str:
     """Return a page.
 
     Parameters
@@ -64,6 +65,8 @@ def render(template: str, name: str, **context: Any) -> str:
         File name in the folder of the templates.
     name
         File name of the page, for error messages.
+    keep
+        Keeps the texts of the page as they were converted, between runs.
     context
         What the template shows, besides the words, numbers and scores that all pages use.
 
@@ -72,7 +75,7 @@ def render(template: str, name: str, **context: Any) -> str:
     TemplateError
         If a text of the page cannot be converted.
     """
-    batch = MarkdownBatch(name)
+    batch = MarkdownBatch(name, keep)
     _BATCH.set(batch)
     page = html_environment().get_template(template)
     text = page.render(

@@ -12,10 +12,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import dropwhile, takewhile
 from pathlib import Path
+from typing import Any
 
 from replicate.display.addresses import address, page_name, pages_of, parts
 from replicate.display.consequences import consequential
 from replicate.display.environment import versions
+from replicate.display.keeping import Keep, made_anew
 from replicate.display.rendering import render
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
@@ -94,7 +96,12 @@ class Page:
 
 
 def build_report(
-    papers: Sequence[Paper], results: Results, judgement: Judgement, out_dir: Path, about: Site | None = None
+    papers: Sequence[Paper],
+    results: Results,
+    judgement: Judgement,
+    out_dir: Path,
+    about: Site | None = None,
+    keep: Keep = made_anew,
 ) -> list[Path]:
     """Write the report.
 
@@ -110,6 +117,8 @@ def build_report(
         Title, introduction and methods of the report as a whole.
     out_dir
         Folder of the pages; figures and tables are expected in ``../figures`` and ``../tables``.
+    keep
+        Keeps texts of the pages as they were converted, between runs.
 
     Returns
     -------
@@ -125,12 +134,12 @@ def build_report(
     """
     site = {paper.id: paper_pages(paper, results, judgement) for paper in papers}
     about = about or Site()
-    shared = {"about": about, "language": about.language, "theme": about.theme}
+    shared: dict[str, Any] = {"about": about, "language": about.language, "theme": about.theme, "keep": keep}
     advised = {id: advice(exhibit for page in pages for exhibit in page.exhibits) for id, pages in site.items()}
     found = sheets(papers, judgement)
     grave = [_listed(found, row) for row in consequential(judgement.verdicts)[:_MOST_GRAVE]]
     stamp = versions(distributions_used(paper.package for paper in papers))
-    overview = {"stamp": stamp, "site": site, "papers": papers, "advised": advised, "grave": grave}
+    overview: dict[str, Any] = {"stamp": stamp, "site": site, "papers": papers, "advised": advised, "grave": grave}
     texts = {INDEX: render("index.html", INDEX, **overview, **shared)}
     name = METHODS if about.methods else VERDICTS
     verdicts = (templates_dir() / "verdicts.md").read_text(encoding="utf-8")

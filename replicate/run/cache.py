@@ -89,8 +89,8 @@ class Cache:
                 removed += entry.size
         return removed
 
-    def clear(self) -> tuple[int, int]:
-        """Remove every entry, and nothing else in the folder; return how many there were and their bytes."""
+    def clear(self) -> list[Entry]:
+        """Remove every entry, and nothing else in the folder; return what there was."""
         entries = list(stored(self.folder))
         for entry in entries:
             entry.path.unlink(missing_ok=True)
@@ -99,7 +99,7 @@ class Cache:
                     break
                 with contextlib.suppress(OSError):  # not empty
                     folder.rmdir()
-        return len(entries), sum(entry.size for entry in entries)
+        return entries
 
     def _folder(self, unit: Unit) -> Path:
         assert self.folder is not None  # noqa: S101  -- for the type checker; all callers have looked

@@ -41,12 +41,15 @@ class KeptTexts:
     report: Callable[[str, str], object] = lambda _name, _why: None
     _looked: Looked = field(default_factory=Looked)
 
-    def __call__(self, name: str, make: Callable[[], str]) -> str:
-        """Return the text of this name, which says all that it depends on besides the code."""
+    def __call__(self, name: str, make: Callable[[], str], of: str = "") -> str:
+        """Return the text of this name, as `replicate.display.keeping.Keep` says."""
         if self.folder is None:
             self.report(name, "nothing is kept")
             return make()
-        now = self._looked.rooms(self.rooms, self.distributions)
+        now = {
+            "text": {"its source": hashlib.sha256(of.encode()).hexdigest()},
+            **self._looked.rooms(self.rooms, self.distributions),
+        }
         path = self.folder / FOLDER / f"{hashlib.sha256(name.encode()).hexdigest()[:24]}{SUFFIX}"
         text, why = _read(path, name, now)
         if text is None:

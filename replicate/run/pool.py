@@ -18,6 +18,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from replicate.errors import ReplicateError
@@ -205,7 +206,8 @@ def started(service: Callable[[Connection, Surroundings], None], output: Path) -
         try:
             if method == "forkserver":
                 _start_server()
-            process.start()
+            with _without_program():
+                process.start()
         except (OSError, EOFError) as error:
             if not attempts:
                 msg = f"a worker process cannot be started: {str(error) or type(error).__name__}"
@@ -230,6 +232,17 @@ def _start_server() -> None:
             del os.environ["PYTHONSAFEPATH"]
         else:
             os.environ["PYTHONSAFEPATH"] = before
+
+
+@contextlib.contextmanager
+def _without_program() -> Iterator[None]:
+    """Start processes that do not import the program that starts them: no unit needs it, and none depends on it."""
+    program = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        yield
+    finally:
+        sys.modules["__main__"] = program
 
 
 def _folder() -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
@@ -13,6 +13,7 @@ from markupsafe import Markup
 
 import replicate
 from replicate.display.addresses import TRIALS
+from replicate.display.keeping import Keep, made_anew
 from replicate.display.rendering import html_environment
 from replicate.display.safe_html import policy
 from replicate.exhibits import Paper
@@ -60,15 +61,8 @@ print(f"Ms {loop.sensitivity_peak().value:.4g}, margins: gain {m.gain:.4g}, phas
 ROOMS = ("display", "errors", "exhibits", "figures", "loops", "plain_text", "resources", "whatif")
 DISTRIBUTIONS = ("matplotlib", "numpy", "scipy")
 
-Keep = Callable[[str, Callable[[], str]], str]
-"""Returns the text that an earlier run kept under a name that says all it depends on, or has it made."""
 
-
-def _made(_name: str, make: Callable[[], str]) -> str:
-    return make()
-
-
-def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", keep: Keep = _made) -> str:
+def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", keep: Keep = made_anew) -> str:
     """Return the page.
 
     Parameters
@@ -118,7 +112,7 @@ def whatif_page(rows: Sequence[Row], title: str = "What if?", back: str = "", ke
 
 
 def write_whatif(
-    papers: Iterable[Paper], results: Results, folder: Path, back: str = "", keep: Keep = _made
+    papers: Iterable[Paper], results: Results, folder: Path, back: str = "", keep: Keep = made_anew
 ) -> list[Path]:
     """Write the page of the papers' rows into a folder; return the file, or nothing where no paper declares a row."""
     rows = [row for row in rows_of(papers, results) if not why_not_drawn(row)]
