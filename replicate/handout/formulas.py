@@ -53,7 +53,7 @@ def convert(formulas: Sequence[Formula], known: dict[Formula, Converted] | None 
         For the first formula that pandoc cannot convert.
     """
     known = {} if known is None else known
-    known |= _converted([formula for formula in formulas if formula not in known])
+    known |= _converted([formula for formula in dict.fromkeys(formulas) if formula not in known])
     return {formula: known[formula] for formula in formulas}
 
 

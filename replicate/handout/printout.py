@@ -175,12 +175,11 @@ def head(document: Document, look: str = TEMPLATE) -> str:
     }
     arguments = [f"{key}: {quoted(value)}" for key, value in settings.items()]
     arguments.append(f"solutions: {'true' if document.solutions else 'false'}")
-    if document.form:
-        arguments.append(f"form: {quoted(document.form)}")
+    form = f"#metadata({quoted(document.form)}) <form>\n" if document.form else ""
     words = ", ".join(f"{quoted(name)}: {quoted(word)}" for name, word in sheet.language.words.items())
     arguments.append(f"words: ({words})")
     whole = look.partition(".")[0]  # the function that the template is named after
-    return f'#import "{look}": *\n#show: {whole}.with({", ".join(arguments)})\n\n'
+    return f'#import "{look}": *\n#show: {whole}.with({", ".join(arguments)})\n\n{form}'
 
 
 def form_code(form: str) -> bytes:
