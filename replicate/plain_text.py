@@ -88,7 +88,7 @@ def read_text(
     pipes
         Whether it may be a pipe, which a reader waits for, as in ``--roster <(command)``.
     utf_16
-        Whether UTF-16 is read, too, if the file begins with a byte order mark, as some programs export tables.
+        Whether UTF-16 is read, too, with or without a byte order mark, as some programs export tables.
     """
     try:
         if isinstance(path, Path) and (path.is_char_device() or path.is_block_device() or path.is_socket()):
@@ -108,9 +108,8 @@ def read_text(
     if content.startswith(_ARCHIVE):
         msg = f"{name}: is a spreadsheet or an archive; expected: text (save a table as CSV in UTF-8)"
         raise error(msg)
-    wide = utf_16 and content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        text = content.decode("utf-16" if wide else "utf-8")
+        text = content.decode(_encoding(content) if utf_16 else "utf-8")
     except UnicodeDecodeError as why:
         line = content[: why.start].count(b"\n") + 1
         msg = f"{name}:{line}: is not UTF-8 text"
@@ -124,6 +123,16 @@ def read_text(
         )
         raise error(msg)
     return text
+
+
+def _encoding(content: bytes) -> str:
+    """Return the encoding of a table: UTF-8, unless a byte order mark or its line ends are those of UTF-16."""
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    for wide in ("utf-16-le", "utf-16-be") if b"\0" in content else ():
+        if re.search(r"[\r\n]", content.decode(wide, errors="replace")):
+            return wide
+    return "utf-8"
 
 
 def parse_toml(text: str, name: str, error: type[ReplicateError]) -> dict[str, Any]:

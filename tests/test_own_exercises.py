@@ -86,6 +86,11 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
         (("digits=3", "tolerance='x'"), r"mine/exercise\.py:9: .*'tolerance' of an answer is 'x', allowed: a number"),
         (("digits=3", "digits=3, mistakes=[1]"), r"mine/exercise\.py:9: .*'mistakes' of an answer is \[1\], allowed"),
         (("digits=3", "digits=3, carried=1.0"), r"mine/exercise\.py:9: .*'carried' of an answer is 1\.0, allowed"),
+        (
+            ("digits=3", r'digits=3, asked=r"$\frac{1$"'),
+            r"mine/exercise\.py:8: .*'asked' of 'answer' holds the formula \$.*\$, which pandoc cannot convert: unexp",
+        ),
+        (("digits=3", 'digits=3, asked="$k$ and $T_i"'), r"mine/exercise\.py:8: .*'asked' of 'answer' .*between two"),
         (("digits=3", "digits=3, asked=3"), r"mine/exercise\.py:9: .*'asked' of an answer is 3, allowed: a text"),
         (("digits=3", "digits=3, mistakes={'a': 1e999}"), r"mine/exercise\.py:9: .*'mistakes' .*allowed: .* finite"),
         (

@@ -22,6 +22,8 @@ def test_a_roster_of_many_scripts() -> None:
     [
         ("", "", "roster is empty"),
         ("name,mail\n\n", "", "roster is empty"),
+        ("Student,ID\n    Points Possible,\n", "", "roster is empty"),
+        ("Status;Name\nMitglied;Ada\nMitglied;Bob\n", "", "choose a column in which all differ with --roster-id"),
         ("name,mail\nAda,a\nada,b\n", "", "r.csv:3: 'ada' names the same sheet as 'Ada' in line 2"),
         ("name;mail\nAda;a\n", "id", "no column 'id'; allowed: name, mail"),
         ("name,id\nAda,\n", "id", "r.csv:2: no entry in the column 'id'"),
@@ -60,6 +62,8 @@ def test_long_names_that_differ_at_their_end_name_two_sheets(tmp_path: Path) -> 
         b"sep=;\r\nname;x\r\nAda;1\r\nZo\xc3\xab;2\r\n",
         "name\tx\r\nAda\t1\r\nZoë\t2\r\n".encode("utf-16"),  # "Unicode text"
         "\ufeffname;x;\r\n;;\r\nAda;1;\r\nZoë;2;;\r\n".encode("utf-16-be"),
+        "name;Größe\nAda;1\nZoë;2".encode("utf-16-le"),  # without a mark
+        "name\tx\r\nAda\t1\r\nZoë\t2\r\n".encode("utf-16-be"),
         b"\r\nname\tx\r\n\r\nAda\t1\r\nZo\xc3\xab\t2",
         b'"name","x"\rAda,"1\r2"\rZo\xc3\xab',
     ],
@@ -67,6 +71,38 @@ def test_long_names_that_differ_at_their_end_name_two_sheets(tmp_path: Path) -> 
 def test_a_roster_as_spreadsheets_save_it(tmp_path: Path, content: bytes) -> None:
     (tmp_path / "r.csv").write_bytes(content)
     assert read_roster(tmp_path / "r.csv") == read_roster(tmp_path / "r.csv", "name") == ["Ada", "Zoë"]
+
+
+@pytest.mark.parametrize(
+    ("content", "column", "students"),
+    [
+        (  # a gradebook of Canvas, as its exporter writes it
+            '\ufeffStudent,ID,Quiz\n,,Manual Posting\n    Points Possible,,10\n"Lovelace, Ada",7,\n"Müller, Zoë",8,9\n',
+            "",
+            ["Lovelace, Ada", "Müller, Zoë"],
+        ),
+        ("Student,ID,Section\n    Points Possible,,\nAda,7,A\nAda,8,A\n", "ID", ["7", "8"]),
+        # participants of a course of Moodle
+        (
+            "First name,Last name,Email address,Groups\nAda,L,a@x.org,\nAda,B,b@x.org,G\n",
+            "Email address",
+            ["a@x.org", "b@x.org"],
+        ),
+        # a grade centre of Blackboard: UTF-16 with tabs
+        ("Last Name\tFirst Name\tUsername\nLovelace\tAda\tal1\nLovelace\tZoë\tzl2\n", "Username", ["al1", "zl2"]),
+        # members of a course in ILIAS, participants in Stud.IP: semicolons, a status before the names
+        (
+            '"Status";"Nachname";"Benutzername"\n"Mitglied";"L";"al"\n"Mitglied";"B";"zb"\n',
+            "Benutzername",
+            ["al", "zb"],
+        ),
+    ],
+)
+def test_a_roster_as_learning_platforms_export_it(
+    tmp_path: Path, content: str, column: str, students: list[str]
+) -> None:
+    (tmp_path / "r.csv").write_text(content, encoding="utf-16-le" if "\t" in content else "utf-8")
+    assert read_roster(tmp_path / "r.csv", column) == students
 
 
 def test_a_roster_in_an_old_encoding_says_how_to_save_it(tmp_path: Path) -> None:

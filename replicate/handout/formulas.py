@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from replicate.display import pandoc
-from replicate.display.pandoc import refusal
+from replicate.display.pandoc import PandocError, refusal
 from replicate.errors import TemplateError
+from replicate.handout.pandoc import written
 from replicate.handout.spoken_math import spoken
 from replicate.handout.tree import Blocks, elements
 
@@ -61,32 +61,26 @@ def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
     if not formulas:
         return {}
     try:
-        typst, mathml = _written(formulas, "typst"), _written(formulas, "html")
-    except pandoc.PandocError:
+        typst, pages = _written(formulas, "typst"), _written(formulas, "html", "--mathml")
+    except PandocError:
         for formula in formulas:  # which one is it?
             try:
                 _written([formula], "typst")
-            except pandoc.PandocError as error:
+            except PandocError as error:
                 raise FormulaError(formula[1], refusal(str(error))) from error
         raise
+    mathml = [page[page.index("<math") : page.rindex("</math>")] + "</math>" for page in pages]
     return {
         formula: Converted(one, other.replace("<math", f'<math alttext="{escape(spoken(other))}"', 1), spoken(other))
         for formula, one, other in zip(formulas, typst, mathml, strict=True)
     }
 
 
-def _written(formulas: Sequence[Formula], target: str) -> list[str]:
-    """Write each formula in a paragraph of its own, and cut the result at the marks between them."""
-    document = "\n\n".join(f"\ue004\n\n{f'$${tex}$$' if displayed else f'${tex}$'}" for displayed, tex in formulas)
-    options = ["--wrap=none", "--fail-if-warnings", *(["--mathml"] if target == "html" else [])]
-    parts = [part.strip() for part in pandoc.convert(document, target, "markdown", *options).split("\ue004")[1:]]
-    if target == "typst":
-        return parts
-    found = [re.search(r"<math\b.*</math>", part, re.DOTALL) for part in parts]
-    for formula, match in zip(formulas, found, strict=True):
-        if match is None:  # not taken for math at all, say for a space after the dollar sign
-            raise FormulaError(formula[1], "is not a formula")
-    return [match[0] for match in found if match]
+def _written(formulas: Sequence[Formula], target: str, *options: str) -> list[str]:
+    """Write each formula in a paragraph of its own."""
+    kinds = {True: "DisplayMath", False: "InlineMath"}
+    math = [[{"t": "Para", "c": [{"t": "Math", "c": [{"t": kinds[displayed]}, tex]}]}] for displayed, tex in formulas]
+    return [part.strip() for part in written(math, target, *options)]
 
 
 def located(error: FormulaError, lines: Sequence[tuple[str, int]], source: str) -> TemplateError:

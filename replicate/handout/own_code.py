@@ -8,7 +8,7 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from numbers import Real
 from pathlib import Path
 from types import MappingProxyType
@@ -17,6 +17,7 @@ from typing import Any
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, Variation
+from replicate.handout.formulas import FormulaError, convert
 from replicate.plain_text import read_text
 from replicate.run.guarded import Place, watched
 
@@ -143,7 +144,25 @@ def _answers(value: Any) -> Answers:
         if not isinstance(one, Answer):
             msg = f"the field '{key}' is {_named(one)}, allowed: an Answer"
             raise TypeError(msg)
+        _, *formulas = one.asked.split("$")
+        if len(formulas) % 2:
+            msg = f"the field 'asked' of '{key}' is {one.asked!r}, allowed: words, and LaTeX between two '$'"
+            raise ValueError(msg)
+        for tex in formulas[::2]:
+            if why := _not_a_formula(tex):
+                msg = f"the field 'asked' of '{key}' holds the formula ${tex}$, which pandoc cannot convert: {why}"
+                raise ValueError(msg)
     return found
+
+
+@cache
+def _not_a_formula(tex: str) -> str:
+    """Return why pandoc cannot convert a formula; nothing if it can."""
+    try:
+        convert([(False, tex)])
+    except FormulaError as error:
+        return str(error)
+    return ""
 
 
 def _named(value: Any) -> str:

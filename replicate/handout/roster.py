@@ -18,6 +18,7 @@ _LONGEST = 150  # bytes of a name, so that its file's name fits any system
 _SHOWN = 60  # letters of a name in a message
 _RESERVED = {"key", "solutions", "slides"}  # files of other kinds have these names
 _INVISIBLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
+_NO_STUDENT = "Points Possible"  # in the line below the names of the columns in a gradebook of Canvas, in any language
 _JOINERS = "\u200c\u200d"  # within words of some scripts, and between the parts of a pictograph
 
 
@@ -81,10 +82,12 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     except csv.Error as error:
         msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
         raise ReplicateError(msg) from error
-    if len(found) < 2:
+    maxima = next((place for place, (_, row) in enumerate(found[:3]) if row[0].strip() == _NO_STUDENT), 0)
+    lines = found[maxima + 1 :]  # between the names and the maxima is at most how grades are posted
+    if not lines:
         msg = f"{path.name}: the roster is empty: it needs a line with the names of the columns and one per student"
         raise ReplicateError(msg)
-    (number, names), *lines = found
+    number, names = found[0]
     columns = [name.strip() for name in names]
     if len(columns) > 1 and not any(columns[1:]):
         msg = f"{path.name}:{number}: '{_short(columns[0])}' is a title, not the names of the columns; remove the line"

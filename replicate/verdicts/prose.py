@@ -143,7 +143,7 @@ class Prose:
         TemplateError
             As `render`.
         """
-        rendered = self.render(self._marked(text), source)
+        rendered = self.render(_marked(text), source)
         lines, waiting, number = list[tuple[str, int]](), list[str](), 1
         for line in rendered.split("\n"):
             found = _LINE_MARK.findall(line)
@@ -153,24 +153,6 @@ class Prose:
                 lines += [(part, number) for part in waiting]
                 waiting.clear()
         return lines + [(part, number) for part in waiting]
-
-    def _marked(self, text: str) -> str:
-        """Return the template with its line number at the end of every line of plain text."""
-        import jinja2
-
-        try:
-            tokens = list(self._environment.lex(text))
-        except jinja2.TemplateSyntaxError:
-            return text  # rendering it says what is wrong
-        out = []
-        for first, kind, value in tokens:
-            if kind == "data":
-                parts = value.split("\n")
-                marks = [f"\ue010{first + i}\ue011\n" for i in range(len(parts) - 1)]
-                out += [part for pair in zip(parts, [*marks, ""], strict=True) for part in pair]
-            else:
-                out.append(value)
-        return "".join(out)
 
     def _number(self, exhibit: str, row: str, column: str, reading: str = AS_WRITTEN) -> float:
         where = f"value('{exhibit}', '{row}', '{column}', '{reading}')"
@@ -296,6 +278,26 @@ def check_syntax(text: str, source: str, first_line: int = 1) -> None:
     except jinja2.TemplateSyntaxError as error:
         msg = f"{source}:{first_line + error.lineno - 1}: {error.message}"
         raise TemplateError(msg) from error
+
+
+@cache
+def _marked(text: str) -> str:
+    """Return a template with its line number at the end of every line of plain text."""
+    import jinja2
+
+    try:
+        tokens = list(_environment().lex(text))
+    except jinja2.TemplateSyntaxError:
+        return text  # rendering it says what is wrong
+    out = []
+    for first, kind, value in tokens:
+        if kind == "data":
+            parts = value.split("\n")
+            marks = [f"\ue010{first + i}\ue011\n" for i in range(len(parts) - 1)]
+            out += [part for pair in zip(parts, [*marks, ""], strict=True) for part in pair]
+        else:
+            out.append(value)
+    return "".join(out)
 
 
 @cache
