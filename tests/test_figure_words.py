@@ -71,6 +71,38 @@ def test_a_contour_of_another_level_is_another_curve(filled: bool, labels: bool)
     assert any(text.endswith("is missing") for text in changes) or "moved" in changes[0]
 
 
+LEVELS = (-0.8, -0.5, -0.2, 0.2, 0.5)
+
+
+@pytest.mark.parametrize("inline", [False, True])
+def test_where_labels_of_contours_stand_is_layout(inline: bool) -> None:
+    x, y = np.meshgrid(np.linspace(-3.0, 3.0, 60), np.linspace(-2.0, 2.0, 50))
+    bumps = np.exp(-(x**2) - y**2) - np.exp(-((x - 1.0) ** 2) - (y - 1.0) ** 2)
+
+    def draw(axes: Any, given: tuple[int, float, bool]) -> None:
+        seed, shift, inside = given
+        noise = 1e-10 * np.random.default_rng(seed).normal(size=bumps.shape)
+        axes.clabel(axes.contour(x, y, bumps + noise + shift, LEVELS), inline=inside)
+
+    assert [said(draw, (0, 0.0, inline), (seed, 0.0, inline)) for seed in range(1, 5)] == [[]] * 4
+    assert any("moved" in text for text in said(draw, (0, 0.0, inline), (0, 0.005, inline)))
+    interrupted = [text for text in said(draw, (0, 0.0, inline), (0, 0.0, not inline)) if "interrupted" in text]
+    words = "no longer" if inline else "now"
+    assert interrupted == [f"curve 'level {level}' is {words} interrupted by its labels" for level in LEVELS]
+
+
+def test_a_contour_is_kept_as_it_runs_in_any_unit() -> None:
+    def height(x: Any) -> Any:
+        return 5e-4 + 2e-4 * np.sin(4e3 * np.pi * x)
+
+    x, y = np.meshgrid(np.linspace(0.0, 1e-3, 200), np.linspace(0.0, 1e-3, 200))
+    figure = Figure()
+    figure.subplots().contour(x, y, y - height(x), [0.0])
+    points = capture(figure).curves["panel 1", "level 0"]
+    between = np.interp(x[0], *points[np.argsort(points[:, 0])].T)
+    assert np.abs(between - height(x[0])).max() < 1e-3 * 1e-3
+
+
 @pytest.mark.parametrize("kind", ["plot", "scatter", "fill_between"])
 def test_what_is_turned_before_it_is_data_is_seen_where_it_lies(kind: str) -> None:
     def draw(axes: Any, angle: float) -> None:

@@ -24,6 +24,7 @@ _SILENT = {
     "parts",
     "dense",
     "clouds",
+    "labels",
     "loose",
     "thinned",
     "units",

@@ -145,6 +145,14 @@ def _is_aspect(value: object) -> bool:
     return _is_number(value) or _is_text(value)
 
 
+def _are_ellipses(value: object) -> bool:
+    return isinstance(value, list) and all(_is_place(part) and min(part[2:]) > 0.0 for part in value)
+
+
+def _are_ellipses_by_name(value: object) -> bool:
+    return isinstance(value, dict) and all(map(_are_ellipses, value.values()))
+
+
 _UNITS = ("Y", "M", "h", "m", "s")
 _Field = tuple[Callable[[object], bool], str]
 
@@ -161,6 +169,7 @@ _FIELDS: dict[str, _Field] = {
     "hidden": (_is_flag, "true or false"),
     "texts": (_are_placed, "a list of objects, each with text, x and y"),
     "thinned": (_are_numbers_by_name, "numbers by name"),
+    "labels": (_are_ellipses_by_name, "lists by name, each of four numbers, the last two positive"),
     "aspect": (_is_aspect, "a number or a text"),
     "over": (_are_pairs, "a list of pairs of names"),
     "parts": (_are_parts, "a list of objects, each with name and marks"),

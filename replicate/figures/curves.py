@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from replicate.figures.contour_labels import interrupted_words
 from replicate.figures.differences import Difference, FigureChange
 from replicate.figures.distance import Distances, distances, point_distances
 from replicate.figures.envelope import compare_envelopes
@@ -29,7 +30,7 @@ from replicate.figures.wording import moved_words
 _LITTLE = 10.0 * TOLERANCE
 # The error of thinning follows the last digits of a curve, but not by more than this factor.
 _SLACK = 2.0
-# Labels interrupt a contour by their width, which the font decides.
+# Earlier versions closed the gaps that labels cut into contours.
 _LOOSE = 0.02
 
 #: By panel and name, in data coordinates.
@@ -184,9 +185,12 @@ class _Panel:
             max(0.0, error - THINNING) for error in (needed, min(self.thinned(old_name, self.old), _SLACK * needed))
         )
         tolerance = TOLERANCE + coarse + rounding(self.old, "y")
-        if new_name in self.new.get("loose", ()):
+        labels = [
+            ellipse for name, axes in ((old_name, self.old), (new_name, self.new)) for ellipse in _labels(axes, name)
+        ]
+        if labels and old_name in self.old.get("loose", ()):
             tolerance = _LOOSE
-        told = self.dense(old_name, new_name)
+        told = None if labels and needed <= _LOOSE else self.dense(old_name, new_name)
         if told is not None:
             words, size = told
             return Pair(self.old, new_name, one, other, bool(words), tolerance, words=words, size=size)
@@ -196,7 +200,7 @@ class _Panel:
         )
         if same:
             return Pair(self.old, new_name, one, other, moved=False, tolerance=tolerance)
-        if kinds == ["line", "line"] and is_function(before) and is_function(after):
+        if kinds == ["line", "line"] and not labels and is_function(before) and is_function(after):
             window = WINDOW + coarse + rounding(self.old, "x")
             values = compare_values(before, after, tolerance, window, self.view)
             far = bool(values.alarm.any())
@@ -206,7 +210,7 @@ class _Panel:
             apart = (point_distances(after, before, self.view), point_distances(before, after, self.view))
             far = len(after) != len(before) or max(part.largest for part in apart) > tolerance
         else:
-            apart = self.apart(before, after, tolerance)
+            apart = self.apart(before, after, tolerance, labels)
             far = max(part.largest for part in apart) > tolerance
         return Pair(self.old, new_name, one, other, far, tolerance, None, apart)
 
@@ -221,8 +225,9 @@ class _Panel:
         if not needed / _SLACK <= allowed <= needed * _SLACK:
             text = f"curve '{name}' is accepted within {allowed:g} of its axes, needed: {needed:g}"
             self.say(found, "axes", text, name)
-        if name in self.old.get("loose", ()) and name not in self.new.get("loose", ()):
-            self.say(found, "axes", f"curve '{name}' is accepted as one that labels interrupt, which it is not", name)
+        words = interrupted_words(self.old, self.new, name)
+        if words:
+            self.say(found, "axes", f"curve '{name}' {words}", name)
 
     def dense(self, old_name: str, new_name: str) -> tuple[str, float] | None:
         """Compare two curves, or clouds of points, of which only a digest is kept; ``None`` if all points are."""
@@ -238,8 +243,12 @@ class _Panel:
         size = points_apart(one, other, TOLERANCE)
         return (f"moved: its {counts[0]} points lie elsewhere", size) if size else ("", 0.0)
 
-    def apart(self, before: Points, after: Points, tolerance: float) -> tuple[Distances, Distances]:
-        return distances(after, before, tolerance, self.view), distances(before, after, tolerance, self.view)
+    def apart(
+        self, before: Points, after: Points, tolerance: float, covered: Sequence[Sequence[float]] = ()
+    ) -> tuple[Distances, Distances]:
+        both = ((after, before), (before, after))
+        one, other = (distances(*pair, tolerance, self.view, covered) for pair in both)
+        return one, other
 
     def same_elsewhere(self, one: dict[str, Points], other: dict[str, Points]) -> dict[str, str]:
         """Return, by new name, the accepted curve of another name that is the same, each at most once."""
@@ -258,6 +267,12 @@ class _Panel:
                     was[name] = origin
                     break
         return was
+
+
+def _labels(axes: Axes, name: str) -> Sequence[Sequence[float]]:
+    """Return what labels cover of a contour."""
+    found: Sequence[Sequence[float]] = axes.get("labels", {}).get(name, ())
+    return found
 
 
 def _box(points: Points) -> Points:

@@ -10,12 +10,14 @@ Everything is in fractions of the axes; only what is in view is measured, with e
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.figures.contour_labels import uncovered
 from replicate.figures.polylines import Points, distance_to_segments
 from replicate.figures.scaling import finite
 
@@ -53,7 +55,13 @@ class Distances:
         return np.asarray(self.points[int(np.argmax(self.distance))])
 
 
-def distances(one: Points, other: Points, exact_above: float, view: Array | None = None) -> Distances:
+def distances(
+    one: Points,
+    other: Points,
+    exact_above: float,
+    view: Array | None = None,
+    covered: Sequence[Sequence[float]] = (),
+) -> Distances:
     """Return the distances of the points of one polyline from another one.
 
     Parameters
@@ -64,6 +72,8 @@ def distances(one: Points, other: Points, exact_above: float, view: Array | None
         The largest distance is exact if it is above this. All others may be given a little too large.
     view
         ``[[left, right], [bottom, top]]``: only points inside are measured; by default the axes.
+    covered
+        Ellipses inside which points are not measured, as in `replicate.figures.contour_labels.uncovered`.
 
     Examples
     --------
@@ -76,7 +86,7 @@ def distances(one: Points, other: Points, exact_above: float, view: Array | None
     >>> round(distances(line, gap, 1e-4).largest, 3)  # half of the gap, away from its ends
     0.283
     """
-    points = _in_view(_dense(one)[0], view)
+    points = uncovered(_in_view(_dense(one)[0], view), covered)
     starts, ends = _segments(other)
     if not len(points) or not len(starts):
         return Distances(points, np.full(len(points), np.inf))

@@ -34,7 +34,7 @@ def flattened(path: Path) -> Points:
     if not np.isin(path.codes, (Path.CURVE3, Path.CURVE4)).any():
         return _straight(path)
     pieces: list[list[Points]] = []
-    segments: Any = path.iter_bezier()
+    segments: Any = path.iter_bezier(simplify=False)
     for segment, code in segments:
         if code == Path.MOVETO:
             pieces.append([segment.control_points[:1]])

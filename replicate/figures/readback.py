@@ -19,6 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.projections.polar import PolarAxes
 
+from replicate.figures.contour_labels import covered
 from replicate.figures.describe import describe, said_label
 from replicate.figures.envelope import envelope
 from replicate.figures.outlines import joined, scattered
@@ -45,8 +46,6 @@ CHORDS = 64
 
 _DIGITS = 9
 _FINE = 1e-8
-# A label of a contour is not wider than this.
-_LABEL = 0.2
 # A curve that is longer than this, in axes, cannot be drawn with so few points; one that is drawn this well can.
 _LONG, _COARSE = 60.0, 3e-4
 _ALONG = np.linspace(0.0, 1.0, CHORDS + 1)[1:]
@@ -80,7 +79,7 @@ class Panel:
         Everything else that has a name, ready for JSON, as in `replicate.figures.describe`; ``points`` and
         ``areas`` (names of the curves that are not lines), ``thinned`` (by name, how far a curve of very many points
         may lie from what was drawn, as a fraction of the axes), ``dense`` (their envelopes), ``clouds`` (digests of
-        very many scattered points) and ``loose`` (curves that labels interrupt), where there are any.
+        very many scattered points) and ``labels`` (what labels cover of a contour), where there are any.
     names
         The curve that each artist is, by the artist's identity.
     """
@@ -105,8 +104,8 @@ def read_panel(panel: str, axes: Axes, ink: Ink) -> Panel:
     """
     axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
     read = Panel(description=describe(panel, axes, ink))
-    special: dict[str, Any] = {name: [] for name in ("points", "areas", "loose")}
-    special |= {name: {} for name in ("thinned", "dense", "clouds")}
+    special: dict[str, Any] = {"points": [], "areas": []}
+    special |= {name: {} for name in ("thinned", "dense", "clouds", "labels")}
     used: dict[str, int] = {}
     for curve in _curves(axes):
         if len(curve.points) == 0 or not ink.shows(curve.artist):
@@ -122,10 +121,7 @@ def read_panel(panel: str, axes: Axes, ink: Ink) -> Panel:
         if curve.error > THINNING:
             special["thinned"][unique] = float(f"{curve.error:.2g}")
         for name, value in curve.special.items():
-            if name == "loose":
-                special[name].append(unique)
-            else:
-                special[name][unique] = value
+            special[name][unique] = value
     read.description |= {name: value for name, value in special.items() if value}
     return read
 
@@ -204,12 +200,12 @@ def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Cur
     if isinstance(collection, ContourSet):
         base = _name(collection, "level")
         kind: Kind = "area" if collection.filled else "line"
-        loose = {"loose": True} if getattr(collection, "labelTexts", ()) else {}
         for level, path in zip(collection.levels, collection.get_paths(), strict=False):
             points = _to_data(_of_path(path), collection.get_transform(), axes)
-            points = _bridged(points, axes) if loose else points
+            points = _without_specks(points, axes)
             curve = _thinned_curve(collection, f"{base} {level:.{_DIGITS}g}", kind, points, axes)
-            yield replace(curve, special={**curve.special, **loose})
+            labels = covered(collection, level, _in_axes_units(points, axes), axes)
+            yield replace(curve, special={**curve.special, "labels": labels}) if labels else curve
     elif isinstance(collection, PathCollection):  # a scatter plot: the offsets are the data
         offsets: Points = np.ma.filled(np.ma.asarray(collection.get_offsets(), dtype=float), np.nan)
         points = _to_data(offsets, collection.get_offset_transform(), axes)
@@ -230,25 +226,14 @@ def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Cur
 _OUTLINED = {"PolyCollection", "FillBetweenPolyCollection"}
 
 
-def _bridged(points: Points, axes: Axes) -> Points:
-    """Close the gaps that labels cut into contours: how wide they are, and where, the width of the labels decides."""
+def _without_specks(points: Points, axes: Axes) -> Points:
+    """Leave out pieces too small to be seen: rounding decides whether a level that is an extremum has one."""
     units = _in_axes_units(points, axes)
-    pieces: list[Points] = []
-    breaks = np.flatnonzero(~finite(units))
-    for run in np.split(np.arange(len(points)), breaks):
-        inside = run[finite(units[run])]
-        if not len(inside):
-            continue
-        piece = points[inside]
-        first, last = units[inside[0]], units[inside[-1]]
-        if len(inside) > 2 and np.hypot(*(last - first)) < _LABEL:
-            piece = np.vstack([piece, piece[:1]])
-        near = pieces and np.hypot(*(first - _in_axes_units(pieces[-1][-1:], axes)[0])) < _LABEL
-        if near:
-            pieces[-1] = np.vstack([pieces[-1], piece])
-        else:
-            pieces.append(piece)
-    return joined(pieces)
+    edges = np.flatnonzero(np.diff(np.r_[False, finite(units), False].astype(int)))
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        if np.ptp(units[start:end], axis=0).max() < THINNING:
+            points[start:end] = np.nan
+    return points
 
 
 def _shape(patch: Patch, axes: Axes) -> tuple[Points, float]:
@@ -262,7 +247,7 @@ def _of_path(path: Path) -> Points:
     if path.codes is None:
         return np.asarray(path.vertices, dtype=float)
     pieces: list[list[Points]] = []
-    segments: Any = path.iter_bezier()  # pairs of segment and code; matplotlib's stub has the segments only
+    segments: Any = path.iter_bezier(simplify=False)  # pairs of segment and code; the stub has the segments only
     for segment, code in segments:
         if code == Path.MOVETO:
             pieces.append([segment.control_points[:1]])
