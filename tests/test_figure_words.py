@@ -147,7 +147,41 @@ def test_a_curve_that_can_be_seen_now_is_new() -> None:
 def test_the_arrows_of_a_stream_plot_are_spoken_of_together(what: str, values: Any, lines: int) -> None:
     changes = said(lambda ax, v: ax.streamplot(X, Y, Y - 1 - X**2, 1 + X - Y**2, **{what: v}), *values)
     assert len(changes) <= lines
-    assert " more " in changes[0]
+    assert "arrow heads of lines 1" in changes[0]
+
+
+def stream(axes: Any, given: tuple[Any, Any]) -> None:
+    x, y = np.meshgrid(np.linspace(-3.0, 3.0, 20), np.linspace(-2.0, 2.0, 20))
+    field, change = given
+    u, v = change(x, y, *field(x, y))
+    axes.streamplot(x, y, u, v, density=0.5)
+    axes.set(xlim=(-3, 3), ylim=(-2, 2))
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("field", [lambda x, y: (y, -x), lambda x, _: (1.0 + 0.0 * x, 0.3 + 0.0 * x)])
+def test_which_lines_of_a_field_rounding_chooses_is_not_seen(field: Any, seed: int) -> None:
+    noise = np.random.default_rng(seed).normal(size=(2, 20, 20))
+
+    def rounded(_x: Any, _y: Any, u: Any, v: Any) -> Any:
+        return u * (1.0 + 1e-13 * noise[0]), v * (1.0 + 1e-13 * noise[1])
+
+    assert said(stream, (field, lambda _x, _y, u, v: (u, v)), (field, rounded)) == []
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda _x, _y, u, v: (-u, -v), "curve 'lines 1' runs the other way now"),
+        (lambda x, y, u, v: (u, v + np.exp(-20.0 * ((x - 2.0) ** 2 + (y - 1.0) ** 2))), "curve 'lines 1' moved"),
+        (lambda _x, _y, u, v: (u, 1.02 * v), "curve 'lines 1' moved"),
+    ],
+)
+def test_another_field_is_seen_also_in_a_corner(change: Any, words: str) -> None:
+    def field(x: Any, y: Any) -> Any:
+        return -1.0 - x**2 + y, 1.0 + x - y**2
+
+    assert words in "\n".join(said(stream, (field, lambda _x, _y, u, v: (u, v)), (field, change)))
 
 
 def test_bars_that_all_move_are_spoken_of_together() -> None:

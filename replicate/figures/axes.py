@@ -26,6 +26,7 @@ _SILENT = {
     "clouds",
     "labels",
     "loose",
+    "streams",
     "thinned",
     "units",
     "curves",

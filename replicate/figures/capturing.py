@@ -49,7 +49,10 @@ def record_of(figure: Figure) -> Record:
         ink = Ink.of(drawn)
         read = {id(axes): read_panel(name, axes, ink) for name, axes in panels}
         outside = _outside_the_axes(figure) if panels else {}
-        namers = {id(axes): Namer(axes, read[id(axes)].names, _described_texts(axes)) for _, axes in panels}
+        namers = {
+            key: Namer(axes, read[key].names, _described_texts(axes), heads=read[key].heads)
+            for key, axes in ((id(axes), axes) for _, axes in panels)
+        }
         names = names_of_sub_figures(figure) | _names_of_texts(figure)
         # What the texts of a figure read is said with its first panel, if it has one.
         described_texts = _names_of_texts(figure) if panels else {}

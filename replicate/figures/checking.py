@@ -168,7 +168,7 @@ _FIELDS: dict[str, _Field] = {
     **dict.fromkeys(("xunit", "yunit"), _UNIT),
     "hidden": (_is_flag, "true or false"),
     "texts": (_are_placed, "a list of objects, each with text, x and y"),
-    "thinned": (_are_numbers_by_name, "numbers by name"),
+    **dict.fromkeys(("thinned", "streams"), (_are_numbers_by_name, "numbers by name")),
     "labels": (_are_ellipses_by_name, "lists by name, each of four numbers, the last two positive"),
     "aspect": (_is_aspect, "a number or a text"),
     "over": (_are_pairs, "a list of pairs of names"),

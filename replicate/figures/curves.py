@@ -23,6 +23,7 @@ from replicate.figures.polylines import THINNING, Points
 from replicate.figures.sameness import Axes
 from replicate.figures.scaling import TOLERANCE, finite, in_units, rounding
 from replicate.figures.showing import hidden_names
+from replicate.figures.streams import field_words, heads_words
 from replicate.figures.values import WINDOW, Array, compare_values, is_function
 from replicate.figures.wording import moved_words
 
@@ -206,6 +207,9 @@ class _Panel:
             far = bool(values.alarm.any())
             apart = self.apart(before, after, tolerance) if far and values.largest > _LITTLE else ()
             return Pair(self.old, new_name, one, other, far, tolerance, values, apart)
+        way = field_words(before, after) if self.are_streams(old_name, new_name) else None
+        if way is not None:
+            return Pair(self.old, new_name, one, other, bool(way), tolerance, words=way, size=float(bool(way)))
         if kinds == ["points", "points"]:
             apart = (point_distances(after, before, self.view), point_distances(before, after, self.view))
             far = len(after) != len(before) or max(part.largest for part in apart) > tolerance
@@ -225,9 +229,12 @@ class _Panel:
         if not needed / _SLACK <= allowed <= needed * _SLACK:
             text = f"curve '{name}' is accepted within {allowed:g} of its axes, needed: {needed:g}"
             self.say(found, "axes", text, name)
-        words = interrupted_words(self.old, self.new, name)
-        if words:
+        heads = [axes["streams"][name] for axes in (self.old, self.new)] if self.are_streams(name, name) else [0, 0]
+        for words in filter(None, (interrupted_words(self.old, self.new, name), heads_words(*heads))):
             self.say(found, "axes", f"curve '{name}' {words}", name)
+
+    def are_streams(self, *names: str) -> bool:
+        return all(name in axes.get("streams", {}) for name, axes in zip(names, (self.old, self.new), strict=True))
 
     def dense(self, old_name: str, new_name: str) -> tuple[str, float] | None:
         """Compare two curves, or clouds of points, of which only a digest is kept; ``None`` if all points are."""

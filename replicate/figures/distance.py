@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +20,6 @@ from replicate.figures.contour_labels import uncovered
 from replicate.figures.polylines import Points, distance_to_segments
 from replicate.figures.scaling import finite
 
-if TYPE_CHECKING:
-    from scipy.spatial import KDTree
-
 Array = NDArray[np.float64]
 
 # Points on long segments that are measured as well; what happens between two of them is smaller than this.
@@ -31,10 +27,12 @@ _STEP = 2e-3
 _CHUNK = 64
 
 
-def _tree(points: Points) -> KDTree:
+def nearest(points: Points, targets: Points) -> tuple[Array, NDArray[np.intp]]:
+    """Return the distance of each point from the nearest of others, and which that is."""
     from scipy.spatial import KDTree  # as slow to import as everything else together, and most figures do not differ
 
-    return KDTree(points)
+    distance, index = KDTree(targets).query(points)
+    return np.asarray(distance, dtype=float), np.asarray(index)
 
 
 @dataclass(frozen=True)
@@ -92,8 +90,8 @@ def distances(
         return Distances(points, np.full(len(points), np.inf))
     # The nearest of the points along the other curve names a segment, and its distance bounds the true one.
     along, segment = _dense(other)
-    near = segment[_tree(along).query(points)[1]]
-    distance = _to_own_segment(points, starts[near], ends[near])
+    near = segment[nearest(points, along)[1]]
+    distance = to_own_segment(points, starts[near], ends[near])
     # Of those that matter the furthest first, until no bound is left that exceeds the largest true distance.
     order = np.argsort(-distance, kind="stable")
     largest = exact_above
@@ -120,7 +118,7 @@ def point_distances(one: Points, other: Points, view: Array | None = None) -> Di
     points, targets = _in_view(one[finite(one)], view), other[finite(other)]
     if not len(points) or not len(targets):
         return Distances(points, np.full(len(points), np.inf))
-    return Distances(points, np.asarray(_tree(targets).query(points)[0], dtype=float))
+    return Distances(points, nearest(points, targets)[0])
 
 
 def _in_view(points: Points, view: Array | None) -> Points:
@@ -148,7 +146,8 @@ def _dense(points: Points) -> tuple[Points, NDArray[np.intp]]:
     return starts[segment] + share[:, None] * (ends - starts)[segment], segment
 
 
-def _to_own_segment(points: Points, starts: Points, ends: Points) -> Array:
+def to_own_segment(points: Points, starts: Points, ends: Points) -> Array:
+    """Return the distance of each point to a segment of its own."""
     along = ends - starts
     squared = np.einsum("ij,ij->i", along, along)
     share = np.einsum("ij,ij->i", points - starts, along) / np.where(squared > 0.0, squared, 1.0)

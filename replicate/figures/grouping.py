@@ -1,4 +1,4 @@
-"""Say once what happened to many things that nobody named: arrow heads of a stream plot, bars of a histogram."""
+"""Say once what happened to many things that nobody named: bars of a histogram, steps of a staircase."""
 
 from __future__ import annotations
 

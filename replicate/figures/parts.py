@@ -94,6 +94,8 @@ class Namer:
         Whether just their words are, and not their places.
     names
         What other artists are called, by identity.
+    heads
+        Of the arrow heads of stream plots, whose they are, and the first of them, by identity.
     """
 
     def __init__(
@@ -102,11 +104,12 @@ class Namer:
         curves: Mapping[int, str],
         described: Mapping[int, str],
         names: Mapping[int, str] | None = None,
+        heads: Mapping[int, tuple[str, Artist]] | None = None,
         *,
         placed: bool = False,
     ) -> None:
         self.owner, self.curves, self.described, self.placed = owner, curves, described, placed
-        self.names = names or {}
+        self.names, self.heads = names or {}, heads or {}
         self.parts: dict[str, Part] = {}
         self._numbers: dict[str, int] = {}
         self._given: dict[tuple[int, str], str] = {}
@@ -136,6 +139,9 @@ class Namer:
         top = chain[0]
         if id(top) in self.curves:
             return Part(self.curves[id(top)], top, told=True, placed=False)
+        if id(top) in self.heads:
+            name, first = self.heads[id(top)]
+            return Part(f"arrow heads of {name}", first, placed=False, properties=_arrow_style(top))
         if top is getattr(self.owner, "patch", None):
             return Part("background", top)
         match top:

@@ -8,7 +8,7 @@ very many scattered points have a digest.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -25,6 +25,7 @@ from replicate.figures.envelope import envelope
 from replicate.figures.outlines import joined, scattered
 from replicate.figures.polylines import THINNING, Points, simplify
 from replicate.figures.scaling import finite
+from replicate.figures.streams import arrow_heads, joined_up
 from replicate.figures.values import is_function
 
 if TYPE_CHECKING:
@@ -37,6 +38,9 @@ if TYPE_CHECKING:
 
 #: A thinned curve has no more points than this, even if dropped ones then lie further away than `THINNING`.
 MOST_POINTS = 400
+
+#: The same for the lines of a stream plot, all together.
+MOST_IN_STREAM = 2000
 
 #: More scattered points than this are kept as a sample of them and a digest of all.
 MOST_SCATTERED = 1200
@@ -65,6 +69,7 @@ class _Curve:
     points: Points
     error: float = 0.0
     special: Mapping[str, Any] = field(default_factory=dict)
+    heads: Sequence[Artist] = ()
 
 
 @dataclass
@@ -79,14 +84,18 @@ class Panel:
         Everything else that has a name, ready for JSON, as in `replicate.figures.describe`; ``points`` and
         ``areas`` (names of the curves that are not lines), ``thinned`` (by name, how far a curve of very many points
         may lie from what was drawn, as a fraction of the axes), ``dense`` (their envelopes), ``clouds`` (digests of
-        very many scattered points) and ``labels`` (what labels cover of a contour), where there are any.
+        very many scattered points), ``labels`` (what labels cover of a contour) and ``streams`` (the number of
+        arrow heads of a stream plot), where there are any.
     names
         The curve that each artist is, by the artist's identity.
+    heads
+        The curve whose arrow head each artist is, and the first of these heads, by the artist's identity.
     """
 
     points: list[CurvePoint] = field(default_factory=list)
     description: dict[str, Any] = field(default_factory=dict)
     names: dict[int, str] = field(default_factory=dict)
+    heads: dict[int, tuple[str, Artist]] = field(default_factory=dict)
 
 
 def read_panel(panel: str, axes: Axes, ink: Ink) -> Panel:
@@ -105,7 +114,7 @@ def read_panel(panel: str, axes: Axes, ink: Ink) -> Panel:
     axes.get_xlim(), axes.get_ylim()  # matplotlib settles automatic limits only when somebody asks
     read = Panel(description=describe(panel, axes, ink))
     special: dict[str, Any] = {"points": [], "areas": []}
-    special |= {name: {} for name in ("thinned", "dense", "clouds", "labels")}
+    special |= {name: {} for name in ("thinned", "dense", "clouds", "labels", "streams")}
     used: dict[str, int] = {}
     for curve in _curves(axes):
         if len(curve.points) == 0 or not ink.shows(curve.artist):
@@ -122,6 +131,7 @@ def read_panel(panel: str, axes: Axes, ink: Ink) -> Panel:
             special["thinned"][unique] = float(f"{curve.error:.2g}")
         for name, value in curve.special.items():
             special[name][unique] = value
+        read.heads |= {id(arrow): (unique, curve.heads[0]) for arrow in curve.heads}
     read.description |= {name: value for name, value in special.items() if value}
     return read
 
@@ -131,9 +141,11 @@ def _curves(axes: Axes) -> Iterator[_Curve]:
         return
     for place, line in enumerate(_visible(axes.lines), start=1):
         yield _line(line, axes, f"line {place}")
+    streams = arrow_heads(axes)
     for place, collection in enumerate(_visible(axes.collections), start=1):
-        yield from _collection(collection, axes, place)
-    for place, patch in enumerate(_visible(axes.patches), start=1):
+        yield from _collection(collection, axes, place, streams.get(collection, ()))
+    heads = {arrow for arrows in streams.values() for arrow in arrows}
+    for place, patch in enumerate((one for one in _visible(axes.patches) if one not in heads), start=1):
         yield _Curve(patch, _name(patch, f"shape {place}"), "line", *_shape(patch, axes))
 
 
@@ -196,7 +208,7 @@ def _sample(points: Points, units: Points) -> Points:
     return points[kept]
 
 
-def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Curve]:
+def _collection(collection: Collection, axes: Axes, place: int, heads: Sequence[Artist]) -> Iterator[_Curve]:
     if isinstance(collection, ContourSet):
         base = _name(collection, "level")
         kind: Kind = "area" if collection.filled else "line"
@@ -216,8 +228,13 @@ def _collection(collection: Collection, axes: Axes, place: int) -> Iterator[_Cur
             return
         lines = isinstance(collection, LineCollection)
         pieces = [_of_path(path) for path in collection.get_paths()]
+        pieces = joined_up(pieces) if heads else pieces
         points = _to_data(joined(pieces), collection.get_transform(), axes)
         name = _name(collection, f"{'lines' if lines else 'area'} {place}")
+        if heads:
+            thin, error = _thinned(points, axes, MOST_IN_STREAM)
+            yield _Curve(collection, name, "line", thin, error, {"streams": len(heads)}, heads)
+            return
         yield _thinned_curve(collection, name, "line" if lines else "area", points, axes)
 
 
@@ -273,7 +290,7 @@ def _to_data(points: Points, transform: Transform, axes: Axes) -> Points:
     return np.column_stack([points[:, i] if in_data[i] else mapped[:, i] for i in (0, 1)])
 
 
-def _thinned(points: Points, axes: Axes) -> tuple[Points, float]:
+def _thinned(points: Points, axes: Axes, most: int = MOST_POINTS) -> tuple[Points, float]:
     """Thin each unbroken piece, leaving out what lies more than half a width or height outside the axes.
 
     Returns
@@ -291,12 +308,12 @@ def _thinned(points: Points, axes: Axes) -> tuple[Points, float]:
     edges = np.flatnonzero(np.diff(np.r_[False, wanted, False].astype(int)))
     runs = [np.arange(start, end) for start, end in zip(edges[::2], edges[1::2], strict=True)]
     total = sum(len(run) for run in runs)
-    if len(runs) > MOST_POINTS:  # more pieces than points: a picture of some of them has to do
-        runs = runs[:: -(-len(runs) // MOST_POINTS)]
+    if len(runs) > most:  # more pieces than points: a picture of some of them has to do
+        runs = runs[:: -(-len(runs) // most)]
         return joined([points[run] for run in runs]), 1.0
     pieces, error = [], 0.0
     for run in runs:
-        share = max(2, round(MOST_POINTS * len(run) / total))
+        share = max(2, round(most * len(run) / total))
         kept, distance = simplify(unit[run], THINNING, share)
         pieces.append(points[run[kept]])
         error = max(error, distance)
