@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev as cheb
 from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
+from replicate.loops.at_rest import value_at_rest
 from replicate.loops.errors import LoopError
 from replicate.loops.function_algebra import Rescaled
 from replicate.loops.function_resonances import resonances
@@ -28,8 +28,6 @@ CLEAR = 0.5  # and of the distance of a resonance
 BAND = 1e3  # factor beyond the corners on both sides within which resonances are looked for
 LOWEST, HIGHEST, PER_OCTAVE = -100, 100, 4  # octaves of frequency in which a function's corners are looked for
 ANALYTIC = 1e-4  # relative difference of a value and the mean around it that is not a rounding error
-LIMIT_POINTS, LIMIT = 10, 1e-9  # of the fit for a limit at rest, and the relative difference of two that agree
-GROWS = 1.2  # factor over two decades by which a function without a limit grows
 BESIDE = 1e-15  # relative distance of the next point
 TINY = 1e-100  # modulus from which a function that overflows in its denominator goes on to zero
 BENT = 0.3  # change of slope, or of phase in rad, at which a frequency response has left its asymptote
@@ -134,17 +132,7 @@ class FunctionPlant(Plant):
         if np.isfinite(at_rest):
             return float(at_rest.real)
         low, _ = self.corners
-        for limit in (self._mean_around_rest, lambda reach: limit_of_roots(lambda s: self.delay_free(s).real, reach)):
-            near, nearer = limit(0.3 * low), limit(0.1 * low)
-            if abs(near - nearer) <= LIMIT * abs(near):
-                return near
-        first, second = np.abs(self.delay_free(low * np.array([1e-4, 1e-6])))
-        return float("inf") if second > GROWS * first else float("nan")
-
-    def _mean_around_rest(self, radius: float) -> float:
-        """Return f(0) as the mean around it: right where f is analytic there."""
-        turn = np.exp(2j * np.pi * (np.arange(CIRCLE_POINTS) + 0.5) / CIRCLE_POINTS)
-        return float(np.mean(self.delay_free(radius * turn)).real)
+        return value_at_rest(self.delay_free, low)
 
     @property
     def gain_is_negative(self) -> bool:
@@ -230,11 +218,3 @@ class FunctionPlant(Plant):
     def __repr__(self) -> str:
         name = getattr(self.function, "__name__", None) or repr(self.function)
         return f"Plant.from_function({name}, dead_time={checks.exact(self.dead_time)})"
-
-
-def limit_of_roots(function: Callable[[Array], Array], reach: float) -> float:
-    """Return f(0) as a polynomial in the square root of s has it, fitted on the positive real axis up to ``reach``."""
-    x = cheb.chebpts1(LIMIT_POINTS)
-    share = 0.1 + 0.9 * 0.5 * (1.0 + x)
-    series = cheb.chebfit(x, function(0.1 * reach * share**2), LIMIT_POINTS - 1)
-    return float(cheb.chebval(-1.0 - 0.2 / 0.9, series))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from replicate.loops import stability
 from replicate.loops.bracketed import bracketed_root
+from replicate.loops.cut import has_cut
 from replicate.loops.function_resonances import resonances
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.pole_starts import asymptotic_starts
@@ -27,10 +28,9 @@ AXIS_PER_DECADE = 40
 MOST_MINIMA = 200  # of the grid that are followed, the lowest first
 SLOWEST = 1e-2  # radius at which the grid begins, in units of the lowest frequency with |L| = 1 or a corner,
 SLOWEST_REAL = 1e-6  # and where the search on the negative real axis begins
-FASTEST = 3.0  # radius at which both end, in units of the frequency beyond which |L| is small,
+SMALL = 0.3  # a loop gain that is far from -1
+FASTEST = 10.0  # radius at which both end, in units of the last corner or the frequency beyond which |L| is small,
 LARGEST_GROWTH = 300.0  # and on the axis also the logarithm of exp(-s dead_time)
-NEAREST = 1e-9  # rad from the negative real axis at which it is seen whether a function has a cut there
-CLOSEST, IMAGINARY = 1e-13, 1e-11  # the same where a cut begins like a power of s
 REAL = 1e-6  # imaginary part, relative to the modulus, of a value that is real
 DIFFERENCE, DIRECTIONS = 1e-2, 8  # radius of a difference, relative to |s|, and its points
 OFF_AXES = 1e-6  # distance from the axes, relative to its size, of the box in which unstable pairs are counted
@@ -38,9 +38,9 @@ OFF_AXES = 1e-6  # distance from the axes, relative to its size, of the box in w
 
 def function_starts(transfer: LoopTransfer, count: int) -> ComplexArray:
     """Return starts, Im >= 0, for a plant given by a function."""
-    end = transfer.beyond(0.3)
-    corners = np.abs(transfer.corner_frequencies)
-    low = min([end, transfer.plant.corners[0], *corners.tolist(), *transfer.gain_crossovers.tolist()])
+    lowest, highest = transfer.plant.corners
+    end = max(transfer.beyond(SMALL), highest)  # what is hardly fed back has poles near the function's own
+    low = min([end, lowest, *np.abs(transfer.corner_frequencies).tolist(), *transfer.gain_crossovers.tolist()])
     farthest = max(FASTEST * end, LARGEST_GROWTH / transfer.dead_time if transfer.dead_time else 0.0)
     with np.errstate(all="ignore"):
         parts = [
@@ -57,7 +57,7 @@ def missing_unstable(transfer: LoopTransfer, found: list[complex]) -> ComplexArr
     """Return the poles with Re s > 0 and Im s > 0 if those among the poles found are not all; else none."""
     if stability.unstable_poles(transfer) == sum(2 if p.imag else 1 for p in found if p.real >= 0.0):
         return np.empty(0, dtype=complex)
-    top = FASTEST * transfer.beyond(0.3)
+    top = FASTEST * transfer.beyond(SMALL)
     box = Box(OFF_AXES * top, top, OFF_AXES * top, top)
     zeros = zeros_in_box(transfer.characteristic, transfer.characteristic_slope, box, turning=transfer.dead_time)
     return np.array([zero.place for zero in zeros or ()], dtype=complex)
@@ -87,26 +87,7 @@ def poles_at_controller_zeros(transfer: LoopTransfer) -> ComplexArray:
     poles = np.array([complex(s.real, abs(s.imag)) for s in found if s is not None], dtype=complex)
     real = poles.imag <= REAL * np.abs(poles)
     poles[real] = poles.real[real]
-    return np.asarray(poles[~real | ~has_cut(transfer, poles)])
-
-
-def has_cut(transfer: LoopTransfer, s: ComplexArray) -> NDArray[np.bool_]:
-    """Return where on the negative real axis, at points ``s``, the function has a cut or a pole."""
-    with np.errstate(all="ignore"):
-        value = transfer(-np.abs(s) * np.exp(-1j * NEAREST))
-        return np.asarray(~(np.abs(value.imag) <= REAL * np.abs(value)))
-
-
-def begin_of_cut(transfer: LoopTransfer, scale: float) -> float:
-    """Return how far from s = 0 the cut on the negative real axis begins, to a tenth; 0 if at rest, ``inf`` without."""
-    radius = scale * np.geomspace(1e-12, 1e3, 400)
-    with np.errstate(all="ignore"):
-        value = transfer(-radius * np.exp(-1j * CLOSEST))
-        cut = np.isfinite(value) & (np.abs(value.imag) > IMAGINARY * np.abs(value))
-    if not cut.any():
-        return float("inf")
-    first = int(np.argmax(cut))
-    return float(radius[first - 1]) if first else 0.0
+    return np.asarray(poles[~real | ~has_cut(transfer, np.abs(poles))])
 
 
 def _logarithmic(low: float, high: float, per_decade: int) -> Array:
@@ -135,7 +116,7 @@ def _starts_on_axis(transfer: LoopTransfer, radius: Array) -> ComplexArray:
             return (1.0 + 1.0 / size) / (1.0 + 1.0 / size**2)
         return (1.0 + size) * size / (1.0 + size**2)
 
-    smooth = ~has_cut(transfer, radius.astype(complex))
+    smooth = ~has_cut(transfer, radius)
     value = 1.0 + 1.0 / transfer(-radius.astype(complex)).real
     smooth &= np.isfinite(value)
     both = smooth[1:] & smooth[:-1]

@@ -44,6 +44,7 @@ ALONG = np.concatenate([[0.0], np.geomspace(1e-6, 1.0, 1500)])  # shares of a si
 SPAN = 0.02  # smallest ratio of two times for which one contour serves
 KINKS = 12
 MOST_EXPANDED = 25  # dead times up to which it is, if the closed loop cannot be inverted there
+NEXT, ROUGH = 1e-7, 1e-12  # relative distance of neighbours, and a change of slope between them that is rounding
 EXPANDED = 5  # dead times during which the response is summed up delay by delay
 
 
@@ -229,6 +230,11 @@ def _why_not(loop: ClosedLoop, transform: Callable[[Any], ComplexArray], t: Arra
     if wrong.size:
         at = f"{wrong[0] / loop.unit:.3g}"
         return f"the plant's function is not finite at s = {at}: write it so that it does not overflow"
+    lost = _where_digits_are_lost(loop.transfer.plant, s)
+    if lost:
+        return (
+            f"the plant's function loses its digits at |s| = {lost / loop.unit:.3g}: write it so that nothing cancels"
+        )
     return (
         "no contour inverts the response: the loop is too lightly damped, "
         "or the plant's function falls too slowly at high frequency"
@@ -247,6 +253,15 @@ def _hidden_dead_time(plant: Plant) -> float:
     last = growth[-4:]
     steady = last.size == 4 and float(np.ptp(last)) < 0.2 * float(np.abs(last).max())
     return float(last[-1]) if steady and last[-1] > 0.0 else 0.0
+
+
+def _where_digits_are_lost(plant: Plant, s: ComplexArray) -> float:
+    """Return the largest modulus, of points below the lowest corner, at which the function is rough; 0 if at none."""
+    slow = s[np.abs(s) < plant.corners[0]]
+    with np.errstate(all="ignore"):
+        before, here, after = (plant.delay_free(slow * (1.0 + NEXT * step)) for step in (-1.0, 0.0, 1.0))
+        rough = np.abs(before - 2.0 * here + after) > ROUGH * np.abs(here)
+    return float(np.max(np.abs(slow[rough]), initial=0.0))
 
 
 def _refined(

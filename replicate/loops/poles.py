@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
+from replicate.loops.cut import has_cut
 from replicate.loops.errors import LoopError
-from replicate.loops.function_poles import function_starts, has_cut, missing_unstable, poles_at_controller_zeros
+from replicate.loops.function_poles import function_starts, missing_unstable, poles_at_controller_zeros
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.plant import Plant
 from replicate.loops.pole_starts import asymptotic_starts, generator_eigenvalues
@@ -131,7 +132,7 @@ def _distinct(transfer: LoopTransfer, points: ComplexArray, count: int) -> list[
         if abs(pole.imag) < REAL * abs(pole):
             pole = complex(pole.real, 0.0)
         if not transfer.plant.parts and pole.imag < REAL_OF_FUNCTION * abs(pole) and pole.real <= 0.0:
-            if has_cut(transfer, np.array([pole]))[0]:
+            if has_cut(transfer, np.abs([pole]))[0]:
                 continue
             pole = complex(pole.real, 0.0)
         if all(abs(pole - other) > SAME * abs(pole) for other in found):
