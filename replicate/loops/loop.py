@@ -336,7 +336,9 @@ class Loop(LoopViews, SetOnce):
         if not modes.size or alone > end:
             return self._marched(setpoint, load, end)
         system, steps = (self._plant, self._difference, self._controller), (setpoint, load)
-        return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps)
+        output, control = self.steady_state(setpoint, load / self._units.gain)
+        rest = output, control * self._units.gain
+        return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps, rest)
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
         [found] = responses(self._plant, [self._controller], end, setpoint=setpoint, load=load)

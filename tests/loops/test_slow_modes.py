@@ -78,3 +78,16 @@ def test_integrated_error_of_weak_integral_action(plant: Plant, ki: float) -> No
     load = Loop(plant, PI(0.6, ki)).load_step()
     assert load.breaks.size < MOST_PIECES
     assert load.ie() == pytest.approx(1.0 / ki, rel=1e-12)
+
+
+def test_a_long_end_close_to_rest_has_the_digits_of_its_deviation() -> None:
+    # half of the area lies in y = 1 - 5e-7 exp(-5e-8 t), which a number of 16 digits holds to 2e-10 of the deviation
+    plant, controller = lag(1, 1e7, 1), pi(1e6, 0.05)
+    y = Loop(Plant.foptd(1.0, 1e7, 1.0), PI(1e6, 0.05)).step()
+    with mp.workdps(30):
+        for t in (1e3, 1e6, 2e7):
+            deviation = mp.invertlaplace(
+                lambda s: 1 / (s * (1 + controller(s) * plant(s))), t, method="dehoog", degree=40
+            )
+            assert 1.0 - y(t) == pytest.approx(float(deviation), rel=2e-9)
+    assert y.iae() == pytest.approx(20.0, rel=5e-9)
