@@ -90,7 +90,7 @@ class LimitedSteps:
                 self._stop(time + float(delay), 0, 1.0)
         a = chain.a + (np.outer(chain.b[:, 0], row.x) / (1.0 - direct) if self.delays[0] == 0.0 else 0.0)
         radius = float(np.max(np.abs(np.linalg.eigvals(a)), initial=0.0))
-        self.length = STARTING / radius if radius else np.inf
+        self.length = self.resolution.fastest = STARTING / radius if radius else np.inf
 
     @property
     def last_change(self) -> float:

@@ -13,6 +13,7 @@ from replicate.loops.chain import OpenLoop, open_loop_of
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
 from replicate.loops.evaluation import INFINITE, values
+from replicate.loops.function_plant import FunctionPlant
 from replicate.loops.loop_transfer import LoopTransfer
 from replicate.loops.loop_views import LoopViews
 from replicate.loops.margins import Margins
@@ -282,12 +283,9 @@ class Loop(LoopViews, SetOnce):
         breaks, y, control_breaks, u = self._responses(setpoint, load * gain, end / time)
         final_y, final_u = self.steady_state(setpoint, load)
         u = u / gain
-        if not self.plant.parts and self._stable and not self._decay and end > LONG * self.horizon():
-            scaled = self._plant, self._controller, setpoint, load * gain, final_y
-            slow = SlowSignal(
-                breaks * time, y, final=final_y, stable=self.is_stable,
-                total_error=function_responses.total_error(*scaled) * time,
-            )  # fmt: skip
+        if isinstance(self._plant, FunctionPlant) and self._stable and not self._decay and end > LONG * self.horizon():
+            total = function_responses.total_error(self._plant, self._controller, setpoint, load * gain, final_y)
+            slow = SlowSignal(breaks * time, y, final=final_y, stable=self.is_stable, total_error=total * time)
             return Response(slow, SlowSignal(control_breaks * time, u, final=final_u, stable=self.is_stable))
         return Response(
             Signal(breaks * time, y, final=final_y, stable=self.is_stable),

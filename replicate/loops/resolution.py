@@ -17,6 +17,8 @@ RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at wh
 NEARLY = 1e-9  # size up to which coefficients that no longer fall are the rounding error of the problem
 SMOOTH = 1e-14  # size of the upper third of the coefficients at which the next piece may be twice as long
 START = 1e-4  # of the set-point step: an output below this is resolved as if it were this large
+LONG = 100.0  # length, in units of what the fastest mode needs, of a piece in which that mode has long decayed:
+STIFF = 1e-13  # relative size of the rounding errors that its equations leave in coefficients that are zero
 CLOCK = 4.0 * float(np.finfo(float).eps)
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 
@@ -27,6 +29,7 @@ class Resolution:
 
     size_y: float
     size_u: float = 0.0
+    fastest: float = float("inf")  # length of a piece that suits the fastest mode
 
     def check(self, start: float, h: float, y: Array, u: Array, v: Array) -> tuple[float, bool]:
         """Return the size of what is not resolved, and whether a longer piece would be resolved, too.
@@ -46,11 +49,12 @@ class Resolution:
             raise LoopError(msg)
         # times are known to rounding only: what changes fast carries that error
         blur = CLOCK * start * 2.0 / h
+        stiff = STIFF if h > LONG * self.fastest else 0.0
         order = np.arange(DEGREE + 1) ** 2
         remaining = upper = 0.0
         for row, size in [(y, size_y), (u, size_u), *((row, size_v) for row in v)]:
             if size:
-                tail, floor = np.abs(row), blur * float(np.max(order * np.abs(row)))
+                tail, floor = np.abs(row), blur * float(np.max(order * np.abs(row))) + stiff * size
                 remaining = max(remaining, (float(np.max(tail[-2:])) - floor) / size)
                 upper = max(upper, (float(np.max(tail[2 * DEGREE // 3 :])) - floor) / size)
         if remaining <= RESOLVED:

@@ -89,7 +89,7 @@ def with_slow_end(
     times = np.linspace(alone, start, COMPARED)
     ends = np.array(_breaks(modes, start, end))
     tails = []
-    rest = tuple(value if np.isfinite(value) else 0.0 for value in rest)
+    rest = np.where(np.isfinite(rest), rest, 0.0).tolist()
     for final, residues, pieces in zip(rest, _residues(modes, system, steps, rest), signals, strict=True):
         marched = Piecewise(breaks, pieces)(times)
         left = _SlowEnd(modes, residues, final, start, float(marched[-1]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any
 
+import mpmath as mp
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -69,6 +70,27 @@ def test_clamping_holds_the_integral_part() -> None:
     # the command starts beyond the limit and stays there, at k, until the output moves at t = 1
     assert float(response.command(0.999)) == pytest.approx(1.2, abs=1e-13)
     assert response.at_limit[0].end == pytest.approx(1.0 - np.log(1.0 - 0.125 / 1.05), rel=1e-12)  # 1.2 (1 - y) = 1.05
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("ki", [1e-5, 1e-9])
+def test_weak_integral_action_meets_a_limit_after_a_million_dead_times(scheme: Any, ki: float) -> None:
+    # when all else has decayed, the control signal is 1 - r exp(p t) with the slow pole p
+    with mp.workdps(40):
+
+        def closed(s: mp.mpf) -> mp.mpf:
+            return s * (1 + s) + (mp.mpf(0.6) * s + mp.mpf(ki)) * mp.exp(-s)
+
+        pole = ki * mp.findroot(lambda share: closed(ki * share) / ki, -mp.mpf("0.625"))
+        residue = (mp.mpf(0.6) * pole + mp.mpf(ki)) * (1 + pole) / (pole * mp.diff(closed, pole))
+        meets = float(mp.log(-residue / mp.mpf("0.3")) / -pole)
+    loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.6, ki))
+    limited = loop.saturated((-0.7, 0.7), scheme)
+    assert limited.at_limit[-1].start == pytest.approx(meets, rel=1e-10)
+    assert float(limited.output(limited.output.horizon)) == pytest.approx(0.7, rel=1e-12)
+    free = loop.saturated((-2.0, 2.0), scheme, setpoint=0.0, load=1.0)
+    assert free.output.ie() == pytest.approx(1.0 / ki, rel=1e-10)
+    assert max(limited.output.breaks.size, free.output.breaks.size) < 300
 
 
 # ---- an independent integration ------------------------------------------------------------------------------------
