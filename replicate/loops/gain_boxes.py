@@ -281,9 +281,8 @@ class _Rational:
     def of(
         cls, num: Sequence[Interval], den: Sequence[Interval], w: Interval, dead_time: float, *, exchanged: bool
     ) -> _Rational:
-        s = intervals.on_the_axis(w)
         (n, d), (dn, dd) = (
-            [intervals.polynomial(part, s) for part in parts]
+            [intervals.on_the_axis(part, w) for part in parts]
             for parts in ((num, den), (intervals.derivative(num), intervals.derivative(den)))
         )
         if dead_time:

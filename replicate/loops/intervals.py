@@ -55,7 +55,7 @@ class Interval:
 
     def __mul__(self, other: Interval) -> Interval:
         """Return the product."""
-        ends = [a * b for a in (self.low, self.high) for b in (other.low, other.high)]
+        ends = (self.low * other.low, self.low * other.high, self.high * other.low, self.high * other.high)
         return _outward(min(ends), max(ends))
 
     def __truediv__(self, other: Interval) -> Interval:
@@ -127,18 +127,18 @@ def _around(value: float, reach: float) -> Interval:
     return Interval(max(value - away, -1.0), min(value + away, 1.0))
 
 
-def on_the_axis(w: Interval) -> ComplexInterval:
-    """Return i w."""
-    return ComplexInterval(exactly(0.0), w)
-
-
-def polynomial(coefficients: Sequence[Interval], s: ComplexInterval) -> ComplexInterval:
-    """Return a polynomial, descending powers, at points of an interval."""
-    zero = exactly(0.0)
-    value = ComplexInterval(zero, zero)
-    for coefficient in coefficients:
-        value = value * s + ComplexInterval(coefficient, zero)
+def polynomial(ascending: Sequence[Interval], x: Interval) -> Interval:
+    """Return a polynomial at real numbers of an interval."""
+    value = exactly(0.0)
+    for coefficient in reversed(ascending):
+        value = value * x + coefficient
     return value
+
+
+def on_the_axis(descending: Sequence[Interval], w: Interval) -> ComplexInterval:
+    """Return a polynomial at i w: its even part, and its odd one over i w, are polynomials of -w^2."""
+    ascending, x = descending[::-1], -w.square()
+    return ComplexInterval(polynomial(ascending[::2], x), polynomial(ascending[1::2], x) * w)
 
 
 def derivative(coefficients: Sequence[Interval]) -> list[Interval]:

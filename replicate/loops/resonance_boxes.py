@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from replicate.loops import intervals
 from replicate.loops.gain_boxes import NOTHING, GainBox, no_peak_between
-from replicate.loops.intervals import Interval, exactly
+from replicate.loops.intervals import Interval, exactly, polynomial
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -121,7 +121,7 @@ class ResonanceBox:
         x, turn = w.square(), intervals.cosine(w * exactly(delay)) if delay else _ONE
         sine, half = _sine_over(w, delay), _sine_over(w, delay / 2.0)
         both, inverse = self.integral * self.derivative, self.integral / self.k
-        even, odd, size = (_in_square(part, x) for part in self._quotient)
+        even, odd, size = (polynomial(part, -x) for part in self._quotient)
         real = self.integral * turn + (both * x - _ONE) * sine + inverse * (even / size)
         slope = both * turn - self.integral * sine + exactly(2.0) * half.square() + inverse * (odd / size)
         return real, slope
@@ -158,13 +158,6 @@ class ResonanceBox:
         while 2.0 * np.polyval(num, w) >= 2.0 * den[0] * w ** (den.size - 1) - np.polyval(den, w):
             w *= 2.0
         return w
-
-
-def _in_square(ascending: list[Interval], x: Interval) -> Interval:
-    value = NOTHING
-    for coefficient in reversed(ascending):
-        value = value * -x + coefficient
-    return value
 
 
 def _turned(x: Interval, m: Interval) -> Interval:

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev, checks, series_roots
+from replicate.loops import chebyshev, checks
 from replicate.loops.errors import LoopError, NotSettledError, UnstableLoopError
 from replicate.loops.peaks import Peak
-from replicate.loops.piecewise import MARGIN, SAMPLES, Piecewise
+from replicate.loops.piecewise import MARGIN, Piecewise
+from replicate.loops.sign_changes import ups_and_downs
 from replicate.loops.signal_views import SignalViews
 
 Array = NDArray[np.float64]
@@ -20,7 +21,6 @@ Array = NDArray[np.float64]
 APPROACH = 1e-12  # of the final value: a response that never exceeds it by more only approaches it
 ARRIVAL = 1e-3  # of the final value: no mode decays from there to rounding within one piece
 AT_REST = 1e-14  # of the largest value: a piece that deviates less is at rest to rounding
-NEGLIGIBLE = 1e-14  # share of an integral that all pieces together may have whose zeros are not looked for
 ROUNDING = 5e-14  # a response that exceeds its final value by less does so by rounding only
 
 
@@ -201,51 +201,14 @@ class Signal(SignalViews, Piecewise):
 
     def _absolute_moment(self, power: int) -> float:
         self._require_stable("integrated absolute error")
-        samples = self.final - self._samples
-        # what all small pieces together add is below rounding
-        sizes = np.max(np.abs(samples), axis=1) * self._lengths * (self.breaks[1:] if power else 1.0)
-        negligible = sizes <= NEGLIGIBLE / sizes.size * np.sum(sizes)
-        signed = (samples.min(axis=1) - MARGIN * np.ptp(samples, axis=1) < 0.0) & (
-            samples.max(axis=1) + MARGIN * np.ptp(samples, axis=1) > 0.0
-        )
         half = 0.5 * self._lengths
         weighted = self._error
         for _ in range(power):
             weighted = _times_argument(weighted, self.breaks[:-1] + half, half)
-        total = float(np.sum(np.abs(self._piece_integrals(weighted))[(~signed | negligible) & self._moving]))
-        pieces = np.nonzero(signed & ~negligible & self._moving)[0]
-        owners, roots = self._zeros_of_error(pieces, samples)
-        # between neighbouring zeros the integral is a difference of the antiderivative
-        owners = np.concatenate([pieces, owners, pieces])
-        points = np.concatenate([np.full(pieces.size, -1.0), roots, np.full(pieces.size, 1.0)])
-        order = np.lexsort((points, owners))
-        owners, points = owners[order], points[order]
-        running = np.asarray(cheb.chebint(weighted, axis=1), dtype=float)
-        values = series_roots.evaluate(running[owners].T, points) * half[owners]
-        same = owners[1:] == owners[:-1]
-        return total + float(np.sum(np.abs(np.diff(values))[same]))
-
-    def _zeros_of_error(self, pieces: NDArray[np.intp], samples: Array) -> tuple[NDArray[np.intp], Array]:
-        """Return the zeros of the error in some pieces, as piece numbers and local coordinates.
-
-        Zeros between samples of opposite sign are found all at once; pieces with an extremum so close to zero that it
-        may hide two zeros between samples go through the companion matrix.
-        """
-        part = samples[pieces]
-        slopes = np.diff(part, axis=1)
-        turns = slopes[:, 1:] * slopes[:, :-1] <= 0.0
-        hidden = np.any(turns & (np.abs(part[:, 1:-1]) < MARGIN * np.ptp(part, axis=1)[:, None]), axis=1)
-        rows, columns = np.nonzero((part[:, :-1] < 0.0) != (part[:, 1:] < 0.0))
-        clear = ~hidden[rows]
-        rows, columns = rows[clear], columns[clear]
-        nodes = chebyshev.nodes(SAMPLES - 1)
-        owners = pieces[rows]
-        found = series_roots.roots(
-            self._error[owners].T, nodes[columns], nodes[columns + 1], part[rows, columns], part[rows, columns + 1]
-        )
-        slow = [(piece, chebyshev.real_roots(self._error[piece])) for piece in pieces[hidden]]
-        owners = np.concatenate([owners, *(np.full(roots.size, piece, dtype=np.intp) for piece, roots in slow)])
-        return owners, np.concatenate([found, *(roots for _, roots in slow)])
+        integrals = np.asarray(cheb.chebint(weighted, axis=1), dtype=float) * half[:, None]
+        scales = self._lengths * (self.breaks[1:] if power else 1.0)
+        moving = self._moving
+        return ups_and_downs(self._error[moving], integrals[moving], scales[moving])
 
 
 @dataclass(frozen=True)

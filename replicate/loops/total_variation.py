@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import chebyshev as cheb
 
-from replicate.loops import chebyshev
 from replicate.loops.piecewise import Piecewise
+from replicate.loops.sign_changes import ups_and_downs
 
 
 def total_variation(signal: Piecewise) -> float:
@@ -23,12 +23,5 @@ def total_variation(signal: Piecewise) -> float:
     coefficients = signal.coefficients
     signs = (-1.0) ** np.arange(coefficients.shape[1])
     starts, ends = coefficients @ signs, coefficients.sum(axis=1)
-    jumps = abs(starts[0]) + float(np.sum(np.abs(starts[1:] - ends[:-1])))
-    slopes = np.asarray(cheb.chebder(coefficients, axis=1), dtype=float)
-    # sum |c_k| bounds the rest of a slope: where the mean slope exceeds it, the piece is monotone
-    monotone = np.abs(slopes[:, 0]) > np.sum(np.abs(slopes[:, 1:]), axis=1)
-    moved = float(np.sum(np.abs(ends - starts)[monotone]))
-    for piece in np.nonzero(~monotone)[0]:
-        points = np.concatenate([[-1.0], chebyshev.real_roots(slopes[piece]), [1.0]])
-        moved += float(np.sum(np.abs(np.diff(cheb.chebval(points, coefficients[piece])))))
-    return float(jumps + moved)
+    jumps = abs(float(starts[0])) + float(np.sum(np.abs(starts[1:] - ends[:-1])))
+    return jumps + ups_and_downs(np.asarray(cheb.chebder(coefficients, axis=1), dtype=float), coefficients)
