@@ -21,14 +21,20 @@ async function copy(text, button) {
   setTimeout(() => (button.textContent = said), 1200);
 }
 
-const text = (element) => (element ? element.textContent.trim().replace(/\s+/g, " ") : "");
+// What is written somewhere, formulas in one line, without the links that lead elsewhere.
+function text(node) {
+  const copy = node?.cloneNode(true);
+  for (const part of copy?.querySelectorAll?.(".try, .cases, math[alttext]") ?? []) part.replaceWith(part.getAttribute("alttext") ?? "");
+  const formula = copy?.getAttribute?.("alttext");
+  return (formula ?? copy?.textContent ?? "").trim().replace(/\s+/g, " ");
+}
 const csvField = (value) => (/[",\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
 const csv = (rows) => rows.map((row) => row.map((cell) => csvField(cell.replaceAll("−", "-"))).join(",")).join("\n");
 
 const GREEK = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi mathrm{o} pi rho varsigma sigma tau upsilon phi chi psi omega";
-const TEX = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "−": "$-$", "→": "$\\to$", "≈": "$\\approx$", "≠": "$\\ne$", "∈": "$\\in$", "∞": "$\\infty$", "±": "$\\pm$", "×": "$\\times$" };
+const TEX = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "−": "$-$", "→": "$\\to$", "≈": "$\\approx$", "≠": "$\\ne$", "∈": "$\\in$", "∞": "$\\infty$", "±": "$\\pm$", "×": "$\\times$", "√": "$\\surd$", "²": "\\textsuperscript{2}", "³": "\\textsuperscript{3}" };
 GREEK.split(" ").forEach((name, place) => (TEX[String.fromCharCode(0x3b1 + place)] = `$\\${name}$`));
-const tex = (value) => value.replace(/(.)\u0305|[\\~^−→≈≠∈∞±×α-ω&%#_{}$]/gu, (sign, lined) => (lined ? `$\\overline{${lined}}$` : (TEX[sign] ?? `\\${sign}`)));
+const tex = (value) => value.replace(/(.)\u0305|[\\~^−→≈≠∈∞±×√²³α-ω&%#_{}$]/gu, (sign, lined) => (lined ? `$\\overline{${lined}}$` : (TEX[sign] ?? `\\${sign}`)));
 const tabular = (rows) => {
   const lines = rows.map((row) => `  ${row.map(tex).join(" & ")} \\\\`);
   return [`\\begin{tabular}{l${"r".repeat(rows[0].length - 1)}}`, lines[0], "  \\hline", ...lines.slice(1), "\\end{tabular}"].join("\n");
@@ -98,9 +104,9 @@ function tableRows(table) {
   for (const row of [...table.tBodies].flatMap((body) => [...body.rows])) {
     if (!row.checkVisibility()) continue;
     rows.push(
-      [...row.cells].map((cell) => {
+      [...row.cells].flatMap((cell) => {
         const own = cell.tagName === "TD" ? [...cell.childNodes].filter((node) => node.nodeType === 3) : [cell];
-        return own.map((node) => node.textContent.trim()).join(" ").replace(/\s+/g, " ");
+        return [own.map(text).join(" ").trim(), ...Array(cell.colSpan - 1).fill("")];
       }),
     );
   }

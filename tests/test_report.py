@@ -309,6 +309,20 @@ def test_a_short_text_is_never_a_block(text: str) -> None:
     assert Page(html).text == text
 
 
+@pytest.mark.parametrize(
+    ("tex", "shown"),
+    [
+        ("2\\ln 10", "2_ln_10"), ("d\\arg L/d\\ln x^2", "d_arg_L/d_ln_x2"), ("-\\cos m", "−cos_m"),
+        ("\\frac{1}{p}\\sin(x)", "1p_sin(x)"), ("\\min_w f", "minwf"),
+    ],
+)  # fmt: skip
+def test_functions_stand_apart_in_formulas(tex: str, shown: str) -> None:
+    """A browser puts no space between the name of a function and what is beside it."""
+    batch = MarkdownBatch("test")
+    html = batch.substitute(str(batch.inline(f"${tex}$"))).replace('<mspace width="0.167em"></mspace>', "_")
+    assert re.sub("<[^>]*>|&#8289;", "", html) == shown
+
+
 def test_columns_are_aligned_at_the_decimal_point() -> None:
     texts = aligned(["1.25", "−10", "3.4"]).values()
     assert len({len(text) - len(text.split(".")[0].rstrip("\u2007\u2008")) for text in texts}) == 1

@@ -24,6 +24,8 @@ def test_one_file_holds_the_paper_and_its_data(replicate: Run) -> None:
         assert address.startswith(("#", "data:text/csv;base64,")), address
         if address.startswith("#") and len(address) > 1:
             assert address[1:] in ids
+    for nowhere in ("All papers", ">Search", "Environment"):
+        assert nowhere not in page
     data = [base64.b64decode(one.partition(",")[2]) for one in addresses if one.startswith("data:")]
     assert Path("build/tables/lab/table-1.as-written.csv").read_bytes() in data
     assert Path("build/figures/lab/fig-1.csv").read_bytes() in data

@@ -6,22 +6,30 @@ import html
 import re
 from xml.etree import ElementTree as ET
 
+from replicate.display.formula_text import OPERATORS, formula_text
+
 _FORMULA = re.compile(
     r'<math display="(block|inline)"><semantics>(.*?)<annotation[^>]*>(.*?)</annotation></semantics></math>', re.DOTALL
 )
+_FUNCTION = re.compile(
+    "(?P<factor>(?<!−)</mi>|</mn>|</m(?:sub|sup|frac)>)?(?<!<msub>)(?<!<munder>)"
+    '<mrow>(?P<name><mi mathvariant="normal">[a-z]+</mi><mo>\N{FUNCTION APPLICATION}</mo>)</mrow>'
+    "(?P<argument><m(?:i|n|sub|sup|frac|sqrt|root)\\b)?"
+)
+_BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space)\\b")
+_THIN = '<mspace width="0.167em"></mspace>'
 _LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
 _VERY_LONG = 34
-_OPERATORS = re.compile("[\u200b\u2061-\u2064]")  # invisible; application of a function, times, separator, plus
 _BREAKS = {"=", "≤", "≥", "<", ">", "≈", "≠", "→", "+", "−"}  # a line may break before these, as in a printed text
 
 
 def formulas(text: str) -> str:
     r"""Return pandoc's HTML with its formulas made fit for a page.
 
-    A third of the elements of a page would only carry TeX. Invisible operators are written as references, since a page
-    shows such characters where they are raw. A displayed formula that may be too wide for a phone
-    scrolls, so the keyboard has to reach it; one in a line is cut before its outer relations and signs, since a
-    browser does not break a formula.
+    A third of the elements of a page would only carry TeX. Names of functions stand apart from what is beside them,
+    which browsers do not see to; invisible operators are written as references, since a page shows such characters
+    where they are raw. A displayed formula that may be too wide for a phone scrolls, so the keyboard has to reach it;
+    one in a line is cut before its outer relations and signs, since a browser does not break a formula.
 
     Examples
     --------
@@ -30,7 +38,7 @@ def formulas(text: str) -> str:
     >>> formulas(f'<math display="inline"><semantics><mrow>{math}</mrow>{tex}</semantics></math>').count("<math")
     3
     """
-    return _FORMULA.sub(lambda found: _OPERATORS.sub(_reference, _formula(found)), text)
+    return _FORMULA.sub(lambda found: OPERATORS.sub(_reference, _formula(found)), text)
 
 
 def without_operators(text: str) -> str:
@@ -41,7 +49,7 @@ def without_operators(text: str) -> str:
     >>> without_operators("ln\u206110")
     'ln 10'
     """
-    return _OPERATORS.sub(" ", text)
+    return OPERATORS.sub(" ", text)
 
 
 def _reference(match: re.Match[str]) -> str:
@@ -50,12 +58,28 @@ def _reference(match: re.Match[str]) -> str:
 
 def _formula(match: re.Match[str]) -> str:
     display, content, tex = match.groups()
+    content = _FUNCTION.sub(_apart, content)
     long = len(html.unescape(tex)) > _LONG[display]
     if display == "inline" and long:
         inside = 1 if len(html.unescape(tex)) > _VERY_LONG else 0
-        return "".join(f'<math display="inline">{piece}</math>' for piece in _pieces(content, inside))
+        return "".join(_element(piece, 'display="inline"') for piece in _pieces(content, inside))
     reachable = ' tabindex="0"' if long else ""
-    return f'<math display="{display}"{reachable}>{content}</math>'
+    return _element(content, f'display="{display}"{reachable}')
+
+
+def _element(content: str, attributes: str) -> str:
+    """Return a formula; with its text where that is more than the letters one after the other."""
+    said = ""
+    if _BUILT.search(content):
+        text = formula_text(ET.fromstring(f"<math>{content}</math>"))  # noqa: S314 -- pandoc's, and sanitised
+        said = f' alttext="{html.escape(text)}"'
+    return f"<math {attributes}{said}>{content}</math>"
+
+
+def _apart(match: re.Match[str]) -> str:
+    """Set a function apart from a factor before it and from an argument without brackets."""
+    factor, name, argument = match.groups("")
+    return f"{factor}{_THIN if factor else ''}<mrow>{name}</mrow>{_THIN if argument else ''}{argument}"
 
 
 def _pieces(content: str, inside: int) -> list[str]:

@@ -39,6 +39,7 @@ _MARKER = re.compile("<p>\ue004(\\d+)\ue005</p>")
 _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)", re.DOTALL)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 _VERBATIM = re.compile(r"(<(?:code|pre|math)\b.*?</(?:code|pre|math)>|<[^>]*>)", re.DOTALL)
+_SAID = re.compile(r'<math [^>]*?alttext="([^"]*)"[^>]*>.*?</math>', re.DOTALL)
 _MARKS = re.compile("[\ue000-\ue007]")
 
 #: Rooms of the framework whose code has texts converted, and what converts them: what a `Keep` of them looks at.
@@ -188,5 +189,7 @@ def strip_elements(text: str) -> str:
     --------
     >>> strip_elements("<em>a</em> &lt; <math><mi>b</mi></math>")
     'a < b'
+    >>> strip_elements('<math alttext="b²"><msup><mi>b</mi><mn>2</mn></msup></math>')
+    'b²'
     """
-    return without_operators(html.unescape(re.sub(r"<[^>]*>", "", text))).strip()
+    return without_operators(html.unescape(re.sub(r"<[^>]*>", "", _SAID.sub(r"\1", text)))).strip()

@@ -158,6 +158,7 @@ def build_report(
                 pages=pages,
                 mistakes=[erratum for erratum in mistakes if erratum.page == page.file],
                 unexplained=[erratum for erratum in unexplained if erratum.page == page.file],
+                in_one_file=False,
                 **shared,
             )
             texts[page.file] = within_limits(page.exhibits, _filling(fill, page))
@@ -211,6 +212,7 @@ def single_page(
         pages=[page],
         mistakes=sheet.errata,
         unexplained=sheet.unexplained,
+        in_one_file=True,
         language=about.language,
         theme=about.theme,
     )

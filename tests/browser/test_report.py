@@ -297,11 +297,24 @@ def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: P
         assert len(set(names)) == len(names) == 9
         assert [name.endswith("ph=1") for name in names[1:]] == [True] * 4 + [False] * 4
         assert {len(row) for row in rows} == {9}
+        assert rows[0][0] == "Proposed (7)"  # not what else stands there, such as links to loops
+        assert page.locator("#table-2 .scroll").evaluate("(region) => region.scrollWidth <= region.clientWidth")
         # what the line above says already is written only once, but copied, and shown where that line is not
         again = page.locator("#table-2 td.again").first
         assert again.evaluate("(cell) => getComputedStyle(cell).visibility") == "hidden"
         page.locator("#table-2 .pick select").select_option(index=2)
         assert again.evaluate("(cell) => getComputedStyle(cell).visibility") == "visible"
+
+
+def test_formulas_are_copied_in_one_line(report: Path, browser: Any) -> None:
+    with Sight(browser, report / "bayhan.html") as page:
+        page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+        page.locator("#table-1 .files").get_by_role("button", name="copy as CSV").click()
+        page.get_by_role("button", name="copied").wait_for()
+        rows = list(csv.reader(io.StringIO(page.evaluate("navigator.clipboard.readText()"))))
+        names = [row[0] for row in rows]
+        assert {len(row) for row in rows} == {5}
+        assert "IAE for load disturbance (IAE): Kp=(0.984/K)(L/τ)^(-0.986), Ti=(τ/0.608)(L/τ)^0.707" in names
 
 
 def test_heads_are_repeated_on_printed_pages(report: Path, browser: Any) -> None:

@@ -28,7 +28,7 @@ _SYMBOLS = {"KP_I": "I, $K_{Popt}$", "KI_I": "I, $K_{Iopt}$", "KP_II": "II, $K_{
 
 appendix_coefficients = paper.table(
     "appendix-coefficients",
-    "The coefficients of the Appendix' fits, fitted anew",
+    "The coefficients of the fits in the Appendix, fitted anew",
     kind="formula",
     rows=ROWS,
     columns=("value",),
