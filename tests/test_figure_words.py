@@ -8,10 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from matplotlib.legend_handler import HandlerTuple
 from matplotlib.lines import Line2D
+from matplotlib.offsetbox import AnchoredOffsetbox, DrawingArea
 from matplotlib.patches import Circle
 from matplotlib.transforms import Affine2D
 from mpl_toolkits.axes_grid1 import host_subplot
+from mpl_toolkits.axes_grid1.anchored_artists import AnchoredSizeBar
 
 from replicate.figures import Record, capture, compare
 
@@ -101,6 +104,55 @@ def test_a_contour_is_kept_as_it_runs_in_any_unit() -> None:
     points = capture(figure).curves["panel 1", "level 0"]
     between = np.interp(x[0], *points[np.argsort(points[:, 0])].T)
     assert np.abs(between - height(x[0])).max() < 1e-3 * 1e-3
+
+
+@pytest.mark.parametrize("extend", ["neither", "min", "max", "both"])
+def test_areas_beyond_the_levels_are_curves_of_their_own(extend: Any) -> None:
+    x, y = np.meshgrid(np.linspace(0.0, 1.0, 50), np.linspace(0.0, 1.0, 50))
+
+    def draw(axes: Any, shift: float) -> None:
+        axes.contourf(x, y, x + np.where(x > 0.5, shift, 0.0) * y, [0.2, 0.5, 0.8], extend=extend, colors=list("rgby"))
+
+    figure = Figure()
+    draw(figure.subplots(), 0.0)
+    ends = {"neither": (), "min": ("below 0.2",), "max": ("0.8",), "both": ("below 0.2", "0.8")}[extend]
+    assert {name for _, name in capture(figure).curves} == {f"level {level}" for level in ("0.2", "0.5", *ends)}
+    moved = said(draw, 0.0, 0.05)
+    assert all("moved" in text for text in moved)
+    assert any("level 0.8" in text for text in moved) == ("0.8" in ends)
+
+
+def test_points_are_counted_where_they_can_be_seen() -> None:
+    def draw(axes: Any, more: list[float]) -> None:
+        axes.set(xlim=(0, 2), ylim=(0, 2))
+        axes.scatter([1.0, 1.5, *more], [1.0, 1.5, *more], alpha=0.5)
+
+    assert said(draw, [], [np.nan]) == said(draw, [np.nan], []) == []
+    assert said(draw, [], [1.0]) == ["curve 'points 1' now has 3 points (was 2)"]
+
+
+def size_bar(axes: Any, length: float) -> None:
+    axes.add_artist(AnchoredSizeBar(axes.transData, length, "20 m", "lower center"))
+
+
+def disk(axes: Any, radius: float) -> None:
+    drawing = DrawingArea(20.0, 20.0)
+    drawing.add_artist(Circle((10.0, 10.0), radius))
+    axes.add_artist(AnchoredOffsetbox("upper left", child=drawing))
+
+
+def two_handles(axes: Any, beside: bool) -> None:
+    lines = tuple(axes.plot(T, T, color)[0] for color in "rb")
+    axes.legend([lines], ["both"], handler_map={tuple: HandlerTuple(ndivide=None if beside else 1)})
+
+
+@pytest.mark.parametrize(
+    ("draw", "values"), [(size_bar, (0.2, 0.21)), (disk, (5.0, 5.3)), (two_handles, (True, False))]
+)
+def test_drawings_among_texts_have_a_size(draw: Any, values: Any) -> None:
+    assert said(draw, values[0], values[0]) == []
+    (words,) = said(draw, *values)
+    assert "the drawing of " in words
 
 
 @pytest.mark.parametrize("kind", ["plot", "scatter", "fill_between"])

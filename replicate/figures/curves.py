@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from replicate.figures.contour_labels import interrupted_words
+from replicate.figures.contours import interrupted_words
 from replicate.figures.differences import Difference, FigureChange
 from replicate.figures.distance import Distances, distances, point_distances
 from replicate.figures.envelope import compare_envelopes
@@ -212,7 +212,8 @@ class _Panel:
             return Pair(self.old, new_name, one, other, bool(way), tolerance, words=way, size=float(bool(way)))
         if kinds == ["points", "points"]:
             apart = (point_distances(after, before, self.view), point_distances(before, after, self.view))
-            far = len(after) != len(before) or max(part.largest for part in apart) > tolerance
+            fewer = finite(before).sum() != finite(after).sum()
+            far = bool(fewer) or max(part.largest for part in apart) > tolerance
         else:
             apart = self.apart(before, after, tolerance, labels)
             far = max(part.largest for part in apart) > tolerance

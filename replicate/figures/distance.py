@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.figures.contour_labels import uncovered
+from replicate.figures.contours import uncovered
 from replicate.figures.polylines import Points, distance_to_segments
 from replicate.figures.scaling import finite
 
@@ -71,7 +71,7 @@ def distances(
     view
         ``[[left, right], [bottom, top]]``: only points inside are measured; by default the axes.
     covered
-        Ellipses inside which points are not measured, as in `replicate.figures.contour_labels.uncovered`.
+        Ellipses inside which points are not measured, as in `replicate.figures.contours.uncovered`.
 
     Examples
     --------

@@ -22,6 +22,7 @@ _SIZE = 2e-3
 _SIGNS = 5e-3
 _BLOCK = 0.02
 _SYMBOL = 3e-3
+_INSIDE = 0.05  # points
 _LARGER = 5e-3
 _PICTURE = 0.015
 _MOST_TEXTS = 12
@@ -48,6 +49,8 @@ def look_words(one: Mark, other: Mark) -> Iterator[str]:
         yield "the shape to which {} is clipped changed" if clips[0] == clips[1] else different
     yield from _symbols(one, other)
     yield from _texts(one, other)
+    if "inside" in one and "inside" in other and np.abs(np.subtract(one["inside"], other["inside"])).max() > _INSIDE:
+        yield "the drawing of {} has another size or place"
     if "image" in one and "image" in other and not _same_blocks(one["image"], other["image"]):
         yield "the picture of {} shows something else"
 

@@ -7,6 +7,7 @@ A mark says what is drawn (``draws``), how it looks and where it lies. Its field
 - ``hatch``, ``sketch``, ``clip`` (left out if clipped to the axes, ``none`` if not clipped)
 - ``outline``: where its lines run; ``symbol``: the shape of a marker in inches, ``places`` where it is drawn and
   ``scale`` how large; ``symbols``, where each of many points has its own
+- ``inside``: the box around it, in points, in a drawing that is packed with texts, such as the handle of a legend
 - ``texts``, ``size``, ``angle``, ``align``, ``weight``, ``slant`` of texts and ``at``, where they are anchored;
   ``image``, the mean colours of its blocks, and the corners of a picture
 
@@ -21,6 +22,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.collections import PathCollection
+from matplotlib.offsetbox import AuxTransformBox, DrawingArea, OffsetImage
 
 from replicate.figures.digests import MOST_VALUES, Array, line_waves, rounded, values_digest
 from replicate.figures.outlines import OUTLINE_TOLERANCE, flattened, joined, outline, scattered
@@ -75,6 +77,7 @@ def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: boo
     """
     marks: list[Mark] = []
     lines: list[list[Points]] = []
+    inside: list[list[Points]] = []
     for drawn in calls:
         look = _look(drawn, box)
         corners = drawn.kind in {"mesh", "triangles"} or drawn.offsets is not None
@@ -90,11 +93,38 @@ def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: boo
         if not (marks and marks[-1]["look"] == look and drawn.kind != "image"):
             marks.append({"look": look, "corners": corners, "texts": []})
             lines.append([])
+            inside.append([])
         lines[-1].append(box.units(points))
+        inside[-1] += _in_drawing(drawn, points)
         if drawn.kind == "text":
             marks[-1]["texts"].append(drawn.extra["text"])
     tolerance = _COARSE if loose else OUTLINE_TOLERANCE
-    return [_mark(mark, points, tolerance, where=where) for mark, points in zip(marks, lines, strict=True)]
+    return [
+        _mark(mark, points, tolerance, where=where) | _reach(drawing)
+        for mark, points, drawing in zip(marks, lines, inside, strict=True)
+    ]
+
+
+def _in_drawing(drawn: Drawn, points: Points) -> list[Points]:
+    """Return where something lies inside a drawing that is packed with texts, in points: nothing there follows them."""
+    for artist in reversed(drawn.artists):
+        if isinstance(artist, DrawingArea | AuxTransformBox):
+            origin = artist.offset_transform.transform((0.0, 0.0))
+        elif isinstance(artist, OffsetImage):
+            origin = points[0]
+        else:
+            continue
+        return [(points - origin) * _INCH / DPI]
+    return []
+
+
+def _reach(points: list[Points]) -> Mark:
+    """Return the box around what lies inside a drawing: left, bottom, right, top."""
+    there = [part[finite(part)] for part in points]
+    if not any(map(len, there)):
+        return {}
+    together = np.vstack(there)
+    return {"inside": [round(float(end), 2) for end in (*together.min(axis=0), *together.max(axis=0))]}
 
 
 def _mark(mark: Mark, points: list[Points], tolerance: float, *, where: bool) -> Mark:

@@ -236,7 +236,8 @@ def _of_axis(axis: Axis, chain: tuple[Artist, ...]) -> Part:
             place = {"place": [round(float(part), 4) for part in axis.label.get_position()]}
         elif getattr(axis.axes, "name", "") == "rectilinear":
             place["side"] = str(axis.get_label_position())
-        return Part(f"label {which}", below, told=True, placed=False, properties=place)
+        known = any(axis is getattr(axis.axes, f"{name}axis", None) for name in "xyz")  # their words are said by name
+        return Part(f"label {which}", below, told=known, placed=False, properties=place)
     if below is axis.offsetText:
         return Part(f"offset text {which}", below, placed=False)
     minor = "minor " if any(below is tick for tick in axis.minorTicks) else ""

@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 from matplotlib.path import Path
 from matplotlib.projections.polar import PolarAxes
 
-from replicate.figures.contour_labels import covered
+from replicate.figures.contours import covered, levels, without_specks
 from replicate.figures.describe import describe, said_label
 from replicate.figures.envelope import envelope
 from replicate.figures.outlines import joined, scattered
@@ -212,10 +212,10 @@ def _collection(collection: Collection, axes: Axes, place: int, heads: Sequence[
     if isinstance(collection, ContourSet):
         base = _name(collection, "level")
         kind: Kind = "area" if collection.filled else "line"
-        for level, path in zip(collection.levels, collection.get_paths(), strict=False):
+        for (level, words), path in zip(levels(collection), collection.get_paths(), strict=False):
             points = _to_data(_of_path(path), collection.get_transform(), axes)
-            points = _without_specks(points, axes)
-            curve = _thinned_curve(collection, f"{base} {level:.{_DIGITS}g}", kind, points, axes)
+            points = without_specks(points, _in_axes_units(points, axes))
+            curve = _thinned_curve(collection, f"{base} {words}", kind, points, axes)
             labels = covered(collection, level, _in_axes_units(points, axes), axes)
             yield replace(curve, special={**curve.special, "labels": labels}) if labels else curve
     elif isinstance(collection, PathCollection):  # a scatter plot: the offsets are the data
@@ -241,16 +241,6 @@ def _collection(collection: Collection, axes: Axes, place: int, heads: Sequence[
 # Filled areas; matplotlib derives arrows, barbs and much more from polygons, which are not areas.
 # `fill_between` has a class of its own since matplotlib 3.10.
 _OUTLINED = {"PolyCollection", "FillBetweenPolyCollection"}
-
-
-def _without_specks(points: Points, axes: Axes) -> Points:
-    """Leave out pieces too small to be seen: rounding decides whether a level that is an extremum has one."""
-    units = _in_axes_units(points, axes)
-    edges = np.flatnonzero(np.diff(np.r_[False, finite(units), False].astype(int)))
-    for start, end in zip(edges[::2], edges[1::2], strict=True):
-        if np.ptp(units[start:end], axis=0).max() < THINNING:
-            points[start:end] = np.nan
-    return points
 
 
 def _shape(patch: Patch, axes: Axes) -> tuple[Points, float]:

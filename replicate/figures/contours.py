@@ -1,4 +1,4 @@
-"""Where labels interrupt contours: which of the places of a curve they cover is a matter of layout, and of ties.
+"""Contours: their levels, pieces too small to be seen, and what labels cover.
 
 matplotlib puts a label where its contour is straightest, and cuts out as much of it as the label is wide. Another font,
 or rounding, moves both along the curve. So the places that labels cover are kept, and a contour is compared elsewhere.
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from replicate.figures.polylines import Points, distance_to_segments
+from replicate.figures.polylines import THINNING, Points, distance_to_segments
 from replicate.figures.scaling import finite
 
 if TYPE_CHECKING:
@@ -23,6 +23,29 @@ _SPACE = 8.0  # points between a label and its contour, on each side
 _WIDER = 1.4  # than these, in some fonts
 _ON = 2.0  # points from the middle of a label to a contour that it does not interrupt
 _INCH = 72.0
+
+
+def levels(contours: ContourSet) -> list[tuple[float, str]]:
+    """Return the level of each line, or from which level on each area is filled, as a number and in words."""
+    found = [(float(level), f"{level:.9g}") for level in contours.levels]
+    below = contours.filled and contours.extend in {"min", "both"}
+    return [(-np.inf, f"below {found[0][1]}"), *found] if below and found else found
+
+
+def without_specks(points: Points, units: Points) -> Points:
+    """Leave out pieces too small to be seen: rounding decides whether a level that is an extremum has one.
+
+    Parameters
+    ----------
+    points, units
+        The same points in data coordinates and as fractions of the axes.
+    """
+    found = points.copy()
+    edges = np.flatnonzero(np.diff(np.r_[False, finite(units), False].astype(int)))
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        if np.ptp(units[start:end], axis=0).max() < THINNING:
+            found[start:end] = np.nan
+    return found
 
 
 def covered(contours: ContourSet, level: float, units: Points, axes: Axes) -> list[list[float]]:
