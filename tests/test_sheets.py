@@ -135,5 +135,5 @@ def test_each_page_of_a_sheet_has_the_form_and_the_shared_handout_none(
     ((_, content),) = handouts([toy.paper], toy.results, (), solutions=[False])
     form = Form.of("toy", "1", "Ada")
     assert str(form) in markup(edition(toy.paper, toy.results, (), solutions=False, form=form))
-    assert 'form: "' not in markup(edition(toy.paper, toy.results, (), solutions=False))
+    assert "<form>" not in markup(edition(toy.paper, toy.results, (), solutions=False))
     assert len(content) < len(dict(toy.files(["Ada"], "1"))["toy-Ada.pdf"])
