@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import csv
 import io
 import re
 import xml.etree.ElementTree as ET
@@ -89,6 +90,24 @@ def test_a_numerical_question_accepts_what_the_key_accepts(toy: ClassSet) -> Non
         for wrong in (b / a, max(early, a / b) + 0.51 * unit, min(early, a / b) - 0.51 * unit, -a / b):
             assert grade(bands, wrong) == 0
         assert [feedback for lower, upper, _, feedback in bands if lower <= b / a <= upper] == ["upside down?"]
+
+
+def test_a_numerical_question_accepts_the_ends_that_the_key_gives_and_nothing_beyond(toy: ClassSet) -> None:
+    files = dict(toy.files([f"{number:03}" for number in range(20)], "2", "moodle"))
+    asked = {
+        text(question, "idnumber"): question for question in questions(parsed(files["toy-moodle.xml"]), "numerical")
+    }
+    rows = [row for row in csv.DictReader(io.StringIO(files["toy-key.csv"].decode())) if row["exercise"] == "division"]
+    assert len(rows) == len(asked) == 20
+    for row in rows:
+        bands = [
+            (float(text(answer, "text")), float(text(answer, "tolerance")), answer.get("fraction"))
+            for answer in asked[f"toy-division-{row['form'].split(':')[1]}"].iter("answer")
+        ]
+        lower, upper = float(row["lower"]), float(row["upper"])
+        for value, per_cent in ((lower, "100"), (upper, "100"), (0.9999 * lower, None), (1.0001 * upper, None)):
+            fitting = (share for centre, tolerance, share in bands if abs(value - centre) <= tolerance)
+            assert next(fitting, None) == per_cent
 
 
 def test_a_cloze_question_has_a_field_for_each_answer(toy: ClassSet) -> None:

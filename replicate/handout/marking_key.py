@@ -16,7 +16,7 @@ import typst
 
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
-from replicate.exhibits.variants import Variation
+from replicate.exhibits.variants import Answer, Variation
 from replicate.handout.drawings import Wanted
 from replicate.handout.form import Form
 from replicate.handout.key_figures import KeyFigure
@@ -54,12 +54,7 @@ def key_rows(variations: Mapping[str, Variation], student: str, form: Form) -> l
     rows = []
     for name, variation in variations.items():
         for part, answer in variation.answers(variation.drawn(form.draw)).items():
-            lower, upper = answer.accepted
-            numbers = (
-                plain_decimals(answer.value),
-                plain_decimals(lower, ROUND_FLOOR),
-                plain_decimals(upper, ROUND_CEILING),
-            )
+            numbers = plain_decimals(answer.value), *accepted_ends(answer)
             rows.append(KeyRow(student, name, part, *numbers, answer.unit, str(form)))
     return rows
 
@@ -130,6 +125,12 @@ def key_pdf(
             raise TemplateError(msg) from error
     assert isinstance(made, bytes)  # noqa: S101  -- for the type checker: one PDF, not a list of pages
     return made
+
+
+def accepted_ends(answer: Answer) -> tuple[str, str]:
+    """Return the ends of the accepted interval in plain decimals, rounded outwards."""
+    lower, upper = answer.accepted
+    return plain_decimals(lower, ROUND_FLOOR), plain_decimals(upper, ROUND_CEILING)
 
 
 def plain_decimals(value: float, rounding: str = ROUND_HALF_EVEN) -> str:

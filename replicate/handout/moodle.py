@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator
 from decimal import ROUND_CEILING
 
 from replicate.exhibits.variants import Answer
-from replicate.handout.marking_key import plain_decimals
+from replicate.handout.marking_key import accepted_ends, plain_decimals
 from replicate.handout.question_texts import Texts, picture_name, texts_of
 from replicate.handout.questions import Question, different, drawings_in
 from replicate.handout.tree import Blocks
@@ -97,17 +97,22 @@ def _accepted(answer: Answer) -> Iterator[tuple[int, str, str, str]]:
 
     Moodle takes the first that fits.
     """
-    lower, upper = answer.accepted
-    centre, half = (lower + upper) / 2, (upper - lower) / 2
-    yield 100, *_with_tolerance(answer.value, min(answer.value - lower, upper - answer.value)), ""
+    lower, upper = (float(end) for end in accepted_ends(answer))
+    near, far = sorted((answer.value - lower, upper - answer.value))
+    centre = (lower + upper) / 2
     if answer.carried and plain_decimals(centre) != plain_decimals(answer.value):
-        yield 100, *_with_tolerance(centre, half), ""
+        yield 100, *_within(answer.value, near), ""
+        yield 100, *_within(centre, (upper - lower) / 2), ""
+    else:
+        yield 100, *_within(answer.value, far), ""
     for words, value in answer.mistakes.items():
-        yield 0, *_with_tolerance(value, answer.margin(value)), f"{words}?"
+        yield 0, *_within(value, answer.margin(value)), f"{words}?"
 
 
-def _with_tolerance(value: float, tolerance: float) -> tuple[str, str]:
-    return plain_decimals(value), plain_decimals(tolerance, ROUND_CEILING)
+def _within(value: float, distance: float) -> tuple[str, str]:
+    """Return a value with few digits, and the tolerance that takes in all that is so near to the exact one."""
+    text = plain_decimals(value)
+    return text, plain_decimals(distance + abs(float(text) - value), ROUND_CEILING)
 
 
 def _cloze(answer: Answer) -> str:

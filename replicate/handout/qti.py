@@ -12,11 +12,10 @@ import io
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Iterable, Mapping, Sequence
-from decimal import ROUND_CEILING, ROUND_FLOOR
 from itertools import groupby
 
 from replicate.exhibits.variants import Answer
-from replicate.handout.marking_key import plain_decimals
+from replicate.handout.marking_key import accepted_ends, plain_decimals
 from replicate.handout.question_texts import Texts, picture_name, texts_of
 from replicate.handout.questions import Question, different, drawings_in
 from replicate.handout.spoken_math import spoken
@@ -171,11 +170,9 @@ def _processing(answers: Mapping[str, Answer], names: Mapping[str, str], worth: 
     """Return the rules that give each accepted answer its share of the points."""
     root = ET.Element("responseProcessing")
     for name, response in names.items():
-        lower, upper = answers[name].accepted
         condition = ET.SubElement(ET.SubElement(root, "responseCondition"), "responseIf")
         both = ET.SubElement(condition, "and")
-        ends = {"gte": plain_decimals(lower, ROUND_FLOOR), "lte": plain_decimals(upper, ROUND_CEILING)}
-        for relation, end in ends.items():
+        for relation, end in zip(("gte", "lte"), accepted_ends(answers[name]), strict=True):
             compared = ET.SubElement(both, relation)
             ET.SubElement(compared, "variable", identifier=response)
             ET.SubElement(compared, "baseValue", baseType="float").text = end
