@@ -137,10 +137,10 @@ def full(computed: float | None) -> str:
 
     Examples
     --------
-    >>> full(-2 / 3)
-    '−0.666666666667'
+    >>> full(-2 / 3), full(-3.49297502034e-09)
+    ('−0.666666666667', '−3.49297502034e−9')
     """
-    return _minus(computed_text(computed))
+    return minus_signs(computed_text(computed))
 
 
 def aligned(texts: Iterable[str]) -> dict[str, str]:

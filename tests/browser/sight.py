@@ -37,9 +37,9 @@ UNFOLDED = """() => {
 SETTLED = "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50))))"
 # Where a page is wider than the window: what sticks out, and is in no region that scrolls by itself.
 SIDEWAYS = """() => document.documentElement.scrollWidth <= innerWidth ? [] :
-  [...document.querySelectorAll("body *")]
+  [`${document.documentElement.scrollWidth} px`, ...[...document.querySelectorAll("body *")]
     .filter((e) => e.getBoundingClientRect().right > innerWidth + 1 && !e.closest(".scroll, .drawing, pre, svg"))
-    .slice(0, 5).map((e) => e.outerHTML.slice(0, 120))"""
+    .slice(0, 5).map((e) => e.outerHTML.slice(0, 120))]"""
 # Drawings whose letters are smaller than 11 pixels: an index may be, at seven tenths of what it belongs to.
 SMALL = """() => [...document.querySelectorAll("figure svg[role=img]")]
   .map((e) => [e.id, e.getBoundingClientRect().width / e.viewBox.baseVal.width * e.style.getPropertyValue("--type")])

@@ -69,6 +69,11 @@ def test_every_page_is_accessible_and_fits(report: Path, browser: Any, axe: str)
             page.evaluate(UNFOLDED)
             page.evaluate(SETTLED)
             found[f"{path.name}: wider than a phone"] = page.evaluate(SIDEWAYS)
+            page.set_viewport_size({"width": 320, "height": 900})
+            page.evaluate(SETTLED)
+            found[f"{path.name}: wider than the smallest phone"] = page.evaluate(SIDEWAYS)
+            page.set_viewport_size({"width": 360, "height": 900})
+            page.evaluate(SETTLED)
             found[f"{path.name}: small letters in drawings"] = page.evaluate(SMALL)
             found[f"{path.name}: tab stops that are none"] = page.evaluate(STOPS) if path.name != "whatif.html" else []
             if path.name != "whatif.html":  # whose script writes into the rows that this would remove
