@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.errors import LoopError
+from replicate.loops.polynomials import trimmed
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -123,7 +124,7 @@ def coefficients(name: str, values: object) -> Array:
         raise LoopError(_message(name, values, allowed))
     items = list(np.atleast_1d(np.asarray(values, dtype=object)))
     try:
-        array = np.trim_zeros(np.array([real(item) for item in items], dtype=float), "f")
+        array = trimmed(np.array([real(item) for item in items], dtype=float))
     except ValueError:
         raise LoopError(_message(name, values, allowed)) from None
     if array.size == 0 or not np.isfinite(array).all():

@@ -16,6 +16,7 @@ Reference: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,7 +29,7 @@ from replicate.loops.frequency_grids import design_grid
 from replicate.loops.loop import Loop
 from replicate.loops.pi_maxima import Maximum, local_maxima
 from replicate.loops.pi_result import PIDesign, Status
-from replicate.loops.pi_tangency import closest_frequencies, corner_optimum, smooth_optimum
+from replicate.loops.pi_tangency import closest_frequencies, corner_optimum, smooth_condition, smooth_optimum
 from replicate.loops.plant import Plant
 from replicate.loops.setpoint_weights import setpoint_weight
 from replicate.loops.units import Units
@@ -76,7 +77,7 @@ def _design(plant: Plant, circle: Circle) -> PIDesign:
     """Design for a plant of positive gain whose numbers are of the order of one."""
     problem = _Problem(plant, circle, design_grid(plant))
     solutions: list[PIDesign] = []
-    for maximum in local_maxima(plant, circle, problem.w):
+    for maximum in local_maxima(problem.value, circle, problem.w):
         if not problem.is_stable(maximum.k, maximum.inside):
             continue
         if maximum.open_end is not None and problem.is_stable(*maximum.open_end):
@@ -113,7 +114,12 @@ class _Problem:
 
     def __init__(self, plant: Plant, circle: Circle, w: Array) -> None:
         self.plant, self.circle, self.w = plant, circle, w
+        self.value = plant(1j * w)
         self._loops: dict[tuple[float, float], Loop] = {}
+
+    @cached_property
+    def _smooth_condition(self) -> Array:
+        return smooth_condition(self.plant, self.circle, self.w)
 
     def loop(self, k: float, ki: float) -> Loop:
         """Return the loop of a PI controller."""
@@ -130,10 +136,10 @@ class _Problem:
 
     def polished(self, found: Maximum) -> PIDesign | None:
         """Return the verified optimum near a maximum of the grid: smooth if one tangency explains it, else a corner."""
-        smooth = smooth_optimum(self.plant, self.circle, self.w, found.frequency)
+        smooth = smooth_optimum(self.plant, self.circle, self.w, self._smooth_condition, found.frequency)
         if smooth is not None and _plausible(smooth, found) and self._verified(smooth):
             return smooth
-        closest = closest_frequencies(self.plant, self.circle, self.w, found.k, found.ki)
+        closest = closest_frequencies(self.value, self.circle, self.w, found.k, found.ki)
         for pair in sorted({closest, (min(found.neighbours), max(found.neighbours))}):
             corner = corner_optimum(self.plant, self.circle, found.k, found.ki, *pair)
             if corner is not None and _plausible(corner, found) and self._verified(corner):

@@ -28,7 +28,7 @@ GAINS = np.concatenate([[-1.0, -0.3, -0.1, -0.03, 0.0], np.geomspace(0.01, 0.3, 
 DERIVATIVES = np.concatenate([[-0.3, -0.1, 0.0], np.geomspace(0.03, 0.3, 4), np.geomspace(0.42, 60.0, 16)])
 EDGE = 1.0 - 1e-9
 NO_GAP = 1e-9  # relative width below which a gap is none
-TOGETHER = 3  # proportional gains looked at together
+TOGETHER = 6  # proportional gains looked at together
 FREQUENCIES = 160  # of each constraint, on the map
 
 ZOOM = np.linspace(-1.0, 1.0, 7)  # the window of an ascent, in units of its half-width
@@ -129,51 +129,61 @@ def _thinned(jet: LoopJet) -> LoopJet:
 
 def _gaps(jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float = 0.0) -> Gaps:
     """Return the gaps of ki at the indices (i, j) of k and kd."""
-    parts = (_forbidden(jets, circle, k[i : i + TOGETHER], kd, slack) for i in range(0, k.size, TOGETHER))
+    quadratics = [_Quadratics.of(kind, jet, circle, slack) for kind, jet in jets]
+    parts = (_forbidden(quadratics, k[i : i + TOGETHER], kd) for i in range(0, k.size, TOGETHER))
     return Gaps.between(parts, rounding=NO_GAP)
 
 
-def _forbidden(
-    jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float
-) -> tuple[Array, Array, NDArray[np.intp]]:
-    """Return lower and upper ends of the forbidden intervals of ki > 0, shape (len(k), len(kd), intervals)."""
-    low, high = [], []
-    for kind, jet in jets:
-        a, b, c = _quadratics(kind, jet, circle, k, kd, slack)
+@dataclass(frozen=True)
+class _Quadratics:
+    """A constraint a ki^2 + b ki + c >= 0 at n frequencies: a (n,), and what b (3, n) and c (6, n) are made of.
+
+    b is linear in (1, k, kd), and c in (1, k, kd, k^2, k kd, kd^2).
+    """
+
+    a: Array
+    b: Array
+    c: Array
+
+    @classmethod
+    def of(cls, kind: Kind, jet: LoopJet, circle: Circle, slack: float) -> _Quadratics:
+        """Return a constraint's quadratics from its matrices, where it has to keep a distance ``slack`` from zero."""
+        form = jet.forms(kind, circle)[0]
+        if slack and kind == "sensitivity":
+            form[0, 0] -= circle.radius**2 * slack
+        elif slack:
+            steep = jet.phi[1 if kind == "phase" else 2, ::2]
+            form[1::2, 1::2] -= slack * jet.w * (np.conj(steep)[:, None] * steep).real
+        one, k, ki, kd = form
+        b = 2.0 * np.stack([one[2], k[2], kd[2]])
+        c = np.stack([one[0], 2.0 * one[1], 2.0 * one[3], k[1], 2.0 * k[3], kd[3]])
+        return cls(ki[2], b, c)
+
+    def roots(self, terms: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Return the lower and the upper root in ki, and where they are real; ``terms`` has the six terms of c."""
+        b, c = terms[:, :3] @ self.b, terms @ self.c
         discriminant = b * b
-        discriminant -= 4.0 * a * c
+        discriminant -= 4.0 * self.a * c
         real = discriminant > 0.0
         with np.errstate(all="ignore"):
-            q = -0.5 * (b + np.copysign(np.sqrt(np.maximum(discriminant, 0.0)), b))
-            first, second = q / a, c / q
-        left, right = np.fmin(first, second), np.fmax(first, second)
+            q = -0.5 * (b + np.copysign(np.sqrt(discriminant), b))
+            first, second = q / self.a, c / q
+        return np.fmin(first, second), np.fmax(first, second), real
+
+
+def _forbidden(quadratics: Sequence[_Quadratics], k: Array, kd: Array) -> tuple[Array, Array, NDArray[np.intp]]:
+    """Return lower and upper ends of the forbidden intervals of ki > 0, shape (len(k), len(kd), intervals)."""
+    both = np.repeat(k, kd.size), np.tile(kd, k.size)
+    terms = np.stack([np.ones(both[0].size), *both, both[0] ** 2, both[0] * both[1], both[1] ** 2], axis=1)
+    low, high = [], []
+    for quadratic in quadratics:
+        left, right, real = quadratic.roots(terms)
         # a > 0: forbidden between the roots
-        up = a > 0.0
+        up = quadratic.a > 0.0
         low.append(np.where(up & real & (right > 0.0), left, np.inf))
         high.append(np.where(up & real, right, -np.inf))
         if not up.all():  # a < 0: below the lower and above the upper one, or everywhere
-            low += [np.where(up, np.inf, 0.0) + np.zeros_like(b), np.where(real & ~up, np.maximum(right, 0.0), np.inf)]
+            low += [np.where(up, np.inf, np.zeros_like(left)), np.where(real & ~up, np.maximum(right, 0.0), np.inf)]
             high += [np.where(up, -np.inf, np.where(real, left, np.inf)), np.where(real & ~up, np.inf, -np.inf)]
-    ends = np.concatenate(low, axis=-1), np.concatenate(high, axis=-1)
-    return *ends, np.arange(ends[0].shape[-1])
-
-
-def _quadratics(
-    kind: Kind, jet: LoopJet, circle: Circle, k: Array, kd: Array, slack: float
-) -> tuple[Array, Array, Array]:
-    """Return a, b, c of ``a ki^2 + b ki + c >= 0``, shapes (n,), (len(k), len(kd), n) twice."""
-    phi = jet.phi
-    rest = k[:, None, None] * phi[:, None, None, 0] + kd[:, None] * phi[:, None, None, 2]
-    if kind == "sensitivity":
-        offset, slope = rest[0] + circle.center, phi[0, 1]
-        return (
-            np.abs(slope) ** 2,
-            2.0 * (np.conj(offset) * slope).real,
-            np.abs(offset) ** 2 - circle.radius**2 * (1.0 + slack),
-        )
-    n = 0 if kind == "phase" else 1
-    return (
-        -(np.conj(phi[n, 1]) * phi[n + 1, 1]).imag,
-        -(np.conj(rest[n]) * phi[n + 1, 1] + np.conj(phi[n, 1]) * rest[n + 1]).imag,
-        -(np.conj(rest[n]) * rest[n + 1]).imag - slack * jet.w * np.abs(rest[n + 1]) ** 2,
-    )
+    lows, highs = (np.concatenate(ends, axis=1).reshape(k.size, kd.size, -1) for ends in (low, high))
+    return lows, highs, np.arange(lows.shape[-1])

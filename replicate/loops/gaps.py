@@ -76,21 +76,20 @@ class Gaps:
 
     def maxima(self) -> Iterator[tuple[Index, Gap, list[Gap]]]:
         """Yield (grid point, gap, connected gaps) for each gap whose upper end no connected gap exceeds."""
+        gap, other = self._connected()
         highest = np.ones(self.top.size, dtype=bool)
-        pairs = list(self._connected())
-        for gap, other in pairs:
-            highest[gap[self.top[other] > self.top[gap]]] = False
+        highest[gap[self.top[other] > self.top[gap]]] = False
         for g in np.nonzero(highest)[0].tolist():
-            connected = [self._gap(o) for gap, other in pairs for o in other[gap == g].tolist()]
-            yield self._index(g), self._gap(g), connected
+            yield self._index(g), self._gap(g), [self._gap(o) for o in other[gap == g].tolist()]
 
-    def _connected(self) -> Iterator[tuple[Places, Places]]:
-        """Yield pairs of gaps that overlap, for each direction in which points are neighbours."""
+    def _connected(self) -> tuple[Places, Places]:
+        """Return the pairs of gaps that overlap at neighbouring points, each pair both ways round."""
         shape = self.uppermost.shape
         starts = np.searchsorted(self.point, np.arange(self.uppermost.size + 1))
         index = np.array(np.unravel_index(self.point, shape))
+        pairs = []
         for step in product((-1, 0, 1), repeat=len(shape)):
-            if not any(step):
+            if step <= (0,) * len(shape):  # half of the directions: the others lead back
                 continue
             moved = index + np.array(step)[:, None]
             gap = np.nonzero(np.all((moved >= 0) & (moved < np.array(shape)[:, None]), axis=0))[0]
@@ -99,7 +98,9 @@ class Gaps:
             gap = np.repeat(gap, count)
             other = np.arange(gap.size) + np.repeat(first - np.cumsum(count) + count, count)
             overlap = (self.bottom[other] < self.top[gap]) & (self.top[other] > self.bottom[gap])
-            yield gap[overlap], other[overlap]
+            pairs += [(gap[overlap], other[overlap]), (other[overlap], gap[overlap])]
+        gap, other = (np.concatenate(side) for side in zip(*pairs, strict=True))
+        return gap, other
 
     def _index(self, gap: int) -> Index:
         return tuple(int(i) for i in np.unravel_index(self.point[gap], self.uppermost.shape))

@@ -6,12 +6,14 @@ series.
 
 from __future__ import annotations
 
+import cmath
 from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.plant import Plant
+from replicate.loops.polynomials import horner_with_slope
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
@@ -24,6 +26,17 @@ def plant_jet(plant: Plant, w: Array, order: int) -> ComplexArray:
     if plant.dead_time:
         series = series_product(series, delay_series(s, plant.dead_time, order))
     return np.asarray(series * (1j ** np.arange(order + 1))[:, None])
+
+
+def value_and_slope(plant: Plant, w: float) -> tuple[complex, complex]:
+    """Return G(i w) and d log G(i w) / dw at one frequency: what a solver asks for point by point."""
+    s = complex(0.0, w)
+    if plant.is_rational:
+        (n, n_slope), (d, d_slope) = (horner_with_slope(part.tolist(), s) for part in (plant.num, plant.den))
+        if n and d:
+            slope = n_slope / n - d_slope / d - plant.dead_time
+            return n / d * cmath.exp(-s * plant.dead_time), 1j * slope
+    return complex(plant(s)), 1j * complex(plant.log_derivative(s))
 
 
 def delay_series(s: ComplexArray, dead_time: float, order: int) -> ComplexArray:

@@ -205,12 +205,13 @@ class LoopTransfer:
         return np.sort([self._polished_crossover(math.sqrt(x)) for x in real.tolist()])
 
     def _polished_crossover(self, w: float) -> float:
-        """Return a gain crossover to rounding, by Newton's method on log |L|."""
+        """Return a gain crossover to rounding, by Newton's method on log |L|: dead times are no part of it."""
+        num, den = self._coefficients
         for _ in range(3):
             at = complex(0.0, w)
-            slope = -complex(self.log_derivative(at)).imag
-            size = abs(complex(self(at)))
-            step = math.log(size) / slope if size and slope else 0.0
+            (n, n_slope), (d, d_slope) = horner_with_slope(num, at), horner_with_slope(den, at)
+            slope = (d_slope / d - n_slope / n).imag if n and d else 0.0
+            step = math.log(abs(n / d)) / slope if slope else 0.0
             w -= min(max(step, -0.5 * w), 0.5 * w)
             if abs(step) <= EPS * w:
                 break
@@ -230,15 +231,14 @@ class LoopTransfer:
         moduli = [*self.gain_stationary.tolist(), *np.abs(self.corner_frequencies).tolist()]
         return self._fall(max(moduli, default=1.0), level)
 
-    def _fall(self, start: float, level: float, ahead: ArrayLike = 1.0) -> float:
-        """Return a frequency w from which on |L| is below a level, as seen at ``ahead`` times w."""
-        ahead = np.asarray(ahead)
+    def _fall(self, start: float, level: float, ahead: Array | None = None) -> float:
+        """Return a frequency w from which on |L| is below a level, as seen at w, or at ``ahead`` times w."""
         w = start * (1.0 + JUST_BEYOND)
         for _ in range(400):
-            gain = np.abs(self(1j * w * ahead))
-            if np.all(gain < level):
+            gain = float(np.abs(self(complex(0.0, w) if ahead is None else 1j * w * ahead)).max())
+            if gain < level:
                 return float(w)
-            if np.isnan(gain).any():
+            if math.isnan(gain):
                 msg = "the plant's function is not finite at high frequency: write it so that it does not overflow"
                 raise LoopError(msg)
             w *= 1.5

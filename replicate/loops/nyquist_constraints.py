@@ -16,7 +16,7 @@ Reference: Panagopoulos, thesis (2000), supplement to paper II, (1) to (5).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import factorial
+from math import comb, factorial
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -112,6 +112,35 @@ class LoopJet:
         inner = -(np.conj(self.phi[1]) * loop[2] + np.conj(loop[1]) * self.phi[2]).imag
         shrink = 3.0 * (np.conj(loop[1]) * self.phi[1]).real / speed**2
         return value - margin, (inner / speed**3 - value * shrink).T
+
+    def forms(self, kind: Kind, circle: Circle, order: int = 0) -> Array:
+        """Return the symmetric matrices of the constraint without margin, and their derivatives with respect to w.
+
+        With them and X = (1, k, ki, kd), X M X is the constraint's value times the positive number that makes it
+        dimensionless, `scales`. Shape (order + 1, 4, 4, n); the basis must be of an order higher by one for ``phase``,
+        by two for ``curvature``.
+        """
+        if kind == "sensitivity":
+            first = second = np.zeros((order + 1, 4, self.w.size), dtype=complex)
+            first[0, 0], first[:, 1:] = circle.center, self.phi[: order + 1]
+        else:
+            n = 0 if kind == "phase" else 1
+            first, second = (np.zeros((order + 1, 4, self.w.size), dtype=complex) for _ in range(2))
+            first[:, 1:], second[:, 1:] = self.phi[n : n + order + 1], 1j * self.phi[n + 1 : n + order + 2]
+        matrices = np.empty((order + 1, 4, 4, self.w.size))
+        for n in range(order + 1):
+            products = [comb(n, j) * first[j][:, None] * np.conj(second[n - j]) for j in range(n + 1)]
+            whole = sum(products).real
+            matrices[n] = whole if first is second else 0.5 * (whole + np.swapaxes(whole, 0, 1))
+        if kind == "sensitivity":
+            matrices[0, 0, 0] -= circle.radius**2
+        return matrices
+
+    def scales(self, kind: Kind, circle: Circle, x: Array) -> Array:
+        """Return what the constraint's value is divided by to be dimensionless, shape (n,)."""
+        if kind == "sensitivity":
+            return np.full(self.w.size, circle.radius**2)
+        return np.asarray(np.abs(x @ self.phi[0]) ** 2 / self.w if kind == "phase" else np.abs(x @ self.phi[1]) ** 3)
 
     def slopes(self, kind: Kind, circle: Circle, x: Array) -> Array:
         """Return w times the derivative of the constraint's value in w, shape (n,); the basis must be of order 3."""

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from replicate.loops.circles import Circle
 from replicate.loops.gaps import Gaps
-from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 GAIN_POINTS = 96
 TOGETHER = 44  # gains looked at together
@@ -34,9 +34,8 @@ class Maximum:
     open_end: tuple[float, float] | None  # (k, ki) in a connected gap without upper end: ki may grow on there
 
 
-def local_maxima(plant: Plant, circle: Circle, w: Array) -> list[Maximum]:
-    """Return the local maxima of ki over k on the grid of frequencies ``w``; stability is not looked at."""
-    value = plant(1j * w)
+def local_maxima(value: ComplexArray, circle: Circle, w: Array) -> list[Maximum]:
+    """Return the local maxima of ki over k for a plant's values at frequencies ``w``; stability is not looked at."""
     r, phase = np.abs(value), np.angle(value)
     c, s = circle.center * np.cos(phase), circle.center * np.sin(phase)
     gains = _gain_grid(np.concatenate([-c / r, (-c - circle.radius) / r, (-c + circle.radius) / r]), r)
@@ -74,7 +73,8 @@ def _forbidden(across: Array, s: Array, scale: Array, radius: float) -> tuple[Ar
 
 def _gain_grid(loci: Array, r: Array) -> Array:
     """Return gains dense where the vertices of the ellipses are, on an asinh scale."""
-    unit = 0.01 / float(np.exp(np.median(np.log(r[: max(1, r.size // 2)]))))
+    half = r[: max(1, r.size // 2)]
+    unit = 0.01 / float(np.sort(half)[half.size // 2])
     finite = loci[np.isfinite(loci) & (np.abs(loci) < 1e8 * unit)]
     mapped = np.unique(np.arcsinh(finite / unit))
     even = np.linspace(mapped[0], mapped[-1], GAIN_POINTS // 2)

@@ -8,26 +8,32 @@ Reference: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import root
 
 from replicate.loops.bracketed import bracketed_root
 from replicate.loops.circles import Circle
+from replicate.loops.jets import value_and_slope
 from replicate.loops.pi_result import PIDesign
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 
 def smooth_condition(plant: Plant, circle: Circle, w: Array) -> Array:
     """Evaluate h(w) / (2 R) of (18); a smooth optimum is a root of it."""
-    value = plant(1j * w)
-    direction = value / np.abs(value)  # cos phi + i sin phi
-    slope = 1j * plant.log_derivative(1j * w)  # d log G / d w = r'/r + i phi'
+    return np.asarray(_condition(circle, w, plant(1j * w), 1j * plant.log_derivative(1j * w)))
+
+
+def _condition(circle: Circle, w: Any, value: Any, slope: Any) -> Any:
+    """Return h(w) / (2 R) from G(i w) and d log G / d w = r'/r + i phi', numbers or arrays."""
+    direction = value / abs(value)  # cos phi + i sin phi
     radius, center = circle.radius, circle.center
-    h = (radius + center * direction.imag) * (slope.real - 1.0 / w) - center * slope.imag * direction.real
-    return np.asarray(h)
+    return (radius + center * direction.imag) * (slope.real - 1.0 / w) - center * slope.imag * direction.real
 
 
 def smooth_gains(plant: Plant, circle: Circle, w: float) -> tuple[float, float]:
@@ -37,25 +43,30 @@ def smooth_gains(plant: Plant, circle: Circle, w: float) -> tuple[float, float]:
     return -circle.center * direction.real / r, -w / r * (circle.center * direction.imag + circle.radius)
 
 
-def smooth_optimum(plant: Plant, circle: Circle, w: Array, near: float) -> PIDesign | None:
-    """Return the optimum that touches the circle once, at the maximum of the lower vertex closest to ``near``."""
-    h = smooth_condition(plant, circle, w)
+def smooth_optimum(plant: Plant, circle: Circle, w: Array, h: Array, near: float) -> PIDesign | None:
+    """Return the optimum that touches the circle once, at the maximum of the lower vertex closest to ``near``.
+
+    ``h`` is the smooth condition on the frequencies ``w``.
+    """
     changes = np.nonzero((h[:-1] > 0.0) & (h[1:] < 0.0))[0]
     if changes.size == 0:
         return None
     index = changes[np.argmin(np.abs(np.log(w[changes] / near)))]
 
     def condition(x: float) -> float:
-        return float(smooth_condition(plant, circle, np.array(x)))
+        return float(_condition(circle, x, *value_and_slope(plant, x)))
 
     frequency = bracketed_root(condition, w[index], w[index + 1])
     k, ki = smooth_gains(plant, circle, frequency)
     return PIDesign(k, ki, float("nan"), frequency, (frequency,), "smooth", "optimal")
 
 
-def closest_frequencies(plant: Plant, circle: Circle, w: Array, k: float, ki: float) -> tuple[float, float]:
-    """Return the two frequencies at which the Nyquist curve comes closest to the circle's center, ascending."""
-    distance = np.abs(circle.center + (k - 1j * ki / w) * plant(1j * w))
+def closest_frequencies(value: ComplexArray, circle: Circle, w: Array, k: float, ki: float) -> tuple[float, float]:
+    """Return the two frequencies at which the Nyquist curve comes closest to the circle's center, ascending.
+
+    ``value`` is G on the frequencies ``w``.
+    """
+    distance = np.abs(circle.center + (k - 1j * ki / w) * value)
     inner = np.nonzero((distance[1:-1] <= distance[:-2]) & (distance[1:-1] <= distance[2:]))[0] + 1
     closest = np.sort(inner[np.argsort(distance[inner])][:2])
     return (float(w[closest[0]]), float(w[closest[-1]])) if closest.size else (0.0, 0.0)
@@ -71,12 +82,11 @@ def corner_optimum(plant: Plant, circle: Circle, k: float, ki: float, w1: float,
         gain, integral, *frequencies = x * scale
         result = []
         for frequency in frequencies:
-            s = 1j * frequency
-            controller = gain + integral / s
-            value = controller * complex(plant(s))
-            slope = 1j * value * (complex(plant.log_derivative(s)) - integral / (s**2 * controller))
+            plant_value, plant_slope = value_and_slope(plant, frequency)
+            value = (gain - 1j * integral / frequency) * plant_value
+            slope = plant_slope * value + 1j * integral / frequency**2 * plant_value
             offset = circle.center + value
-            result += [abs(offset) ** 2 / circle.radius**2 - 1.0, frequency * (np.conj(offset) * slope).real]
+            result += [abs(offset) ** 2 / circle.radius**2 - 1.0, frequency * (offset.conjugate() * slope).real]
         return np.array(result)
 
     with np.errstate(all="ignore"):  # a start that is not a corner may wander off; the residual tells

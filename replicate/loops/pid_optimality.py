@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import nnls, root
+from scipy.optimize import nnls
 
 from replicate.loops.circles import Circle
 from replicate.loops.controller import PID
@@ -17,6 +17,7 @@ from replicate.loops.errors import LoopError
 from replicate.loops.frequency_grids import design_grid
 from replicate.loops.loop import Loop
 from replicate.loops.nyquist_constraints import Constraint, LoopJet
+from replicate.loops.pid_newton import OptimalitySystem, Touch
 from replicate.loops.pid_result import ActiveConstraint, PIDDesign, Status
 from replicate.loops.plant import Plant
 from replicate.loops.setpoint_weights import pid_setpoint_weight
@@ -26,7 +27,6 @@ Array = NDArray[np.float64]
 NEARLY = 1e-5  # violation that a point found on the grid may have between its grid frequencies
 TOUCHING_FIRST = 100.0  # weight of a constraint's value against its gradient when the active ones are chosen
 LOST = 0.02  # of ki, between a point on the grid and the optimum near it
-MOST_EVALUATIONS = 500  # of the optimality system: from a good start it converges in a few dozen
 FEASIBLE = 2e-9
 ZOOMS, FINER = 5, np.linspace(0.0, 1.0, 17)  # steps and points between two frequencies in which a minimum is found
 SAME_TOUCH = 0.06  # touches closer than this relative distance in frequency are one
@@ -141,44 +141,17 @@ class GridProblem:
     def _newton(self, x: Array, active: list[ActiveConstraint]) -> tuple[Array, tuple[ActiveConstraint, ...]] | None:
         """Solve the optimality system from a grid optimum; unknowns are gains, touching frequencies and multipliers."""
         size = np.array([max(abs(x[0]), 1e-6 * x[1]), x[1], max(abs(x[2]), 1e-6 * x[1])])
-        kinds = [next(c for c in self.constraints if c.kind == part.kind) for part in active]
-        fixed = [part.frequency in (kind.low, kind.high) for part, kind in zip(active, kinds, strict=True)]
-        touches = np.array([part.frequency for part in active])
-        finite = np.where(np.isinf(touches), 1.0, touches)
-        start = np.concatenate([x / size, np.zeros(len(active)), [part.multiplier for part in active]])
-
-        def equations(z: Array) -> Array:
-            gains = z[:3] * size
-            logs, multipliers = z[3 : 3 + len(active)], z[3 + len(active) :]
-            jet = LoopJet.of(self.plant, finite * np.exp(logs), order=3)
-            balance = np.array([0.0, 1.0, 0.0])  # gradient of ki, in scaled gains
-            rows = []
-            for n, (kind, at_end) in enumerate(zip(kinds, fixed, strict=True)):
-                if np.isinf(touches[n]):
-                    value_at_edge, gradient_at_edge = self.at_infinity(gains)
-                    balance = balance + multipliers[n] * gradient_at_edge * size
-                    rows += [value_at_edge, logs[n]]
-                    continue
-                one = LoopJet(jet.w[n : n + 1], jet.phi[:, :, n : n + 1])
-                value, gradient = one.values(kind.kind, self.circle, gains, kind.margin)
-                balance = balance + multipliers[n] * gradient[0] * size
-                rows += [value[0], logs[n] if at_end else one.slopes(kind.kind, self.circle, gains)[0]]
-            return np.concatenate([balance, rows])
-
-        with np.errstate(all="ignore"):
-            solution = root(  # type: ignore[call-overload]  # as above
-                equations, start, method="hybr", options={"xtol": 1e-14, "maxfev": MOST_EVALUATIONS}
-            )
-        if not np.max(np.abs(solution.fun)) < 1e-9:
+        by_kind = {constraint.kind: constraint for constraint in self.constraints}
+        touches = [Touch(by_kind[part.kind], part.frequency, part.multiplier) for part in active]
+        found = OptimalitySystem(self.plant, self.circle, self.edge, touches, size).solved(x)
+        if found is None:
             return None
-        gains = solution.x[:3] * size
-        frequencies = [part.frequency * float(np.exp(s)) for part, s in zip(active, solution.x[3:], strict=False)]
-        multipliers = solution.x[3 + len(active) :] * size[1] / gains[1]  # relative to the ki that was found
+        gains, frequencies, multipliers = found
         if np.any(multipliers <= 0.0) or not 0.5 < gains[1] / x[1] < 2.0:
             return None
         parts = [
-            ActiveConstraint(part.kind, w, float(m))
-            for part, w, m in zip(active, frequencies, multipliers, strict=True)
+            ActiveConstraint(part.kind, w, m / float(gains[1]))  # relative to the ki that was found
+            for part, w, m in zip(active, frequencies.tolist(), multipliers.tolist(), strict=True)
         ]
         order = {"sensitivity": 0, "curvature": 1, "phase": 2}
         return gains, tuple(sorted(parts, key=lambda p: (order[p.kind], p.frequency)))

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from replicate.loops.controller import PID
 from replicate.loops.nyquist_constraints import Kind
 
@@ -63,6 +66,11 @@ class PIDDesign:
         """The status as a sentence."""
         lifted = LIFTED if self.shaped and self.status == "no-controller" else ""
         return MESSAGES[self.status] + lifted
+
+    @property
+    def gains(self) -> NDArray[np.float64]:
+        """The gains (k, ki, kd)."""
+        return np.array([self.k, self.ki, self.kd])
 
     @property
     def integral_time(self) -> float:

@@ -28,7 +28,8 @@ MOST_MAPS, LARGER = 3, 10.0  # how often, and by how much, a map is made larger
 DENSITIES = (1, 3)  # of the map, and of the one that is made if the first shows nothing
 THIN, VALLEY = 3, 2  # every third frequency is seen by a search, and these on each side of a valley
 ROUNDS = 3  # how often a search sees more
-SAME = 1e-4  # relative difference of gains below which two searches have found the same point
+ROUGH = 1e-2  # violation that a point may have from which the optimality conditions are met
+NEAR, SAME = 3e-2, 1e-4  # relative difference of gains from an optimum, or another point, to which a search led again
 SUMMITS = 4  # starts taken from the map of feasible gains
 RUNAWAY = 1e5  # gains this many times the start's: the search has left the problem
 
@@ -38,6 +39,7 @@ class Search:
 
     def __init__(self, problem: GridProblem) -> None:
         self.problem = problem
+        self._found: list[tuple[Array, float, PIDDesign | None]] = []
         self._seen = [np.arange(grid.w.size) % THIN == 0 for grid in problem.grids]
 
     @cached_property
@@ -89,7 +91,6 @@ class Search:
         Two that agree settle it, if no summit is left that is higher.
         """
         best: PIDDesign | None = None
-        self._finished: list[tuple[Array, PIDDesign | None]] = []
         left = list(heights)
         for where in [*heights[:1], *starts[:1], *heights[1:], *starts[1:]]:
             if isinstance(where, Summit):
@@ -123,34 +124,43 @@ class Search:
         return found
 
     def climbed(self, x: Array) -> PIDDesign | None:
-        """Return the design to which a search from gains ``x`` leads."""
-        point = self.climb(x)
-        if point is None:
-            return None
-        for known, design in self._finished:
-            if np.all(np.abs(point - known) <= SAME * np.abs(known)) and point[1] <= known[1] * (1.0 + SAME**2):
-                return design
-        design = self.problem.finish(point)
-        self._finished.append((point, design))
-        return design
+        """Return the design to which a search from gains ``x`` leads.
 
-    def climb(self, x: Array) -> Array | None:
-        """Search again from what was found until ki no longer grows: a single run may stop short on a ridge."""
+        Where a rough search meets the optimality conditions, that is it. Else searches follow until ki no longer grows:
+        a single one may stop short on a ridge.
+        """
+        rough = self._search(x, ROUGH)
+        design = None if rough is None else self._finished(rough)
+        if design is not None and design.status == "optimal":
+            return design
         best: Array | None = None
-        first = x[1]
         for shrink in (1.0, 0.6, 1.0, 1.0, 1.0):
-            found = self._search(x * np.array([1.0, shrink, 1.0]))
+            found = self._search((x if best is None else best) * np.array([1.0, shrink, 1.0]), NEARLY)
             if found is None:
+                if best is None and shrink < 1.0:
+                    return None
                 continue
             if best is not None and found[1] <= best[1] * (1.0 + 1e-6):
                 break
-            if found[1] > RUNAWAY * first:
+            if found[1] > RUNAWAY * x[1]:
                 return None
-            best = x = found
-        return best
+            best = found
+        return None if best is None else self._finished(best)
 
-    def _search(self, x: Array) -> Array | None:
-        """Return a local maximum on the grid, or None if the search ends infeasible.
+    def _finished(self, point: Array) -> PIDDesign | None:
+        """Return the design near a point of the grid; of one that another search has found, what is known."""
+        for at, reach, known in self._found:
+            if np.all(np.abs(point - at) <= reach * np.abs(at)):
+                return known
+        design = self.problem.finish(point)
+        if design is not None and design.status == "optimal":
+            self._found.append((design.gains, NEAR, design))
+        else:
+            self._found.append((point, SAME, design))
+        return design
+
+    def _search(self, x: Array, tolerance: float) -> Array | None:
+        """Return a local maximum on the grid to a tolerance, or None if the search ends infeasible.
 
         Few frequencies limit a design: the search sees every third one and the valleys of the constraints, and those
         that turn out to be violated.
@@ -162,11 +172,13 @@ class Search:
             found = self._climbed(point, grids)
             if found is None:
                 break
-            if self._lowest(found) >= -NEARLY:
+            if self._lowest(found) >= -tolerance:
                 return found
             point = found
+        if tolerance > NEARLY:
+            return None
         found = self._climbed(x, self.problem.grids)
-        return None if found is None or self._lowest(found) < -NEARLY else found
+        return None if found is None or self._lowest(found) < -tolerance else found
 
     def _lowest(self, x: Array) -> float:
         return min(float(self.problem.values(i, x)[0].min()) for i in range(len(self.problem.grids)))

@@ -19,7 +19,7 @@ from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
 from replicate.loops.function_resonances import NARROW
 from replicate.loops.plant_views import PlantViews
-from replicate.loops.polynomials import horner, horner_with_slope, taylor
+from replicate.loops.polynomials import horner, horner_with_slope, roots_of, taylor
 from replicate.loops.set_once import SetOnce
 
 if TYPE_CHECKING:
@@ -215,7 +215,7 @@ class Plant(PlantViews, SetOnce):
     @property
     def integrators(self) -> int:
         """The number of poles at s = 0 (0 for plants given by a function)."""
-        return int(self.den.size - np.trim_zeros(self.den, "b").size)
+        return next(n for n, c in enumerate(reversed(self.den.tolist())) if c)
 
     @property
     def gain(self) -> float:
@@ -238,8 +238,7 @@ class Plant(PlantViews, SetOnce):
     @cached_property
     def _roots(self) -> tuple[ComplexArray, ComplexArray]:
         """Poles and zeros."""
-        poles, zeros = (np.asarray(np.roots(part), dtype=complex) for part in (self.den, self.num))
-        return poles, zeros
+        return roots_of(self.den), roots_of(self.num)
 
     @property
     def resonances(self) -> ComplexArray:

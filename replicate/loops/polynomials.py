@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
+
+TINY, HUGE = 1e-280, 1e280  # between which the discriminant of a quadratic keeps all its digits
 
 
 def trimmed(polynomial: Array) -> Array:
@@ -35,9 +38,10 @@ def roots_of(polynomial: Array) -> ComplexArray:
         return np.array([-polynomial[1] / polynomial[0]], dtype=complex)
     if degree == 2:
         a, b, c = polynomial.tolist()
-        root = cmath.sqrt(b * b - 4.0 * a * c)
-        large = -0.5 * (b + root if b >= 0.0 else b - root)
-        return np.array([large / a, c / large if large else 0.0], dtype=complex)
+        if TINY < b * b + abs(a * c) < HUGE:
+            root = cmath.sqrt(b * b - 4.0 * a * c)
+            large = -0.5 * (b + root if b >= 0.0 else b - root)
+            return np.array([large / a, c / large], dtype=complex)
     return np.asarray(np.roots(polynomial), dtype=complex)
 
 
@@ -103,5 +107,11 @@ def squared_magnitude(polynomial: Array) -> Array:
     """Return the coefficients in x = w^2 of |p(i w)|^2."""
     if polynomial.size == 0:
         return np.zeros(1)
-    signs = 1.0 - 2.0 * (np.arange(polynomial.size - 1, -1, -1) % 2)
+    signs = _signs(polynomial.size)
     return product(polynomial, polynomial * signs)[::2] * signs  # p(s) p(-s), even in s
+
+
+@cache
+def _signs(size: int) -> Array:
+    """Return the signs of the powers of s, descending, at s = -1."""
+    return np.asarray(1.0 - 2.0 * (np.arange(size - 1, -1, -1) % 2))

@@ -21,6 +21,7 @@ from replicate.loops.peaks import FrequencyPeak
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+LOW_GAIN = 0.75  # share of the way down from |L| = 1 to its limit, beyond which few loops have their peak
 STEEP = 10.0  # times what a peak stands above its neighbours on the grid: more than polishing adds to it
 TIE = 1e-9  # a design at two tangencies makes two peaks equal to within its own convergence
 
@@ -77,7 +78,7 @@ def _peak(transfer: LoopTransfer, poles: ComplexArray, kind: _Kind) -> Frequency
         return FrequencyPeak(kind.bound(0.0), 0.0)
     if transfer.feedthrough and transfer.is_polynomial:
         return _rational_peak(transfer, poles, kind)
-    end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
+    end = transfer.beyond(1.0 - LOW_GAIN * (1.0 - transfer.feedthrough))
     best = _highest_on(transfer, kind, *_curve(transfer, poles, end))
     # Extend the band until the bound on the rest is below the best peak, or the limit at infinity is the supremum.
     limit = kind.bound(transfer.feedthrough)
