@@ -29,6 +29,7 @@ from replicate.loops.plant import Plant
 from replicate.loops.units import Units
 
 DERIVATIVE_STARTS = (0.0, 0.3, 0.8, 1.8)  # kd of the starts, in units of k / (frequency of the PI design)
+MODEST = 1.0 / 3.0  # of the gain that makes a loop oscillate
 CAUTIOUS = 0.1  # ki of the second round of starts, in units of that of the first
 
 
@@ -180,6 +181,23 @@ def _constraint(item: Constraint | str, low: float, high: float) -> Constraint:
     return Constraint("curvature" if item == "curvature" else "phase", low, high)
 
 
+def _cancelling(plant: Plant) -> list[tuple[float, float, float]]:
+    """Return gains whose zeros lie on a pair of the plant's poles, a third of what makes the loop oscillate.
+
+    Around a lightly damped pair the feasible gains are a needle that begins there, too thin for a map to show.
+    """
+    w = design_grid(plant)
+    starts = []
+    for pole in plant.poles():
+        if pole.imag > 0.0 > pole.real:
+            k, ki = -2.0 * pole.real, abs(pole) ** 2
+            value = (k + ki / (1j * w) + 1j * w) * plant(1j * w)
+            turned = np.nonzero((value.imag[:-1] < 0.0) & (value.imag[1:] >= 0.0) & (value.real[1:] < 0.0))[0]
+            kd = MODEST / abs(value[turned[0] if turned.size else np.argmax(w > abs(pole))])
+            starts.append((float(k * kd), float(ki * kd), float(kd)))
+    return starts
+
+
 def _starts(
     plant: Plant, k: float, ki: float, frequency: float, start: tuple[float, float, float] | None
 ) -> tuple[list[tuple[float, float, float]], float, float]:
@@ -190,7 +208,7 @@ def _starts(
         k = 1.0 / float(abs(complex(plant(1j * frequency))))
         ki = 0.1 * k * frequency
     size = max(abs(k), 0.2 * ki / frequency)
-    starts = [] if start is None else [start]
+    starts = [*([] if start is None else [start]), *_cancelling(plant)]
     first, *rest = [(k, ki, share * size / frequency) for share in DERIVATIVE_STARTS]
     # a loop that lives on its derivative action is far from the PI design; severe constraints can push the optimum
     # there

@@ -28,11 +28,12 @@ GAINS = np.concatenate([[-1.0, -0.3, -0.1, -0.03, 0.0], np.geomspace(0.01, 0.3, 
 DERIVATIVES = np.concatenate([[-0.3, -0.1, 0.0], np.geomspace(0.03, 0.3, 4), np.geomspace(0.42, 60.0, 16)])
 EDGE = 1.0 - 1e-9
 NO_GAP = 1e-9  # relative width below which a gap is none
-TOGETHER = 6  # proportional gains looked at together
+TOGETHER = 7  # proportional gains looked at together
 FREQUENCIES = 160  # of each constraint, on the map
 
 ZOOM = np.linspace(-1.0, 1.0, 7)  # the window of an ascent, in units of its half-width
 WIDEST, NARROWEST = 0.3, 1e-5  # half-width of the window, relative to the gains
+MOST_WINDOWS = 80
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ def summits(
     """
     k, kd = gain * _denser(GAINS, density), gain / frequency * _denser(DERIVATIVES, density)
     kd = np.unique(np.clip(kd, -largest_kd, largest_kd))
-    gaps = _gaps([(kind, _thinned(jet)) for kind, jet in jets], circle, k, kd)
+    gaps = _gaps([_Quadratics.of(kind, _thinned(jet), circle) for kind, jet in jets], k, kd)
     found = [
         Summit(float(k[i]), gap.top, float(kd[j]), 0.5 * (gap.bottom + gap.top), (gain, gain / frequency))
         for (i, j), gap, _ in gaps.maxima()
@@ -104,14 +105,17 @@ def ascend(
     slack
         Relative distance that is kept from the constraints; more than they can dip between the frequencies of ``jets``.
     """
+    quadratics = [_Quadratics.of(kind, jet, circle, slack) for kind, jet in jets]
     best, width = start, WIDEST
-    while width > NARROWEST:
+    for _ in range(MOST_WINDOWS):
+        if width <= NARROWEST:
+            break
         k = best.k + width * max(abs(best.k), 0.1 * start.reach[0]) * ZOOM
         kd = best.kd + width * max(abs(best.kd), 0.1 * start.reach[1]) * ZOOM
         kd = np.clip(kd, -largest_kd, largest_kd)
         connected = [
             Summit(float(k[i]), gap.top, float(kd[j]), 0.5 * (max(gap.bottom, 0.5 * gap.top) + gap.top), start.reach)
-            for (i, j), gap in _gaps(jets, circle, k, kd, slack)
+            for (i, j), gap in _gaps(quadratics, k, kd)
             if gap.bottom < best.inside < gap.top
         ]
         highest = max(connected, key=lambda s: s.ki, default=best)
@@ -127,9 +131,8 @@ def _thinned(jet: LoopJet) -> LoopJet:
     return LoopJet(jet.w[::step], jet.phi[:, :, ::step])
 
 
-def _gaps(jets: Sequence[tuple[Kind, LoopJet]], circle: Circle, k: Array, kd: Array, slack: float = 0.0) -> Gaps:
+def _gaps(quadratics: Sequence[_Quadratics], k: Array, kd: Array) -> Gaps:
     """Return the gaps of ki at the indices (i, j) of k and kd."""
-    quadratics = [_Quadratics.of(kind, jet, circle, slack) for kind, jet in jets]
     parts = (_forbidden(quadratics, k[i : i + TOGETHER], kd) for i in range(0, k.size, TOGETHER))
     return Gaps.between(parts, rounding=NO_GAP)
 
@@ -146,7 +149,7 @@ class _Quadratics:
     c: Array
 
     @classmethod
-    def of(cls, kind: Kind, jet: LoopJet, circle: Circle, slack: float) -> _Quadratics:
+    def of(cls, kind: Kind, jet: LoopJet, circle: Circle, slack: float = 0.0) -> _Quadratics:
         """Return a constraint's quadratics from its matrices, where it has to keep a distance ``slack`` from zero."""
         form = jet.forms(kind, circle)[0]
         if slack and kind == "sensitivity":
@@ -185,5 +188,7 @@ def _forbidden(quadratics: Sequence[_Quadratics], k: Array, kd: Array) -> tuple[
         if not up.all():  # a < 0: below the lower and above the upper one, or everywhere
             low += [np.where(up, np.inf, np.zeros_like(left)), np.where(real & ~up, np.maximum(right, 0.0), np.inf)]
             high += [np.where(up, -np.inf, np.where(real, left, np.inf)), np.where(real & ~up, np.inf, -np.inf)]
-    lows, highs = (np.concatenate(ends, axis=1).reshape(k.size, kd.size, -1) for ends in (low, high))
-    return lows, highs, np.arange(lows.shape[-1])
+    shape = (k.size, kd.size, -1)
+    lows, highs = np.concatenate(low, axis=1), np.concatenate(high, axis=1)
+    seen = np.nonzero(lows.min(axis=0) < np.inf)[0]
+    return lows[:, seen].reshape(shape), highs[:, seen].reshape(shape), seen

@@ -31,6 +31,7 @@ EPS = float(np.finfo(float).eps)
 ILL_POSED = 1e-12  # distance of an algebraic loop's gain from -1 that is rounding
 ON_AXIS = 1e-6  # imaginary part, relative to the real one, of a simple root that is real
 JUST_BEYOND = 1e-9  # relative distance from a corner
+MOST_STEPS, STEP = 400, 1.5  # on the way to where |L| is low
 LARGEST = 1e70  # of a coefficient: products of four of them must remain numbers
 
 
@@ -234,16 +235,20 @@ class LoopTransfer:
     def _fall(self, start: float, level: float, ahead: Array | None = None) -> float:
         """Return a frequency w from which on |L| is below a level, as seen at w, or at ``ahead`` times w."""
         w = start * (1.0 + JUST_BEYOND)
-        for _ in range(400):
+        for _ in range(MOST_STEPS):
             gain = float(np.abs(self(complex(0.0, w) if ahead is None else 1j * w * ahead)).max())
             if gain < level:
                 return float(w)
             if math.isnan(gain):
                 msg = "the plant's function is not finite at high frequency: write it so that it does not overflow"
                 raise LoopError(msg)
-            w *= 1.5
-        msg = f"the loop gain does not fall below {level:g} at high frequency"
-        raise ImproperLoopError(msg)
+            w *= STEP
+        raise never_falls(level)
+
+
+def never_falls(level: float) -> ImproperLoopError:
+    """Return the error of a loop whose gain stays above a level."""
+    return ImproperLoopError(f"the loop gain does not fall below {level:g} at high frequency")
 
 
 def _computable(coefficients: Array) -> Array:

@@ -13,7 +13,15 @@ from replicate.loops.bracketed import bracketed_root
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_grids import loop_grid
 from replicate.loops.function_plant import FunctionPlant
-from replicate.loops.loop_transfer import ILL_POSED, JUST_BEYOND, LoopTransfer, stationary_frequencies
+from replicate.loops.loop_transfer import (
+    ILL_POSED,
+    JUST_BEYOND,
+    MOST_STEPS,
+    STEP,
+    LoopTransfer,
+    never_falls,
+    stationary_frequencies,
+)
 from replicate.loops.sum_plant import SumPlant
 
 Array = NDArray[np.float64]
@@ -96,6 +104,10 @@ class FunctionTransfer(LoopTransfer):
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which |L(i w)| is taken to stay below ``level``: checked over eight octaves."""
         start = max([self.plant.corners[0], *np.abs(self.corner_frequencies).tolist()])
+        with np.errstate(all="ignore"):
+            gain_at_last = abs(complex(self(1j * start * STEP**MOST_STEPS)))
+        if level <= gain_at_last < np.inf:
+            raise never_falls(level)  # what it tends to is seen at once; the way there would be long
         return self._fall(start, level, AHEAD)
 
 

@@ -26,6 +26,8 @@ Array = NDArray[np.float64]
 
 MOST_STEPS, HALVINGS = 30, 8
 SOLVED = 1e-9  # largest residual of a solution
+COUNTS = 1e-9  # multiplier of a constraint that holds something back
+FLAT = 1e-6  # curvature of ki, relative to what the constraints bend, that is none
 CONVERGED = 1e-13  # size of the residual from which on a step is made of rounding
 
 
@@ -67,7 +69,7 @@ class OptimalitySystem:
     size: Array
 
     def solved(self, gains: Array) -> tuple[Array, Array, Array] | None:
-        """Return gains, frequencies and multipliers of the solution near some gains; None if there is none.
+        """Return gains, frequencies and multipliers of the maximum near some gains; None if there is none.
 
         Multipliers are the growth of ki per unit by which a dimensionless constraint is relaxed.
         """
@@ -75,8 +77,8 @@ class OptimalitySystem:
         scales = self._scales(LoopJet.of(self.plant, first), gains)
         z = np.concatenate([gains / self.size, np.zeros(count), [touch.multiplier for touch in self.touches]])
         with np.errstate(all="ignore"):  # a start that leads nowhere may wander off; the residual tells
-            z, residual = _newton(lambda z: self._equations(z, scales), z)
-        if not residual <= SOLVED:
+            z, residual, jacobian = _newton(lambda z: self._equations(z, scales), z)
+        if not np.max(np.abs(residual)) <= SOLVED or not _is_maximum(z[3 + count :], jacobian):
             return None
         gains, frequencies = z[:3] * self.size, first * np.exp(z[3 : 3 + count])
         relative = self._scales(LoopJet.of(self.plant, frequencies), gains) / scales
@@ -154,8 +156,8 @@ def _of_form(matrices: Array, gains: Array) -> tuple[float, Array, Array]:
     return float(whole[0]), np.append(2.0 * rows[0, 1:], whole[1]), bend
 
 
-def _newton(equations: Callable[[Array], tuple[Array, Array]], z: Array) -> tuple[Array, float]:
-    """Return where Newton's method with halved steps ends, and the largest residual there."""
+def _newton(equations: Callable[[Array], tuple[Array, Array]], z: Array) -> tuple[Array, Array, Array]:
+    """Return where Newton's method with halved steps ends, and residual and Jacobian there."""
     residual, jacobian = equations(z)
     for _ in range(MOST_STEPS):
         size = float(np.linalg.norm(residual))
@@ -173,4 +175,16 @@ def _newton(equations: Callable[[Array], tuple[Array, Array]], z: Array) -> tupl
         else:  # at rounding level, or lost
             break
         z, residual, jacobian = z + step, following, slopes
-    return z, float(np.max(np.abs(residual)))
+    return z, residual, jacobian
+
+
+def _is_maximum(multipliers: Array, jacobian: Array) -> bool:
+    """Say whether ki falls in all directions along which the constraints that count touch on: no saddle."""
+    count = multipliers.size
+    bend, turn = jacobian[:3, :3].copy(), jacobian[3 : 3 + count]
+    for n in range(count):  # the touching frequencies move along
+        bend -= np.outer(jacobian[:3, 3 + n], turn[n, :3]) / turn[n, 3 + n]
+    held = jacobian[3 + count :, :3][multipliers > COUNTS]
+    free = np.linalg.svd(held)[2][held.shape[0] :]
+    largest = np.max(np.linalg.eigvalsh(free @ bend @ free.T), initial=0.0)
+    return bool(largest <= FLAT * np.abs(bend).max())

@@ -171,7 +171,7 @@ class Search:
             grids = [grid.at(part) for grid, part in zip(self.problem.grids, self._seen, strict=True)]
             found = self._climbed(point, grids)
             if found is None:
-                break
+                return None
             if self._lowest(found) >= -tolerance:
                 return found
             point = found
