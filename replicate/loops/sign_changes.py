@@ -30,7 +30,7 @@ def ups_and_downs(slopes: Array, integrals: Array, scales: Array | float = 1.0) 
     low, high, slack = samples.min(axis=1), samples.max(axis=1), MARGIN * np.ptp(samples, axis=1)
     sizes = np.maximum(high, -low) * scales
     # what all small pieces together add is below rounding
-    counts = sizes > NEGLIGIBLE / sizes.size * np.sum(sizes)
+    counts = sizes * sizes.size > NEGLIGIBLE * np.sum(sizes)
     signed = (low - slack < 0.0) & (high + slack > 0.0) & counts
     pieces = np.nonzero(signed)[0]
     owners, roots = _zeros(slopes, samples, pieces)

@@ -318,6 +318,11 @@ def test_extrema_and_crossings_of_waves(wave: Wave, level: float) -> None:
     assert y.crossings(level).size == np.count_nonzero(chain[1:] != chain[:-1])
 
 
+def test_a_signal_at_rest_has_no_integrals() -> None:
+    y = Signal(np.array([0.0, 1.0, 3.0]), np.array([[1.0, 0.0], [1.0, 0.0]]), final=1.0)
+    assert (y.iae(), y.itae(), y.ise(), y.ie()) == (0.0, 0.0, 0.0, 0.0)
+
+
 @settings(max_examples=60)
 @given(waves())
 def test_integrals_of_waves(wave: Wave) -> None:
