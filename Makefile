@@ -31,7 +31,7 @@ handouts: $(VENV)/.ready ## build the handouts of all papers, build/handouts/*.p
 test: $(VENV)/.developed ## run the tests and the examples in the docstrings: make test [ARGS=--cov]
 	@# Once, and not in each of the processes that the tests start, where Python is not to write what it compiles.
 	@$(BIN)/python -m compileall -q replicate
-	$(BIN)/python -m pytest -n auto --dist loadscope --durations=10 --durations-min=1 $(ARGS)
+	$(BIN)/python -m pytest -n auto --dist loadscope --no-loadscope-reorder --durations=10 --durations-min=1 $(ARGS)
 
 .PHONY: check
 check: $(VENV)/.ready ## every printed value holds or is explained, and nothing has moved

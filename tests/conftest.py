@@ -23,6 +23,33 @@ settings.load_profile("reproducible")
 
 Run = Callable[..., tuple[int, str, str]]
 
+#: Files whose tests take longest, by and large in that order. They are begun first, so that all processes end together;
+#: what reads the results of the papers comes well after what computes them, for which it would wait.
+LONGEST = (
+    "test_mutations.py",
+    "torture/test_kills.py",
+    "browser/test_whatif.py",
+    "test_handout.py",
+    "browser/test_report.py",
+    "loops/test_function_plants.py",
+    "test_examples.py",
+    "test_figure_scripts.py",
+    "test_guarded_code.py",
+    "test_units_that_leave.py",
+    "torture/test_units.py",
+    "loops/test_step_response.py",
+    "loops/test_design_pi.py",
+    "loops/test_design_pid.py",
+    "loops/test_metrics.py",
+    "test_figure_plugin.py",
+    "test_streams.py",
+    "test_cluster.py",
+    "test_figure_ci.py",
+    "loops/test_conformance.py",
+    "papers/test_krajewski_charts.py",
+    "test_cache.py",
+)
+
 
 @pytest.fixture(autouse=True, scope="session")
 def _own_cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
@@ -34,6 +61,13 @@ def _own_cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--torture", action="store_true", help="try every case of every attack, not a few of each kind")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the longest files first; ``--no-loadscope-reorder`` leaves them there."""
+    places = {Path(__file__).parent / name: place for place, name in enumerate(LONGEST)}
+    assert all(path.is_file() for path in places)
+    items.sort(key=lambda item: places.get(item.path, len(places)))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

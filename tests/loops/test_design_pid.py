@@ -74,6 +74,7 @@ class Search:
         low, high = self.span
         self.inner = np.linspace(low, min(high, 30.0 * corner), self.points)
         self.basis = self.jets(self.w)[:1], self.jets(self.inner)
+        self.whole = self.columns(np.concatenate([np.geomspace(1e-6, 1e-2, 40), np.linspace(1e-2, 7.0, 500)]))
 
     def plant(self, s: np.ndarray) -> np.ndarray:
         return np.polyval(self.num, s) / np.polyval(self.den, s) * np.exp(-s * self.dead_time)
@@ -159,8 +160,7 @@ class Search:
 
     def winds_once(self, k: float, ki: float, kd: float) -> bool:
         """Whether 1 + L turns by +90 degrees from rest to infinity, as for a stable loop with one integrator."""
-        w = np.concatenate([np.geomspace(1e-6, 1e-2, 40), np.linspace(1e-2, 7.0, 500)])
-        value = 1.0 + np.array([k, ki, kd]) @ self.columns(w)
+        value = 1.0 + np.array([k, ki, kd]) @ self.whole
         angle = np.unwrap(np.angle(value))
         # other counts differ by 180 degrees; a neutral loop keeps turning a little about the last value
         return bool(abs(angle[-1] - angle[0] - 0.5 * np.pi) < 0.8)
