@@ -116,6 +116,17 @@ def test_an_address_opens_a_card_with_and_without_script(report: Path, browser: 
         context.close()
 
 
+def test_no_card_covers_its_cell(report: Path, browser: Any) -> None:
+    with Sight(browser, report / "khan.html") as page:
+        for fragment in ("example-2-1.A2.value", "example-3-1.Haalman_ts.value", "table-2.ITAE.ph1_ts"):
+            page.goto(f"{(report / 'khan.html').as_uri()}#{fragment}")
+            page.evaluate(SETTLED)
+            cell, card = (page.locator(f"[id='{fragment}']{part}").bounding_box() for part in ("", " > .card"))
+            beside = cell["x"] + cell["width"] <= card["x"] + 1
+            assert beside or cell["y"] + cell["height"] <= card["y"] + 1, fragment
+            assert cell["y"] >= 0
+
+
 def test_two_clicks_lead_a_newcomer_to_what_is_wrong_in_a_table(report: Path, browser: Any) -> None:
     """From the overview: which numbers of Khan's Table II are wrong, why, by how much; and the address of one."""
     wrong = [
