@@ -203,7 +203,7 @@ def pytest_sessionfinish(session: pytest.Session) -> None:
 def pytest_terminal_summary(terminalreporter: Any, config: pytest.Config) -> None:
     """Say how many figures were compared; pytest calls it."""
     own = config.stash.get(KEY, None)
-    if own is None or hasattr(config, "workerinput") or not (own.suite.tests or own.compared):
+    if own is None or config.option.collectonly or not (own.suite.tests or own.compared):
         return
     for text, wrong in own.summary():
         terminalreporter.write_line(f"figures: {text}", red=wrong)
