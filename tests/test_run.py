@@ -145,11 +145,12 @@ def test_failures_are_not_kept(paper: Paper, tmp_path: Path, monkeypatch: pytest
         ("notes.md", True),
         ("slides.md", True),
         ("handout.de.md", True),
+        ("test_lab.py", True),
         ("exhibits.py", False),
         ("printed/table-1.csv", False),
     ],
 )
-def test_a_source_makes_results_stale_and_prose_does_not(
+def test_a_source_makes_results_stale_and_what_is_said_of_them_does_not(
     paper: Paper, folder: Path, tmp_path: Path, name: str, *, kept: bool
 ) -> None:
     computed(paper, tmp_path / "cache")

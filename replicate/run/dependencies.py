@@ -3,8 +3,8 @@
 A worker records what it has loaded when a unit is done:
 
 * the framework's own rooms, whole folders by content;
-* the paper's folder by content, without the prose that only judges or explains (``ledger.toml``, ``notes.md``,
-  ``handout.md``, ``handout.py``, ``slides.md``), so that editing prose recomputes nothing;
+* the paper's folder by content, without what only judges, explains or tries results (``ledger.toml``, ``notes.md``,
+  ``handout.md``, ``handout.py``, ``slides.md``, ``test_*.py``, ``conftest.py``), so that editing it recomputes nothing;
 * every other module that is not the standard library's: by content, or by the version of its distribution if it is
   an installed one;
 * the project file above the paper's folder, by what it says;
@@ -33,7 +33,8 @@ from replicate.run.project import project_text
 
 Dependencies = dict[str, dict[str, str]]
 
-_PROSE = re.compile(r"(ledger|notes|handout|slides)([-.]\w+)?\.(toml|md)|handout\.py")
+# Files of a paper that judge, explain or try its results.
+_ABOUT = re.compile(r"(ledger|notes|handout|slides)([-.]\w+)?\.(toml|md)|handout\.py|test_\w+\.py|conftest\.py")
 # Settings that choose the numerical kernels, and with them the last bits of a result.
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 _ROOT = __name__.split(".")[0]
@@ -164,7 +165,7 @@ class Looked:
         """Yield name and digest of a file, or of every file in a folder in alphabetical order."""
         if place.is_dir():
             for entry in sorted(place.iterdir(), key=lambda entry: entry.name):
-                if entry.name != "__pycache__" and not entry.name.startswith(".") and not _PROSE.fullmatch(entry.name):
+                if entry.name != "__pycache__" and not entry.name.startswith(".") and not _ABOUT.fullmatch(entry.name):
                     yield from self._contents(entry, f"{name}/{entry.name}".lstrip("/"))
         elif place.is_file():
             yield name, self._digest(place)
@@ -190,7 +191,7 @@ def first_difference(
 def _is_own(paper: Paper, module: str) -> bool:
     """Say whether a module's file counts with the paper's folder."""
     inside = module == paper.package or module.startswith(f"{paper.package}.")
-    return inside and not _PROSE.fullmatch(f"{module.rpartition('.')[2]}.py")
+    return inside and not _ABOUT.fullmatch(f"{module.rpartition('.')[2]}.py")
 
 
 def _said(group: str, name: str, before: str | None, now: str | None, paper: str) -> str:
