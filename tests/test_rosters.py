@@ -82,6 +82,8 @@ def test_a_roster_as_spreadsheets_save_it(tmp_path: Path, content: bytes) -> Non
             ["Lovelace, Ada", "Müller, Zoë"],
         ),
         ("Student,ID,Section\n    Points Possible,,\nAda,7,A\nAda,8,A\n", "ID", ["7", "8"]),
+        ("Student,ID\nAda,7\n    Points Possible,\nBob,8\n", "", ["Ada", "Bob"]),  # sorted by another program
+        ("Student,ID,,\nAda,7,,\n", "", ["Ada"]),
         # participants of a course of Moodle
         (
             "First name,Last name,Email address,Groups\nAda,L,a@x.org,\nAda,B,b@x.org,G\n",

@@ -108,6 +108,13 @@ def test_windup_by_small_steps_of_time(paper: str) -> None:
                 assert total == pytest.approx(found["integral"].value, rel=3e-3)
 
 
+def test_no_windup_in_which_the_forgotten_gain_does_not_show() -> None:
+    inputs = {"K": 2.0, "T": 4.5, "L": 0.5, "k": 3.9, "ki": 0.6, "U": 0.75}
+    assert math.isclose(2.0 * 0.75 / (2.0 * 0.75 - 1.0), 0.75 / (1.0 - 0.75))  # with the gain, and without
+    refused = [words for words, holds in variation("krajewski", "windup").requires.items() if not holds(inputs)]
+    assert refused == ["no mistake is accepted"]
+
+
 LOOPS = {
     "krajewski": lambda s, x: (x["b"] + x["a"] / s) * np.exp(-x["tau"] * s) / (1 + s),
     "panagopoulos": lambda s, x: (x["k"] + x["ki"] / s) / ((x["T"] * s + 1) * (s + 1) ** 2),

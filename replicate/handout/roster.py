@@ -18,7 +18,7 @@ _LONGEST = 150  # bytes of a name, so that its file's name fits any system
 _SHOWN = 60  # letters of a name in a message
 _RESERVED = {"key", "solutions", "slides"}  # files of other kinds have these names
 _INVISIBLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
-_NO_STUDENT = "Points Possible"  # in the line below the names of the columns in a gradebook of Canvas, in any language
+_NO_STUDENT = "Points Possible"  # in a line of a gradebook of Canvas, in any language
 _JOINERS = "\u200c\u200d"  # within words of some scripts, and between the parts of a pictograph
 
 
@@ -41,7 +41,7 @@ def read_roster(path: Path, column: str = "") -> list[str]:
     if column and column not in columns:
         msg = f"{path.name}: no column '{column}'; allowed: {', '.join(columns)}"
         raise ReplicateError(msg)
-    if columns.count(column) > 1:
+    if column and columns.count(column) > 1:
         msg = f"{path.name}: several columns are named '{column}'; rename them"
         raise ReplicateError(msg)
     at = columns.index(column) if column else 0
@@ -82,8 +82,9 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     except csv.Error as error:
         msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
         raise ReplicateError(msg) from error
-    maxima = next((place for place, (_, row) in enumerate(found[:3]) if row[0].strip() == _NO_STUDENT), 0)
-    lines = found[maxima + 1 :]  # between the names and the maxima is at most how grades are posted
+    lines = [(number, row) for number, row in found[1:] if row[0].strip() != _NO_STUDENT]
+    if len(lines) < len(found) - 1 and lines and not lines[0][1][0].strip():
+        del lines[0]  # how grades are posted: such a gradebook may say it above
     if not lines:
         msg = f"{path.name}: the roster is empty: it needs a line with the names of the columns and one per student"
         raise ReplicateError(msg)

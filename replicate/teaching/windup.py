@@ -21,7 +21,13 @@ import numpy as np
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure, rounded
 from replicate.loops.limited_response import LimitedResponse
-from replicate.teaching.drawing_numbers import gain_apart_from_one, no_common_value, number, two_digits
+from replicate.teaching.drawing_numbers import (
+    gain_apart_from_one,
+    no_common_value,
+    no_mistake_accepted,
+    number,
+    two_digits,
+)
 from replicate.teaching.lag_loop import lag_loop
 
 if TYPE_CHECKING:
@@ -49,6 +55,7 @@ def windup(exercises: Exercises, name: str, original: Inputs) -> None:
             "at the limit from the start": lambda x: number(x, "k") > 1.3 * number(x, "U"),
             "the integral part alone keeps the actuator at its limit": lambda x: _wound(x) > 1.15 * number(x, "U"),
             "at the limit until the set point is reached": lambda x: _least_command(x) > 1.02 * number(x, "U"),
+            "no mistake is accepted": lambda x: no_mistake_accepted(_answers(x)),
             "the loop is stable": lambda x: lag_loop(x).is_stable(),
         },
         shown=_shown,
