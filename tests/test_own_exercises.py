@@ -91,6 +91,15 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
             r"mine/exercise\.py:8: .*'asked' of 'answer' holds the formula \$.*\$, which pandoc cannot convert: unexp",
         ),
         (("digits=3", 'digits=3, asked="$k$ and $T_i"'), r"mine/exercise\.py:8: .*'asked' of 'answer' .*between two"),
+        (("digits=3", 'digits=3, asked="$$k$$"'), r"mine/exercise\.py:8: .*'asked' of 'answer' .*between two"),
+        (
+            ('Answer(inputs["x"] / 7, digits=3)', "{1: Answer(2.0, digits=3)}"),
+            r"mine/exercise\.py:8: .*answer 1, all",
+        ),
+        (
+            ("def variant", "figures = {'f': 1}\n\n\ndef variant"),
+            r"mine/exercise\.py:4: .figures. is \{.f.: 1\}, all",
+        ),
         (("digits=3", "digits=3, asked=3"), r"mine/exercise\.py:9: .*'asked' of an answer is 3, allowed: a text"),
         (("digits=3", "digits=3, mistakes={'a': 1e999}"), r"mine/exercise\.py:9: .*'mistakes' .*allowed: .* finite"),
         (

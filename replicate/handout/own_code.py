@@ -144,11 +144,14 @@ def _answers(value: Any) -> Answers:
         if not isinstance(one, Answer):
             msg = f"the field '{key}' is {_named(one)}, allowed: an Answer"
             raise TypeError(msg)
-        _, *formulas = one.asked.split("$")
-        if len(formulas) % 2:
+        if not isinstance(key, str):
+            msg = f"names an answer {key!r}, allowed: a text"
+            raise TypeError(msg)
+        _, *parts = (one.asked or key).split("$")
+        if len(parts) % 2 or not all(tex.strip() for tex in parts[::2]):
             msg = f"the field 'asked' of '{key}' is {one.asked!r}, allowed: words, and LaTeX between two '$'"
             raise ValueError(msg)
-        for tex in formulas[::2]:
+        for tex in parts[::2]:
             if why := _not_a_formula(tex):
                 msg = f"the field 'asked' of '{key}' holds the formula ${tex}$, which pandoc cannot convert: {why}"
                 raise ValueError(msg)

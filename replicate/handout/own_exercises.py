@@ -18,7 +18,7 @@ from typing import Any
 
 from replicate.errors import PaperDefinitionError, ReplicateError
 from replicate.exhibits.exercises import Exercises
-from replicate.exhibits.variants import Variation
+from replicate.exhibits.variants import Variation, VariedFigure
 from replicate.handout.own_code import OwnCode
 from replicate.plain_text import read_text
 
@@ -34,7 +34,11 @@ _OPTIONAL: dict[str, tuple[Any, Callable[[Any], bool], str]] = {
     ),
     "shown": (lambda _: {}, callable, "a function of the inputs"),
     "stated": ("", lambda value: isinstance(value, str), "a text"),
-    "figures": ({}, lambda value: isinstance(value, Mapping), "a dictionary of VariedFigure"),
+    "figures": (
+        {},
+        lambda value: isinstance(value, Mapping) and all(isinstance(one, VariedFigure) for one in value.values()),
+        "a dictionary of VariedFigure",
+    ),
     "files": (lambda _: {}, callable, "a function of the inputs"),
 }
 
