@@ -85,13 +85,23 @@ def test_where_labels_of_contours_stand_is_layout(inline: bool) -> None:
     def draw(axes: Any, given: tuple[int, float, bool]) -> None:
         seed, shift, inside = given
         noise = 1e-10 * np.random.default_rng(seed).normal(size=bumps.shape)
-        axes.clabel(axes.contour(x, y, bumps + noise + shift, LEVELS), inline=inside)
+        axes.clabel(axes.contour(x, y, bumps + noise + shift, LEVELS), inline=inside, colors="k")
 
     assert [said(draw, (0, 0.0, inline), (seed, 0.0, inline)) for seed in range(1, 5)] == [[]] * 4
     assert any("moved" in text for text in said(draw, (0, 0.0, inline), (0, 0.005, inline)))
     interrupted = [text for text in said(draw, (0, 0.0, inline), (0, 0.0, not inline)) if "interrupted" in text]
     words = "no longer" if inline else "now"
     assert interrupted == [f"curve 'level {level}' is {words} interrupted by its labels" for level in LEVELS]
+
+
+def test_labels_of_contours_are_seen_where_somebody_put_them_and_upside_down() -> None:
+    def draw(axes: Any, given: dict[str, Any]) -> None:
+        axes.clabel(axes.contour(X, Y, -X - Y, [0.3]), **given)
+
+    place = {"manual": np.array([[0.0, 0.0]])}
+    assert said(draw, place, place) == []
+    assert any("label '0.3' moved by up to" in text for text in said(draw, place, {"manual": [[1.2, -1.2]]}))
+    assert said(draw, {}, {"rightside_up": False}) == ["orientation of label '0.3' is now upside down (was upright)"]
 
 
 def test_a_contour_is_kept_as_it_runs_in_any_unit() -> None:

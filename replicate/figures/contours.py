@@ -17,6 +17,7 @@ from replicate.figures.scaling import finite
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import ContourSet
+    from matplotlib.text import Text
 
 _LETTER = 0.3  # half the width of a letter, of the size of the type
 _SPACE = 8.0  # points between a label and its contour, on each side
@@ -25,11 +26,11 @@ _ON = 2.0  # points from the middle of a label to a contour that it does not int
 _INCH = 72.0
 
 
-def levels(contours: ContourSet) -> list[tuple[float, str]]:
-    """Return the level of each line, or from which level on each area is filled, as a number and in words."""
-    found = [(float(level), f"{level:.9g}") for level in contours.levels]
+def levels(contours: ContourSet) -> list[str]:
+    """Return the level of each line, or from which level on each area is filled."""
+    found = [f"{level:.9g}" for level in contours.levels]
     below = contours.filled and contours.extend in {"min", "both"}
-    return [(-np.inf, f"below {found[0][1]}"), *found] if below and found else found
+    return [f"below {found[0]}", *found] if below and found else found
 
 
 def without_specks(points: Points, units: Points) -> Points:
@@ -48,11 +49,13 @@ def without_specks(points: Points, units: Points) -> Points:
     return found
 
 
-def covered(contours: ContourSet, level: float, units: Points, axes: Axes) -> list[list[float]]:
+def covered(contours: ContourSet, place: int, units: Points, axes: Axes) -> list[list[float]]:
     """Return the ellipses inside which labels interrupt the contour of a level.
 
     Parameters
     ----------
+    place
+        Which of the levels it is.
     units
         The contour as it is drawn, as fractions of the axes.
 
@@ -66,14 +69,23 @@ def covered(contours: ContourSet, level: float, units: Points, axes: Axes) -> li
     size = np.array([axes.bbox.width, axes.bbox.height]) * _INCH / figure.dpi
     found, apart = [], 0.0
     texts: Sequence[Any] = getattr(contours, "labelTexts", ())
-    for text, value in zip(texts, getattr(contours, "labelCValues", ()), strict=False):
-        if value != level:
+    # A label knows its colour, which stands for its level.
+    colours = getattr(contours, "labelCValues", ()), getattr(contours, "labelCValueList", ())
+    places = dict(zip(colours[1], getattr(contours, "labelIndiceList", ()), strict=False))
+    for text, colour in zip(texts, colours[0], strict=False):
+        if places.get(colour) != place:
             continue
         centre = axes.transAxes.inverted().transform(text.get_transform().transform(text.get_position()))
         reach = _WIDER * (_LETTER * text.get_fontsize() * len(text.get_text()) + _SPACE)
         found.append([round(float(part), 5) for part in (*centre, *(reach / size))])
         apart = max(apart, _apart(centre * size, units * size))
     return found if apart > _ON else []
+
+
+def placed_by_hand(text: Text, axes: Axes) -> bool:
+    """Whether somebody said near which place a label of a contour shall stand."""
+    owner: Any = next((one for one in axes.collections if text in getattr(one, "labelTexts", ())), None)
+    return getattr(owner, "labelManual", False) is not False
 
 
 def _apart(point: Points, line: Points) -> float:

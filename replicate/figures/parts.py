@@ -23,6 +23,7 @@ from matplotlib.spines import Spine
 from matplotlib.table import Table
 from matplotlib.text import Text
 
+from replicate.figures.contours import placed_by_hand
 from replicate.figures.describe import said_label
 from replicate.figures.marks import Box
 from replicate.figures.recorder import Drawn
@@ -141,7 +142,8 @@ class Namer:
             return Part(self.curves[id(top)], top, told=True, placed=False)
         if id(top) in self.heads:
             name, first = self.heads[id(top)]
-            return Part(f"arrow heads of {name}", first, placed=False, properties=_arrow_style(top))
+            style = _arrow_style(top)
+            return Part(f"arrow heads of {name}", first, placed=False, properties=style | {"size": style.pop("head")})
         if top is getattr(self.owner, "patch", None):
             return Part("background", top)
         match top:
@@ -203,7 +205,11 @@ class Namer:
             shape = {"style": type(style).__name__, "shape": style_numbers(style) or "usual"}
             return Part(f"box of {name}", box, placed=False, properties=shape)
         if not told and not self.placed and text in self.owner.texts:  # of a contour: width and font decide where it is
-            return Part(f"label '{_shortened(text.get_text())}'", text, placed=False, turned=False)
+            turned = {"orientation": "upside down" if 91.0 < text.get_rotation() % 360.0 < 269.0 else "upright"}
+            hand = placed_by_hand(text, self.owner)
+            return Part(
+                f"label '{_shortened(text.get_text())}'", text, placed=hand, loose=hand, turned=False, properties=turned
+            )
         solid = hasattr(text, "get_position_3d")  # its data say two of three coordinates
         clip = {"clipping": "none" if drawn.clip_box is None and drawn.clip_path is None else "to the axes"}
         return Part(name, text, told=told, placed=not told or self.placed or solid, properties=clip)

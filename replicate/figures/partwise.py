@@ -28,6 +28,7 @@ _ALWAYS = {
     "lines",
     "clipping",
     "turning",
+    "orientation",
     "side",
     "height",
     "width",
@@ -137,7 +138,8 @@ def _sentence(words: str, names: Sequence[str], curves: frozenset[str]) -> str:
 
 
 def _plural(name: str) -> bool:
-    return name.partition(" of the ")[0].endswith(_PLURALS) and " of the " in name
+    what, of, _ = name.partition(" of the ")
+    return (bool(of) and what.endswith(_PLURALS)) or name.startswith("arrow heads of ")
 
 
 def _come_and_gone(

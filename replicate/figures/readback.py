@@ -212,11 +212,11 @@ def _collection(collection: Collection, axes: Axes, place: int, heads: Sequence[
     if isinstance(collection, ContourSet):
         base = _name(collection, "level")
         kind: Kind = "area" if collection.filled else "line"
-        for (level, words), path in zip(levels(collection), collection.get_paths(), strict=False):
+        for index, (level, path) in enumerate(zip(levels(collection), collection.get_paths(), strict=False)):
             points = _to_data(_of_path(path), collection.get_transform(), axes)
             points = without_specks(points, _in_axes_units(points, axes))
-            curve = _thinned_curve(collection, f"{base} {words}", kind, points, axes)
-            labels = covered(collection, level, _in_axes_units(points, axes), axes)
+            curve = _thinned_curve(collection, f"{base} {level}", kind, points, axes)
+            labels = covered(collection, index, _in_axes_units(points, axes), axes)
             yield replace(curve, special={**curve.special, "labels": labels}) if labels else curve
     elif isinstance(collection, PathCollection):  # a scatter plot: the offsets are the data
         offsets: Points = np.ma.filled(np.ma.asarray(collection.get_offsets(), dtype=float), np.nan)
