@@ -35,7 +35,14 @@ DOCUMENTS = {
 } | {f"examples/{file.parent.name}.md": f"examples/{file.parent.name}/README.md" for file in EXAMPLES}
 
 #: Modules whose public names the API lists, by page.
-API = {"loops": "replicate.loops", "exhibits": "replicate.exhibits", "figures": "replicate.figures"}
+API = {
+    "loops": "replicate.loops",
+    "tune": "replicate.loops.tune",
+    "inputs": "replicate.loops.inputs",
+    "plots": "replicate.loops.plots",
+    "exhibits": "replicate.exhibits",
+    "figures": "replicate.figures",
+}
 
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s#]+)(#[^)\s]*)?\)")
 

@@ -26,7 +26,8 @@ LASTS = 1e-12  # rate of decay towards rest that is rounding: the integral over 
 NODES = 40  # of the rim, and of each panel of the cut
 PANELS = np.append(0.0, 2.0 ** np.arange(10))  # of log(R/x): down to x = R e^-512, 1e-222 R
 NEAR = np.array([0.1, 3e-4])  # of a corner: over this range a function comes closer to its value at rest,
-FITTED, REACHES, FITS = 10, (0.03, 0.01), 1e-9  # points of a fit, of a corner, and difference of two that agree
+FITTED, REACHES, FROM = 10, (0.03, 0.01), 0.1  # points of a fit, its ends in units of a corner, and where it begins
+FITS = 1e-9  # relative difference of two that agree
 POLE = 100.0  # or grows by more than this factor,
 FAR = np.array([1e-100, 1e-200])  # and over this one by any, if it grows like a root or a logarithm
 
@@ -76,10 +77,9 @@ def _coefficient(function: Function, order: int, corner: float) -> float:
 
 def _of_roots(function: Function, corner: float) -> float:
     """Return f(0) of a polynomial in the square root of s fitted away from rest, where f may lose its digits."""
-    x = cheb.chebpts1(FITTED)
-    share = 0.1 + 0.9 * 0.5 * (1.0 + x)
+    roots = FROM + (1.0 - FROM) * 0.5 * (1.0 + cheb.chebpts1(FITTED))
     first, second = (
-        float(cheb.chebval(-1.0 - 0.2 / 0.9, cheb.chebfit(x, function(reach * corner * share**2).real, FITTED - 1)))
+        float(cheb.Chebyshev.fit(roots, function(reach * corner * roots**2).real, FITTED - 1, domain=(FROM, 1.0))(0.0))
         for reach in REACHES
     )
     return second if abs(first - second) <= FITS * abs(second) else float("nan")

@@ -6,6 +6,8 @@ from collections.abc import Callable
 
 from scipy.optimize import brentq
 
+TINY, CLOSEST = 1e-300, 8.9e-16  # what no root is below, and the relative error that brentq allows to ask for
+
 
 def bracketed_root(f: Callable[[float], float], left: float, right: float) -> float:
     """Return a root of ``f`` between two points, to rounding, whatever their unit.
@@ -28,4 +30,4 @@ def bracketed_root(f: Callable[[float], float], left: float, right: float) -> fl
     at_left, at_right = f(left), f(right)
     if not at_left * at_right < 0.0:
         return left if abs(at_left) <= abs(at_right) else right
-    return float(brentq(f, left, right, xtol=1e-300, rtol=8.9e-16, maxiter=200))
+    return float(brentq(f, left, right, xtol=TINY, rtol=CLOSEST, maxiter=200))

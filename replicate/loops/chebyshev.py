@@ -14,6 +14,10 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-15  # of the largest coefficient of a series: one of its last that is rounding
+OFF_AXIS = 1e-8  # a double root splits into a pair off the real axis by the square root of the rounding error
+NEAR = 1e-4  # last step of Newton's method at a root; what it would lead to from farther off is another one
+
 
 @cache
 def nodes(degree: int) -> Array:
@@ -87,18 +91,18 @@ def real_roots(coefficients: Array) -> Array:
     scale = np.max(np.abs(coefficients))
     if scale == 0.0:
         return np.empty(0)
-    significant = np.nonzero(np.abs(coefficients) > 1e-15 * scale)[0]
+    significant = np.nonzero(np.abs(coefficients) > ROUNDING * scale)[0]
     series = coefficients[: significant[-1] + 1]
     if series.size < 2:
         return np.empty(0)
     roots = cheb.chebroots(series)
-    slack = 1e-8  # a double root splits into a pair off the real axis by the square root of the rounding error
-    real = np.clip(roots[(np.abs(roots.imag) < slack) & (np.abs(roots.real) <= 1.0 + slack)].real, -1.0, 1.0)
+    inside = (np.abs(roots.imag) < OFF_AXIS) & (np.abs(roots.real) <= 1.0 + OFF_AXIS)
+    real = np.clip(roots[inside].real, -1.0, 1.0)
     derivative = cheb.chebder(series)
     for _ in range(2):
         slope = cheb.chebval(real, derivative)
         step = np.divide(cheb.chebval(real, series), slope, out=np.zeros_like(real), where=slope != 0.0)
-        real = np.where(np.abs(step) < 1e-4, np.clip(real - step, -1.0, 1.0), real)
+        real = np.where(np.abs(step) < NEAR, np.clip(real - step, -1.0, 1.0), real)
     return np.sort(real)
 
 

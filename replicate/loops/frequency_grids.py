@@ -17,6 +17,16 @@ ComplexArray = NDArray[np.complex128]
 MOST_POINTS = 40_000  # on the turns of the dead time from rest on, 20 for each
 POINTS_AROUND = 200
 LARGEST_LAG = 4.0 * np.pi
+SLOWEST = 1e-4  # where a grid begins, of the lowest corner,
+SLOWEST_OF_FUNCTION = 1e-8  # and of its end for a function, which may go on bending towards rest
+DESIGN_BAND = 2e-3, 1e3  # frequencies of interest to a design, of the lowest and the highest corner
+PER_TURN, PER_TURN_OF_GAP, PER_TURN_OF_DESIGN = 20, 60, 48  # of the dead time
+MOST_TURNS_OF_GAP, MOST_TURNS_OF_DESIGN = 83, 6
+AROUND_CORNER = 30.0, 0.1, 12  # widest and least offset, in half-widths of a resonance, and their number on each side,
+AROUND_POLE = 10.0, 0.03, 12  # around a peak that a closed-loop pole makes,
+AROUND_FUNCTION = 20.0, 0.1, 10  # and around a function's pole
+NARROWEST, NARROWEST_OF_PLANTS = 1e-12, 1e-9  # least half-width of a resonance, relative to its frequency
+RESONANT = 0.3  # largest damping of one
 
 
 def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Array:
@@ -26,19 +36,18 @@ def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Ar
     longest = transfer.longest_dead_time
     if longest:
         slow.append(1.0 / longest)
-    start = 1e-4 * min(slow)
+    start = SLOWEST * min(slow)
     if not transfer.plant.parts:
-        start = min(start, 1e-8 * end, 1e-4 * transfer.plant.corners[0])
+        start = min(start, SLOWEST_OF_FUNCTION * end, SLOWEST * transfer.plant.corners[0])
     parts = [_logarithmic(start, end, per_decade)]
     if longest:
-        step = np.pi / (10.0 * longest)
+        step = 2.0 * np.pi / (PER_TURN * longest)
         turns = np.arange(1.0, min(end / step, MOST_POINTS)) * step
         parts.append(turns)
         if end > step * MOST_POINTS:
             # beyond, the dead time turns L through all phases before |L| changes: what matters is where |L| is largest
             parts += [w + step * np.arange(-POINTS_AROUND, POINTS_AROUND) for w in transfer.gain_stationary if w < end]
-    spread = _two_sided(30.0, 0.1, 12)
-    parts += _around(_resonant(corners), spread, narrowest=1e-12)
+    parts += _around(_resonant(corners), _two_sided(*AROUND_CORNER), narrowest=NARROWEST)
     w = np.unique(np.concatenate(parts))
     return w[(w > 0.0) & (w <= end)]
 
@@ -46,7 +55,7 @@ def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Ar
 def peak_grid(transfer: LoopTransfer, end: float, poles: ComplexArray, start: float = 0.0) -> Array:
     """Return frequencies from ``start`` to ``end`` that also resolve the peaks which closed-loop poles make."""
     w = loop_grid(transfer, end, per_decade=80)
-    near = _around(poles[poles.imag > 0.0], _two_sided(10.0, 0.03, 12), narrowest=0.0)
+    near = _around(poles[poles.imag > 0.0], _two_sided(*AROUND_POLE), narrowest=0.0)
     w = np.unique(np.concatenate([w, *near, [start, end]]))  # both ends, so that bands that overlap leave no gap
     return w[(w > 0.0) & (w >= start) & (w <= end)]
 
@@ -70,8 +79,11 @@ def plants_grid(first: Plant, second: Plant, decades: int) -> Array:
     low, high = min(moduli) * 10.0**-decades, max(moduli) * 10.0**decades
     parts = [_logarithmic(low, high, 200)]
     if delays:
-        parts.append(np.asarray(np.arange(1, 5000) * (2.0 * np.pi / max(delays)) / 60.0, dtype=float))
-    parts += _around(corners[corners.imag > np.abs(corners.real)], np.linspace(-5.0, 5.0, 41), narrowest=1e-9)
+        step = 2.0 * np.pi / (PER_TURN_OF_GAP * max(delays))
+        parts.append(np.arange(1.0, PER_TURN_OF_GAP * MOST_TURNS_OF_GAP) * step)
+    parts += _around(
+        corners[corners.imag > np.abs(corners.real)], np.linspace(-5.0, 5.0, 41), narrowest=NARROWEST_OF_PLANTS
+    )
     w = np.unique(np.concatenate(parts))
     return np.asarray(w[(w >= low) & (w <= high)])
 
@@ -82,12 +94,12 @@ def design_grid(plant: Plant) -> Array:
     longest = max((part.dead_time for part in plant.parts), default=plant.dead_time)
     if longest:
         corners = np.append(corners, 1.0 / longest)
-    low, high = 2e-3 * corners.min(), 1e3 * corners.max()
+    low, high = DESIGN_BAND[0] * corners.min(), DESIGN_BAND[1] * corners.max()
     parts = [_logarithmic(low, high, 70)]
     if longest:
-        step = np.pi / (24.0 * longest)
-        parts.append(np.asarray(np.arange(1, 24 * 12) * step, dtype=float))
-    parts += _around(plant.resonances, _two_sided(20.0, 0.1, 10), narrowest=1e-9)
+        step = 2.0 * np.pi / (PER_TURN_OF_DESIGN * longest)
+        parts.append(np.arange(1.0, PER_TURN_OF_DESIGN * MOST_TURNS_OF_DESIGN) * step)
+    parts += _around(plant.resonances, _two_sided(*AROUND_FUNCTION), narrowest=NARROWEST_OF_PLANTS)
     grid = np.unique(np.concatenate(parts))
     grid = grid[grid > 0.0]
     # two turns of the plant's own phase are more than a PI controller can make use of
@@ -111,7 +123,7 @@ def _two_sided(widest: float, narrowest: float, count: int) -> Array:
 
 
 def _resonant(roots: ComplexArray) -> ComplexArray:
-    return np.asarray(roots[(np.abs(roots.real) < 0.3 * np.abs(roots)) & (roots.imag > 0.0)])
+    return np.asarray(roots[(np.abs(roots.real) < RESONANT * np.abs(roots)) & (roots.imag > 0.0)])
 
 
 def _around(roots: ComplexArray, spread: Array, *, narrowest: float) -> list[Array]:

@@ -27,6 +27,7 @@ ComplexArray = NDArray[np.complex128]
 
 LARGEST_TURN = 0.7  # rad between neighbouring points, with which the branch of the phase is certain
 DEEPEST = 40
+AT_REST = 1e-6  # of the lowest corner: where the phase is followed from
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +118,7 @@ def checked_frequencies(w: ArrayLike) -> Array:
 
 def _continuous_phase(loop: Loop, w: Array) -> Array:
     """Return arg(L e^{iwL}) in rad along ascending frequencies, from its limit at low frequency on."""
-    start = 1e-6 * _lowest_corner(loop, w)
+    start = AT_REST * _lowest_corner(loop, w)
     grid = np.union1d(np.geomspace(min(start, w[0]), w[-1], 400), w)
     value = _without_delay(loop, grid)
     for _ in range(DEEPEST):

@@ -30,6 +30,9 @@ LOWEST, HIGHEST, PER_OCTAVE = -100, 100, 4  # octaves of frequency in which a fu
 ANALYTIC = 1e-4  # relative difference of a value and the mean around it that is not a rounding error
 BESIDE = 1e-15  # relative distance of the next point
 TINY = 1e-100  # modulus from which a function that overflows in its denominator goes on to zero
+SMALLEST, LARGEST = 1e-290, 1e290  # modulus of a value whose logarithm tells a slope
+AT_REST = 1e-3  # of the lowest corner: where only what happens at rest shows
+AROUND = 0.1  # of |w|: radius of a mean that shows rounding errors
 BENT = 0.3  # change of slope, or of phase in rad, at which a frequency response has left its asymptote
 MOST_WAVES = 8  # changes between steeper and flatter than the asymptote, of a response that has corners
 LAG = 4.0 * np.pi  # phase beyond which nothing of a frequency response matters to a loop
@@ -138,7 +141,7 @@ class FunctionPlant(Plant):
     def gain_is_negative(self) -> bool:
         """Whether the gain is negative at low frequency."""
         low, _ = self.corners
-        return bool(complex(self.delay_free(1e-3 * low)).real < 0.0)
+        return bool(complex(self.delay_free(AT_REST * low)).real < 0.0)
 
     def poles(self) -> ComplexArray:
         """Return nothing: the poles of a function are not known."""
@@ -172,7 +175,7 @@ class FunctionPlant(Plant):
         w = 2.0**exponent
         with np.errstate(all="ignore"):
             value = self.delay_free(1j * w)
-        known = np.isfinite(value) & (value != 0.0) & (np.abs(value) > 1e-290) & (np.abs(value) < 1e290)
+        known = np.isfinite(value) & (value != 0.0) & (np.abs(value) > SMALLEST) & (np.abs(value) < LARGEST)
         first = self._first_smooth(w, value) if known.any() else 0
         gone = np.nonzero(~known[first:])[0]
         last = first + int(gone[0]) if gone.size else known.size
@@ -204,9 +207,9 @@ class FunctionPlant(Plant):
         """
         turn = np.exp(2j * np.pi * np.arange(8) / 8)
         with np.errstate(all="ignore"):
-            mean = np.mean(self.delay_free(1j * w[:, None] * (1.0 + 0.1 * turn)), axis=1)
+            mean = np.mean(self.delay_free(1j * w[:, None] * (1.0 + AROUND * turn)), axis=1)
             smooth = np.abs(mean - value) <= ANALYTIC * np.abs(value)
-        smooth &= np.isfinite(value) & (np.abs(value) > 1e-290) & (np.abs(value) < 1e290)
+        smooth &= np.isfinite(value) & (np.abs(value) > SMALLEST) & (np.abs(value) < LARGEST)
         run = np.convolve(smooth, np.ones(2 * PER_OCTAVE), mode="valid") > 2 * PER_OCTAVE - 0.5
         return int(np.argmax(run)) if run.any() else int(np.argmax(value != 0.0))
 

@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 PER_DECADE, ANGLES = 36, 60  # of the grid
+LEFTMOST = 0.98 * np.pi  # rad: beyond, poles are looked for on the axis
 AXIS_PER_DECADE = 40
 MOST_MINIMA = 200  # of the grid that are followed, the lowest first
 SLOWEST = 1e-2  # radius at which the grid begins, in units of the lowest frequency with |L| = 1 or a corner,
@@ -96,7 +97,7 @@ def _logarithmic(low: float, high: float, per_decade: int) -> Array:
 
 def _minima_on_grid(transfer: LoopTransfer, low: float, high: float) -> ComplexArray:
     """Return the local minima of |1 + 1/L|, which is zero at the poles and free of the scale of L, on a polar grid."""
-    s = _logarithmic(low, high, PER_DECADE)[:, None] * np.exp(1j * np.linspace(0.0, 0.98 * np.pi, ANGLES))
+    s = _logarithmic(low, high, PER_DECADE)[:, None] * np.exp(1j * np.linspace(0.0, LEFTMOST, ANGLES))
     relative = np.abs(1.0 + 1.0 / transfer(s))
     inner = relative[1:-1, :]
     lowest = (inner <= relative[:-2, :]) & (inner <= relative[2:, :])

@@ -28,6 +28,8 @@ ENOUGH = 6  # values that the fit needs
 STEPS = 30
 EPS = 4.0 * float(np.finfo(float).eps)
 ARRIVED = 1e-9  # last relative step of Newton's method
+NEARLY = 1e-3  # and of one that the rounding errors of the function have stopped
+NARROWER, LEAST = 0.3, 1e-3  # spacing of a difference: of the step, and of the spacing before at least
 NARROW = 0.3  # largest |Re s|/|s| of a resonance
 SAME = 1e-6  # relative distance of points that are one
 
@@ -133,5 +135,5 @@ def _newton(f: Function, starts: ComplexArray, spacing: Array) -> ComplexArray:
         change = 2.0 * reach * here / (ahead - behind)
         step[moving] = change
         s[moving] = point - change
-        h[moving] = np.minimum(reach, np.maximum(0.3 * np.abs(change), 1e-3 * reach))
-    return np.asarray(s[np.isfinite(s) & (np.abs(step) <= 1e-3 * np.abs(s))])
+        h[moving] = np.minimum(reach, np.maximum(NARROWER * np.abs(change), LEAST * reach))
+    return np.asarray(s[np.isfinite(s) & (np.abs(step) <= NEARLY * np.abs(s))])

@@ -14,6 +14,8 @@ from itertools import pairwise
 
 from replicate.loops.errors import LoopError
 
+__all__ = ["Input", "PiecewisePolynomial", "Pulse", "Ramp", "Sine", "Step"]
+
 Event = tuple[float, int, float]  # time, order n of the derivative that jumps, height of the jump
 
 

@@ -33,6 +33,13 @@ ComplexArray = NDArray[np.complex128]
 OPENINGS = (0.62, 0.45, 0.3, 0.2, 0.12, 0.07, 0.04)  # rad by which the contour's arms lean to the left of vertical
 DEGREE = 18
 RESIDUE_POINTS = 64
+CIRCLE = 0.3  # radius of a circle around a pole, of the distance of the next one
+SMALL = 0.1  # |L| beyond the bandwidth
+NOW = 1e-14  # of the latest time: one that is zero to rounding
+SCALES = (3.0, 9.0)  # of a contour, over the latest time
+DECAYED = 40.0  # exponent at the end of a contour's arm: exp(-40) is rounding
+FAR = 1e3  # of the last corner: how far left a function is followed to see whether it grows like exp(-s T),
+STEADY = 0.2  # and the relative change of the rate of growth that such a one has at most
 TOLERANCE = 1e-13  # difference of two quadratures that agree, of the response's size,
 RESOLVED = 5e-13  # and size of the last coefficients of a piece that is resolved
 FIRST = 1e-3  # length of the first piece, in time scales
@@ -87,7 +94,7 @@ class ClosedLoop:
     @cached_property
     def bandwidth(self) -> float:
         """A frequency beyond which |L| is small."""
-        return self.transfer.beyond(0.1)
+        return self.transfer.beyond(SMALL)
 
     def path(self, trips: int) -> Callable[[Any], ComplexArray]:
         """Return the transform, without dead time, of the part that has been around the loop ``trips`` times."""
@@ -102,7 +109,7 @@ class ClosedLoop:
     def residue(self, pole: complex) -> complex:
         """Return the residue of the closed transform at a pole, by Cauchy's integral."""
         others = [abs(pole - q) for q in self.poles if q != pole]
-        radius = 0.3 * min([abs(pole), *([2.0 * pole.imag] if pole.imag else []), *others])
+        radius = CIRCLE * min([abs(pole), *([2.0 * pole.imag] if pole.imag else []), *others])
         turn = np.exp(2j * np.pi * np.arange(RESIDUE_POINTS) / RESIDUE_POINTS)
         return complex(np.mean(self.closed(pole + radius * turn) * radius * turn))
 
@@ -181,7 +188,7 @@ def _invert(transform: Callable[[Any], ComplexArray], t: Array, size: float, loo
     With a loop, its poles to the right of the contour are added as residues.
     """
     result = np.zeros_like(t)
-    left = t > 1e-14 * max(float(t.max()), 0.0)
+    left = t > NOW * max(float(t.max()), 0.0)
     while left.any():  # one contour serves times that differ by no more than a factor
         longest = float(t[left].max())
         group = left & (t >= SPAN * longest)
@@ -198,8 +205,8 @@ def _invert_group(
 ) -> Array | None:
     longest, shortest = float(t.max()), float(t.min())
     for opening in OPENINGS:
-        for scale in (3.0 / longest, 9.0 / longest):
-            contour = _Contour(scale, opening)
+        for scale in SCALES:
+            contour = _Contour(scale / longest, opening)
             outside = contour.poles_to_the_right(loop, shortest) if loop else np.empty(0, dtype=complex)
             if outside is None:
                 continue
@@ -223,7 +230,7 @@ def _why_not(loop: ClosedLoop, transform: Callable[[Any], ComplexArray], t: Arra
             "take it out and give it as dead_time, or several as a sum of plants"
         )
     shortest = float(t[t > 0.0].min())
-    paths = [_Contour(3.0 / shortest, opening).around(loop, shortest) for opening in OPENINGS]
+    paths = [_Contour(SCALES[0] / shortest, opening).around(loop, shortest) for opening in OPENINGS]
     s = np.concatenate(paths)
     with np.errstate(all="ignore"):
         wrong = s[~np.isfinite(transform(s))]
@@ -244,14 +251,14 @@ def _why_not(loop: ClosedLoop, transform: Callable[[Any], ComplexArray], t: Arra
 def _hidden_dead_time(plant: Plant) -> float:
     """Return the dead time T of a function that grows to the left as exp(-s T) does, else 0."""
     low, high = plant.corners
-    size = np.geomspace(low, 1e3 * high, 60)
+    size = np.geomspace(low, FAR * high, 60)
     left = size * np.exp(0.9j * np.pi)
     with np.errstate(all="ignore"):
         growth = np.log(np.abs(plant.delay_free(left))) / -left.real
     growth = growth[np.isfinite(growth)]
     # powers and roots of s grow more slowly: their rate falls
     last = growth[-4:]
-    steady = last.size == 4 and float(np.ptp(last)) < 0.2 * float(np.abs(last).max())
+    steady = last.size == 4 and float(np.ptp(last)) < STEADY * float(np.abs(last).max())
     return float(last[-1]) if steady and last[-1] > 0.0 else 0.0
 
 
@@ -299,7 +306,7 @@ class _Contour:
 
     def reach(self, shortest: float) -> float:
         """Return the parameter at which exp(s t) has decayed below rounding for the shortest time."""
-        depth = 40.0 / (self.scale * shortest * np.sin(self.opening)) + 2.0 / np.sin(self.opening)
+        depth = DECAYED / (self.scale * shortest * np.sin(self.opening)) + 2.0 / np.sin(self.opening)
         return float(np.arccosh(max(depth, 2.0)))
 
     def poles_to_the_right(self, loop: ClosedLoop, shortest: float) -> ComplexArray | None:

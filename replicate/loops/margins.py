@@ -14,6 +14,9 @@ from replicate.loops.records import Record
 
 Array = NDArray[np.float64]
 
+MORE = 2.5 * np.pi  # rad of the dead time, one full turn and more, so that a crossover below one is always included
+SMALL = 1e-6  # |L| beyond which no crossover without dead time matters
+
 
 @dataclass(frozen=True, eq=False)
 class Margins(Record):
@@ -117,9 +120,9 @@ def _phase_crossovers(transfer: LoopTransfer) -> Array:
     else:
         end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     if transfer.dead_time:
-        end += 2.5 * np.pi / transfer.dead_time  # one full turn more, so that a crossover below one is always included
+        end += MORE / transfer.dead_time
     elif not transfer.is_polynomial:
-        end = transfer.beyond(1e-6)
+        end = transfer.beyond(SMALL)
     w = loop_grid(transfer, end, per_decade=80)
     value = transfer(1j * w)
     turned = value.imag[:-1] * value.imag[1:] < 0.0

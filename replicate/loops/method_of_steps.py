@@ -34,9 +34,12 @@ Array = NDArray[np.float64]
 
 DEGREE = 18
 RESOLVED = 2e-14  # size of the last coefficients relative to the largest, at which a piece counts as resolved
+NEARLY = 1e-9  # size up to which coefficients that no longer fall are the rounding error of the problem
+WHOLE = 1e-14  # of a number of pieces: what is not a piece more
 STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 2000  # beyond, pieces that adapt are faster
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
+TINY = float(np.finfo(float).tiny)
 TOGETHER = 16  # pieces that a single response moves at once
 
 
@@ -124,7 +127,7 @@ def respond(
     to_coefficients = chebyshev.values_to_coefficients(DEGREE).T
     while True:
         length = (plant.dead_time or until) / splits
-        pieces = max(int(np.ceil(until / length * (1.0 - 1e-14))), 1)
+        pieces = max(int(np.ceil(until / length * (1.0 - WHOLE))), 1)
         if pieces > MOST_PIECES:
             return None
         with np.errstate(over="ignore", invalid="ignore"):
@@ -136,7 +139,7 @@ def respond(
             found = values @ to_coefficients
         remaining = _unresolved(found, length)
         # halving the pieces no longer helps once the tail is the rounding error of an ill-conditioned plant
-        if remaining <= RESOLVED or (remaining < 1e-9 and remaining > 0.25 * previous):
+        if remaining <= RESOLVED or (remaining < NEARLY and remaining > 0.25 * previous):
             breaks, share = chebyshev.cut(length, pieces, until)
             return [(breaks, y, u) for y, u in zip(*chebyshev.cut_last(found, share), strict=True)]
         previous = remaining
@@ -167,7 +170,7 @@ def _unresolved(coefficients: Array, length: float) -> float:
         beyond = int(np.argmin(sizes.max(axis=(0, 1, 3)) < LARGEST))
         msg = f"the response grows beyond {LARGEST:g} by t = {(beyond + 1) * length:g}: choose a shorter horizon"
         raise LoopError(msg)
-    return float(np.max(sizes[..., -2:].max(axis=(2, 3)) / np.maximum(largest, 1e-300)))
+    return float(np.max(sizes[..., -2:].max(axis=(2, 3)) / np.maximum(largest, TINY)))
 
 
 def _march(

@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 DECADES = 6  # how far the search goes beyond the corners of the plants, towards both limits
+BEYOND = 1e6  # factor by which a frequency beyond it shows the limit
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,7 @@ def nu_gap(first: Plant, second: Plant, weight: Weight | None = None) -> Frequen
     w = plants_grid(first, second, DECADES)
     with np.errstate(divide="ignore", invalid="ignore"):  # identical plants: no slope, and a gap of zero
         best = highest_peak(magnitude, slope, w)
-    for frequency, name in ((w[0] * 1e-6, 0.0), (w[-1] * 1e6, float("inf"))):
+    for frequency, name in ((w[0] / BEYOND, 0.0), (w[-1] * BEYOND, float("inf"))):
         limit = float(magnitude(np.array([frequency]))[0])
         if limit > best.value:
             best = FrequencyPeak(limit, name)

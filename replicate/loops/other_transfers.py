@@ -29,6 +29,9 @@ ComplexArray = NDArray[np.complex128]
 
 AHEAD = 2.0 ** (np.arange(8 * 12 + 1) / 12)  # where the gain of a plant given by a function has to stay below a level
 PER_DECADE = 200
+SAME = 1e-9  # relative difference of a ratio of dead times from a rational one,
+AT_REST = 1e-9  # of the largest modulus: a root at s = 0
+ABOVE = 1.001  # share of the limit at infinity below which a sum of gains cannot be asked to fall
 REST = 1e-30  # of the lowest corner: a frequency that is zero for a function
 RATIO = 64  # largest denominator of a ratio of two dead times that counts as rational
 
@@ -240,7 +243,7 @@ class SumTransfer(LoopTransfer):
         ratios = self.dead_times[delayed] / shortest
         for denominator in range(1, RATIO):
             steps = np.round(ratios * denominator)
-            if np.all(np.abs(ratios * denominator - steps) < 1e-9 * steps):
+            if np.all(np.abs(ratios * denominator - steps) < SAME * steps):
                 polynomial = np.zeros(int(steps[-1]) + 1)
                 polynomial[-1] = 1.0
                 for step, limit in zip(steps.astype(int), self.limits[delayed] / direct, strict=True):
@@ -253,7 +256,7 @@ class SumTransfer(LoopTransfer):
     def corner_frequencies(self) -> ComplexArray:
         """Nonzero poles and zeros of all terms of L."""
         roots = np.concatenate([np.roots(self.den), *(np.roots(num) for num in self.nums if num.size)]).astype(complex)
-        return np.asarray(roots[np.abs(roots) > 1e-9 * np.abs(roots).max(initial=0.0)])
+        return np.asarray(roots[np.abs(roots) > AT_REST * np.abs(roots).max(initial=0.0)])
 
     @cached_property
     def gain_crossovers(self) -> Array:
@@ -269,7 +272,7 @@ class SumTransfer(LoopTransfer):
         for _ in range(400):
             s = np.array(1j * w)
             sizes = [abs(np.polyval(num, s) / np.polyval(self.den, s)) for num in self.nums]
-            if sum(sizes) < max(level, 1.001 * float(np.abs(self.limits).sum())):
+            if sum(sizes) < max(level, ABOVE * float(np.abs(self.limits).sum())):
                 return float(w)
             w *= 1.5
         msg = f"the loop gain does not fall below {level:g} at high frequency"

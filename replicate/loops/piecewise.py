@@ -29,6 +29,8 @@ MARGIN = 0.02
 FLAT = 1e-14  # of the largest value: a piece that moves less is constant to rounding
 NOISE = 1e-13  # of the largest value: a move or a jump that is rounding
 SAME = 1e-12  # relative distance of two times that are one
+BEFORE = 1e-13  # and of a break from the end of a sum that it does not coincide with
+NEGLIGIBLE = 1e-17  # of the largest coefficient: one that no value shows
 
 
 class Piecewise(SetOnce):
@@ -90,7 +92,7 @@ class Piecewise(SetOnce):
         if np.isnan(flat).any():
             msg = "a time is not a number (nan)"
             raise LoopError(msg)
-        if flat.size and flat.max() > end * (1.0 + 1e-12):
+        if flat.size and flat.max() > end * (1.0 + SAME):
             msg = f"t = {flat.max():g} lies beyond the response's horizon of {end:g}: compute a longer one"
             raise LoopError(msg)
         index = self._piece_index(flat)
@@ -113,13 +115,13 @@ class Piecewise(SetOnce):
     def _significant(self) -> Array:
         """Coefficients as rows, without the highest orders that no piece needs: evaluation is faster without them."""
         size = np.max(np.abs(self.coefficients), axis=0)
-        last = np.nonzero(size > 1e-17 * size.max(initial=0.0))[0]
+        last = np.nonzero(size > NEGLIGIBLE * size.max(initial=0.0))[0]
         return np.ascontiguousarray(self.coefficients[:, : (last[-1] + 1 if last.size else 1)].T)
 
     @cached_property
     def _uniform(self) -> float:
         inner = self._lengths[:-1]
-        if inner.size and np.ptp(inner) < 1e-12 * inner[0]:
+        if inner.size and np.ptp(inner) < SAME * inner[0]:
             return float(inner[0])
         return 0.0
 
@@ -158,7 +160,7 @@ class Piecewise(SetOnce):
         """Superpose two responses on the common part of their horizons."""
         end = min(self.horizon, other.horizon)
         breaks = np.union1d(self.breaks, other.breaks)
-        breaks = breaks[breaks < end * (1.0 - 1e-13)]
+        breaks = breaks[breaks < end * (1.0 - BEFORE)]
         keep = np.concatenate([[True], np.diff(breaks) > SAME * breaks[1:]])
         breaks = np.append(breaks[keep], end)
         degree = max(self.degree, other.degree)

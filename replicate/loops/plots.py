@@ -21,6 +21,8 @@ from replicate.loops.signal import Signal
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+__all__ = ["plot_bode", "plot_gain_plane", "plot_load", "plot_nyquist", "plot_signal", "plot_step"]
+
 Array = NDArray[np.float64]
 
 POINTS = 800

@@ -24,6 +24,12 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 MOST_NODES = 400  # of the discretisation, however many poles are asked for
+SMALL = 0.3  # a loop gain that is far from -1
+NODES, PER_TURN = (
+    (24, 160),
+    1.2,
+)  # least and most of the discretisation for few poles; more for each rad of the dead time
+ROUNDING = 1e-13  # value of a polynomial of a basis that is zero
 SPARE = 8  # turns of the dead time beyond the number of poles
 ITERATIONS = 30  # each gains a digit or more where the frequency is high
 
@@ -45,16 +51,16 @@ def generator_eigenvalues(plant: Plant, controller: PID, transfer: LoopTransfer,
         a, b = a + np.outer(b[:, 0], ux), b + np.outer(b[:, 0], np.where(delays > 0.0, uv, 0.0))
         delays, b, uv = delays[1:], b[:, 1:], uv[1:]
     # enough nodes to resolve the phase that the loop can turn during one dead time at its fastest relevant frequency
-    crossing = transfer.beyond(max(0.3, 0.5 * (1.0 + transfer.feedthrough)))
-    degree = int(min(160, max(24, np.ceil(1.2 * crossing * longest) + 16)))
+    crossing = transfer.beyond(max(SMALL, 0.5 * (1.0 + transfer.feedthrough)))
+    degree = int(min(NODES[1], max(NODES[0], np.ceil(PER_TURN * crossing * longest) + 16)))
     degree = max(degree, min(MOST_NODES, 3 * count + 16))
     d = _differentiation_matrix(degree) * (2.0 / longest)
     # unknowns: X and u(t + theta) at the nodes theta = -L..0; the last node is u itself, given by the controller
     size = n + degree
     values = chebyshev.basis(1.0 - 2.0 * delays / longest, degree).T @ chebyshev.values_to_coefficients(degree)
     inputs = values[:, :degree]  # v_i = u(t - L_i) from the nodes; u(t) itself has no part in it
-    inputs[np.abs(inputs) < 1e-13] = 0.0
-    own = np.where(np.abs(values[:, degree]) < 1e-13, 0.0, values[:, degree])
+    inputs[np.abs(inputs) < ROUNDING] = 0.0
+    own = np.where(np.abs(values[:, degree]) < ROUNDING, 0.0, values[:, degree])
     control = np.concatenate([ux, uv @ inputs]) / (1.0 - float(uv @ own))
     matrix = np.zeros((size, size))
     matrix[:n, :n] = a

@@ -47,6 +47,14 @@ REAL, REAL_OF_FUNCTION = 1e-10, 1e-9  # imaginary part, relative to the modulus,
 AT_REST = 1e-9  # of the largest modulus: a pole at s = 0
 SPREAD = 1e-9  # relative distance at which the parts of a multiple zero are set apart
 BEHIND = 1e-6  # relative distance of the next pole to the left that lets a line pass between
+AFTER, FARTHEST = 0.05, 0.2  # distance of a line after the last pole found, and the largest of one between two poles
+BELOW = 0.0123  # share of a box's height by which it reaches below the real axis, where no edge meets a zero
+CROWDED = 0.98  # |L| on a line from which on a neutral loop may have infinitely many poles there
+SMALL, BEYOND = 0.9, (1.01, 1.1)  # |L| from which on there is no pole, and how far a box reaches beyond, up and right
+SLOWEST = 1e-6  # of a box's height: where a path along it is dense at the real axis
+CIRCLE, CLEAR, HALF_CLEAR = 0.1, 0.7, 0.4  # radius of a circle around a multiple pole: of its modulus, of what is clear
+LARGEST_STEP = 0.3  # of Newton's method, relative to the modulus, so that s = 0 is not jumped over
+ROUNDED, TINY = 4e-16, 1e-300  # last relative step, and a modulus that is none
 
 
 def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count: int = 1) -> ComplexArray:
@@ -146,8 +154,8 @@ def _multiple(transfer: LoopTransfer, first: complex, near: list[complex], clear
     ``clear`` is the distance of the next point that is not one of them.
     """
     spread = max(abs(p - first) for p in near)
-    radius = max(min(0.4 * clear, 0.1 * abs(first)), 2.0 * spread)
-    if radius > 0.7 * clear:
+    radius = max(min(HALF_CLEAR * clear, CIRCLE * abs(first)), 2.0 * spread)
+    if radius > CLEAR * clear:
         return None
     zero = zero_in_circle(transfer.characteristic, transfer.characteristic_slope, first, radius)
     if zero is None or zero.order < 2:
@@ -163,7 +171,7 @@ def _stalled(transfer: LoopTransfer, points: ComplexArray) -> ComplexArray:
     for point in points[np.isfinite(points) & (points.real < 0.0)].tolist():
         value = transfer.characteristic(np.array([point]))
         if abs(complex(value[0])) <= STALLED * transfer.size(np.array([point]))[0]:
-            zero = zero_in_circle(transfer.characteristic, transfer.characteristic_slope, point, 0.1 * abs(point))
+            zero = zero_in_circle(transfer.characteristic, transfer.characteristic_slope, point, CIRCLE * abs(point))
             if zero is not None and zero.order >= 2:
                 found.append(zero.place)
     return np.array(found, dtype=complex)
@@ -185,7 +193,7 @@ def _completed(transfer: LoopTransfer, found: list[complex], count: int) -> list
     right, left = [p for p in found if p.real > line], [p for p in found if p.real <= line]
     if expected != sum(2 if p.imag else 1 for p in right):
         top, edge = _reach(transfer, line)
-        zeros = _zeros_in(transfer, Box(line, edge, -0.0123 * top, top))
+        zeros = _zeros_in(transfer, Box(line, edge, -BELOW * top, top))
         if zeros is None:
             return found
         # a multiple zero is where its parts are, as far as they were told apart
@@ -200,9 +208,9 @@ def _line_after(transfer: LoopTransfer, found: list[complex], count: int) -> flo
     """Return the real part of a vertical line to the left of so many poles, and to the right of the next."""
     last = found[count - 1].real
     after = [p.real for p in found[count:] if p.real < last - BEHIND * abs(last)]
-    line = 0.5 * (last + after[0]) if after else last - 0.05 * abs(last)
+    line = 0.5 * (last + after[0]) if after else last - AFTER * abs(last)
     # the nearer the line is to the poles, the lower the frequencies up to which it has to be followed
-    return max(line, last - 0.2 * max(abs(last), 1.0 / _longest(transfer)))
+    return max(line, last - FARTHEST * max(abs(last), 1.0 / _longest(transfer)))
 
 
 def _extended(transfer: LoopTransfer, found: list[complex], right: float, count: int) -> list[complex]:
@@ -212,7 +220,7 @@ def _extended(transfer: LoopTransfer, found: list[complex], right: float, count:
         if len(found) >= count or _count_right_of(transfer, line, count) is None:
             break
         top, _ = _reach(transfer, line)
-        zeros = _zeros_in(transfer, Box(line, right, -0.0123 * top, top))
+        zeros = _zeros_in(transfer, Box(line, right, -BELOW * top, top))
         if zeros is None:
             break
         places = np.array([zero.place for zero in zeros], dtype=complex)
@@ -237,22 +245,22 @@ def _longest(transfer: LoopTransfer) -> float:
 def _reach(transfer: LoopTransfer, line: float) -> tuple[float, float]:
     """Return the height and the right end of a rectangle that holds all poles to the right of a vertical line."""
     growth = float(np.exp(-min(line, 0.0) * _longest(transfer)))
-    level = max(0.9, 0.5 * (1.0 + transfer.feedthrough * growth)) / growth
-    top = 1.01 * transfer.beyond(level) + abs(line)
-    return top, max(top, 1.1 * abs(line))
+    level = max(SMALL, 0.5 * (1.0 + transfer.feedthrough * growth)) / growth
+    top = BEYOND[0] * transfer.beyond(level) + abs(line)
+    return top, max(top, BEYOND[1] * abs(line))
 
 
 def _count_right_of(transfer: LoopTransfer, line: float, asked: int) -> int | None:
     """Return the number of zeros of f with Re s > line, of which so many are asked for; None if it cannot be said."""
     growth = float(np.exp(-min(line, 0.0) * _longest(transfer)))
-    if transfer.feedthrough * growth >= 0.98:
+    if transfer.feedthrough * growth >= CROWDED:
         return None
     top, edge = _reach(transfer, line)
     if top * _longest(transfer) > (MOST_TURNS if asked <= FEW else MANY_TURNS):
         return None
     box = Box(line, edge, -0.0, top)
     steps = max(64, int(4.0 * top * _longest(transfer)))
-    up = np.unique(np.concatenate([np.linspace(0.0, top, steps), np.geomspace(1e-6 * top, top, 64)]))
+    up = np.unique(np.concatenate([np.linspace(0.0, top, steps), np.geomspace(SLOWEST * top, top, 64)]))
     path = np.concatenate([
         np.linspace(edge, edge + 1j * top, 64), np.linspace(edge + 1j * top, box.left + 1j * top, 96)[1:],
         box.left + 1j * up[::-1][1:],
@@ -272,7 +280,7 @@ def _newton(transfer: LoopTransfer, s: ComplexArray, count: int) -> tuple[Comple
     step = np.full(s.shape, np.inf, dtype=complex)
     with np.errstate(all="ignore"):
         for done in range(NEWTON_STEPS):
-            moving = (np.abs(step) > 4e-16 * np.abs(s)) & np.isfinite(s) & (s != 0.0)
+            moving = (np.abs(step) > ROUNDED * np.abs(s)) & np.isfinite(s) & (s != 0.0)
             if done >= SOON:
                 settled = np.abs(step) <= SETTLED * np.abs(s)
                 reals = np.sort(s.real[settled])
@@ -283,9 +291,9 @@ def _newton(transfer: LoopTransfer, s: ComplexArray, count: int) -> tuple[Comple
             at = s[moving]
             value, slope = transfer.characteristic_with_slope(at)
             change = value / slope
-            change *= np.minimum(1.0, 0.3 * np.maximum(np.abs(at), 1e-300) / np.abs(change))
+            change *= np.minimum(1.0, LARGEST_STEP * np.maximum(np.abs(at), TINY) / np.abs(change))
             # a plant's pole that the controller cancels has no value: the step before it is the last
             known = np.isfinite(change) | ~(np.abs(step[moving]) <= ARRIVED * np.abs(at))
-            step[moving] = np.where(known, change, 4e-16 * at)
+            step[moving] = np.where(known, change, ROUNDED * at)
             s[moving] = np.where(known, at - change, at)
     return s, np.isfinite(s) & (s != 0.0) & (np.abs(step) <= ARRIVED * np.abs(s))

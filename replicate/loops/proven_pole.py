@@ -27,6 +27,7 @@ ORDER = 6  # of the rational function
 STARTS = 3
 STEPS = 12
 CONVERGED = 1e-12  # last relative step of Newton's method at a simple pole: the next would be rounding
+SAME = 1e-8  # relative distance of two points that are one pole
 REAL = 1e-10  # imaginary part, relative to the modulus, of a pole that is real
 APART = 0.03  # relative distance of poles that may be one multiple pole
 TIE = 1e-6  # relative distance of real parts between which no line fits
@@ -81,7 +82,7 @@ def polished_poles(transfer: LoopTransfer, near: list[complex]) -> list[complex]
     found: list[complex] = []
     for start in near:
         pole = _newton(transfer, start)
-        if pole is not None and all(abs(pole - other) > 1e-8 * abs(pole) for other in found):
+        if pole is not None and all(abs(pole - other) > SAME * abs(pole) for other in found):
             found.append(pole)
     return sorted(found, key=lambda s: (-s.real, s.imag))
 

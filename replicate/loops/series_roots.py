@@ -11,6 +11,7 @@ Array = NDArray[np.float64]
 
 STEPS = 60  # most steps of Newton's method; bisection alone needs no more
 CONVERGED = 1e-9  # last step of Newton's method, after which the next would be far below rounding
+MOST = 0.7  # share of the points that still move above which it does not pay to leave the others out
 FEW = 64  # series whose polynomials are evaluated as cosines; for more, a recurrence is quicker
 
 
@@ -74,7 +75,7 @@ def roots(
             moving = int(np.count_nonzero(on))
             if moving == 0:
                 break
-            if moving < 0.7 * on.size:
+            if moving < MOST * on.size:
                 x[places] = at
                 places, at, low, high, sign = places[on], at[on], low[on], high[on], sign[on]
                 series, slope = series[:, on], slope[:, on]

@@ -38,6 +38,7 @@ TOUCHING = 1e-13  # |1 + L| at a gain crossover at which a pole is on the axis t
 CLOSED_FORM = 3  # coefficients of D up to which the crossovers are roots of a quadratic in w^2
 APART = 1e-3  # relative distance of crossovers that are not a double root
 PER_DECADE = 30  # of the grid on which gain crossovers are checked
+BAND = 1e3  # factor by which it goes beyond the corners on both sides
 ARC_POINTS = 33
 UNDAMPED = 1e-12  # damping of a function's pole that is on the axis to rounding,
 BESIDE = 1e-8  # and the radius of the path around it, both relative to its modulus
@@ -133,7 +134,7 @@ def _all_crossovers(transfer: LoopTransfer) -> Array:
     corners = np.concatenate([np.abs(transfer.corner_frequencies), roots])
     if corners.size == 0:
         return roots
-    low, high = 1e-3 * corners.min(), 1e3 * corners.max()
+    low, high = corners.min() / BAND, BAND * corners.max()
     grid = np.geomspace(low, high, max(2, int(PER_DECADE * np.log10(high / low))))
     w = np.unique(np.concatenate([grid, np.sqrt(roots[1:] * roots[:-1])]))
     with np.errstate(divide="ignore"):

@@ -24,6 +24,8 @@ ComplexArray = NDArray[np.complex128]
 SAME = 1e-9  # relative distance at which two roots, or two dead times, are one
 CANCELLED = 1e-11  # size of a Taylor coefficient, relative to its parts, that is a zero
 CIRCLE_POINTS = 48
+NEAR = 0.4  # of the radius of that circle: points that are evaluated by it
+AT_REST = 1e-6  # of the lowest corner: a frequency at which only what happens at rest shows
 
 
 class SumPlant(Plant):
@@ -72,7 +74,7 @@ class SumPlant(Plant):
         s = np.asarray(s, dtype=complex)
         near = np.zeros(s.shape, dtype=bool)
         for pole in self.removable:
-            near |= np.abs(s - pole) < 0.4 * self._radius
+            near |= np.abs(s - pole) < NEAR * self._radius
         with np.errstate(divide="ignore", invalid="ignore"):
             values = np.array(self._direct(s), dtype=complex)
         if near.any():
@@ -147,7 +149,7 @@ class SumPlant(Plant):
     def gain_is_negative(self) -> bool:
         """Whether only a negative integral gain can stabilise the plant."""
         low, _ = self.corners
-        at = 1e-6 * low
+        at = AT_REST * low
         unstable = sum(p.real > 0.0 for p in _roots(self.common_den)) - sum(p.real > 0.0 for p in self.removable)
         value = complex(self.delay_free(np.array([at + 0j]))[0]).real
         return bool(value * (-1.0) ** unstable < 0.0)

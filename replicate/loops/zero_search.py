@@ -24,6 +24,9 @@ ComplexArray = NDArray[np.complex128]
 Function = Callable[[ComplexArray], ComplexArray]
 
 CIRCLE_POINTS = 64
+WHOLE = 1e-3  # distance of a count of zeros from a whole number, unless one lies near the circle
+LARGEST_STEP = 0.3  # of Newton's method, relative to the modulus, so that s = 0 is not jumped over
+ARRIVED, STEPS = 1e-14, 60  # its last relative step, and their number
 EDGE_POINTS = 24
 PER_RADIAN = 3.0  # points of an edge for each rad that the argument may turn
 SMALLEST = 1e-9  # size of a rectangle, relative to the modulus, in which several zeros are one
@@ -126,7 +129,7 @@ def zero_in_circle(f: Function, slope: Function, center: complex, radius: float)
     ratio = slope(s) / f(s) * radius * turn
     count = float(np.mean(ratio).real)
     order = round(count)
-    if order < 1 or abs(count - order) > 1e-3:
+    if order < 1 or abs(count - order) > WHOLE:
         return None
     return Zero(center + complex(np.mean((s - center) * ratio)) / order, order)
 
@@ -134,13 +137,13 @@ def zero_in_circle(f: Function, slope: Function, center: complex, radius: float)
 def newton(f: Function, slope: Function, start: complex) -> complex | None:
     """Return the zero to which Newton's method leads, or None if it does not converge."""
     s = np.array([start], dtype=complex)
-    for _ in range(60):
+    for _ in range(STEPS):
         with np.errstate(all="ignore"):
             step = f(s) / slope(s)
         if not np.isfinite(step[0]):
             return None
-        s = s - step * min(1.0, 0.3 * abs(s[0]) / max(abs(step[0]), 1e-300))
-        if abs(step[0]) <= 1e-14 * abs(s[0]):
+        s = s - step * min(1.0, LARGEST_STEP * abs(s[0] / step[0]) if step[0] else 1.0)
+        if abs(step[0]) <= ARRIVED * abs(s[0]):
             return complex(s[0])
     return None
 
