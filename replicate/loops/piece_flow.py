@@ -82,7 +82,7 @@ def piece_flow(chain: Chain, row: Row, delays: Array, h: float, *, closed: bool 
     through[:, m * points + n] += row.r
     fed_back = np.eye(points) - through[:, -points:]
     u = np.linalg.solve(fed_back, through[:, :-points]) if any(part.any() for part in own) else through[:, :-points]
-    x = (states[:, :-points] + states[:, -points:] @ u).reshape(points, n, -1)
+    x = (states[:, :-points] + states[:, -points:] @ u).reshape(points, n, u.shape[1])
     v = np.array([part @ u for part in own])
     for i in range(m):
         v[i, :, i * points : (i + 1) * points] += np.eye(points)

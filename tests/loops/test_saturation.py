@@ -39,6 +39,16 @@ def test_an_integrator_rises_at_its_limit_and_then_follows_its_exponential() -> 
     np.testing.assert_allclose(response.control(t), np.minimum(0.5, 2 * (1 - exact)), atol=1e-13)
 
 
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_static_plant_moves_from_dead_time_to_dead_time(scheme: Any) -> None:
+    response = Loop(Plant([2.0], [1.0], 1.0), PI(0.4)).saturated((-0.3, 0.3), scheme, until=8.0)
+    control = 0.0
+    for n in range(8):
+        output, control = 2.0 * control, float(np.clip(0.4 * (1.0 - 2.0 * control), -0.3, 0.3))
+        assert float(response.output(n + 0.5)) == pytest.approx(output, abs=1e-14)
+        assert float(response.control(n + 0.5)) == pytest.approx(control, abs=1e-14)
+
+
 def test_wind_up_ends_when_the_integral_of_the_error_says_so() -> None:
     k, ki, high = 1.2, 0.8, 1.05
     response = FOPTD.saturated((0.0, high), until=30.0)
