@@ -26,16 +26,14 @@ from replicate.loops.chain import Chain, open_loop_of
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.loop_transfer import ILL_POSED
+from replicate.loops.pending_jumps import PendingJumps
 from replicate.loops.piece_flow import (
     DEGREE,
     MOST_PIECES,
     SAME,
-    SMALLEST_JUMP,
-    SMOOTHEST,
     STARTING,
     Row,
     delayed_values,
-    integrations,
     nominal,
     piece_flow,
 )  # fmt: skip
@@ -91,6 +89,7 @@ class _March:
 
     def __post_init__(self) -> None:
         self.row = Row(self.g @ self.chain.wx, self.g @ self.chain.wv, float(self.g @ self.chain.wr))
+        self.jumps = PendingJumps(self.chain, self.row, self.delays)
         self.x = self.chain.start * self.setpoint
         self.resolution = Resolution(START * abs(self.setpoint))
         self.algebraic = 1.0 - (float(self.row.v[0]) if self.delays[0] == 0.0 else 0.0)
@@ -100,16 +99,15 @@ class _March:
 
     def run(self, until: float) -> None:
         """March to the horizon."""
-        stops = [*self._jumps(until), until]
         self._send(0.0, float(self.g[3]) * self.chain.setpoint_impulse * self.setpoint / self.algebraic)
-        length = min(self._first_length(), stops[0])
+        self.jumps.expect(0.0)
+        length = self._first_length()
         previous = np.inf
         while self.breaks[-1] < until * (1.0 - SAME):
             start = self.breaks[-1]
-            while stops[0] <= start * (1.0 + SAME):
-                stops.pop(0)
-            rest = stops[0] - start
-            pieces = np.ceil(rest / length * (1.0 - SAME))
+            self.jumps.pass_by(start)
+            rest = min(self.jumps.next, until) - start
+            pieces = max(1.0, np.ceil(rest / length * (1.0 - SAME)))
             h = rest / pieces if pieces <= 2.0 else length
             self._receive(start)
             y, u, v, end = self._piece(start, h)
@@ -121,7 +119,7 @@ class _March:
                     raise LoopError(msg)
                 continue
             previous = np.inf
-            stop = stops[0] if pieces <= 1.0 else start + h
+            stop = min(self.jumps.next, until) if pieces <= 1.0 else start + h
             self.breaks.append(stop)
             self.output.append(y)
             self.control.append(u)
@@ -138,29 +136,7 @@ class _March:
         radius = float(np.max(np.abs(np.linalg.eigvals(a)), initial=0.0))
         return STARTING / radius if radius else np.inf
 
-    # ---- jumps and impulses on their way ---------------------------------------------------------------------------
-
-    def _jumps(self, until: float) -> list[float]:
-        """Return the times at which a derivative that matters can jump: sums of dead times, ascending."""
-        around = [integrations(self.chain, self.row, i, most=SMOOTHEST) for i in range(self.delays.size)]
-        pending, found = [(0.0, 0, 1.0)], []
-        known: dict[float, tuple[int, float]] = {}
-        while pending:
-            time, order, size = heapq.heappop(pending)
-            while pending and pending[0][0] <= time * (1.0 + SAME):
-                _, other, weight = heapq.heappop(pending)
-                order, size = min(order, other), max(size, weight) if other == order else size
-            if time:
-                found.append(time)
-            for i, delay in enumerate(self.delays):
-                weight = size * abs(float(self.row.v[i])) if around[i] == 0 else size
-                if delay and order < SMOOTHEST and weight > SMALLEST_JUMP and time + delay < until:
-                    heapq.heappush(pending, (time + float(delay), order + around[i], weight))
-            known[time] = (order, size)
-            if len(found) > MOST_PIECES:
-                msg = f"the response jumps more than {MOST_PIECES} times up to t = {until:g}: choose a shorter horizon"
-                raise LoopError(msg)
-        return found
+    # ---- impulses on their way ---------------------------------------------------------------------------
 
     def _send(self, time: float, weight: float) -> None:
         """Note an impulse of the control signal: it arrives after each dead time."""

@@ -10,7 +10,6 @@ Reference: Shampine and Thompson, "Event location for ordinary differential equa
 
 from __future__ import annotations
 
-import heapq
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,17 +18,15 @@ from numpy.typing import NDArray
 from replicate.loops.anti_windup import FREE, LimitedController, Mode
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.limit_events import Piece, first_end
+from replicate.loops.pending_jumps import PendingJumps
 from replicate.loops.piece_flow import (
     DEGREE,
     MOST_PIECES,
     SAME,
-    SMALLEST_JUMP,
-    SMOOTHEST,
     STARTING,
     PieceFlow,
     Row,
     delayed_values,
-    integrations,
     nominal,
     piece_flow,
 )  # fmt: skip
@@ -69,7 +66,6 @@ class LimitedSteps:
     control: list[Array] = field(default_factory=list)
     command: list[Array] = field(default_factory=list)
     modes: list[Mode] = field(default_factory=list)
-    stops: list[tuple[float, int, float]] = field(default_factory=list)  # (time, order of the jump, size), a heap
     maps: dict[tuple[Mode, float, float], PieceFlow] = field(default_factory=dict)
     tried: list[Mode] = field(default_factory=list)  # modes in which the next piece cannot begin
 
@@ -81,13 +77,12 @@ class LimitedSteps:
             raise ImproperLoopError(msg)
         self.x = np.zeros(chain.e.size)
         self.setpoint = 0.0
-        self.around = [integrations(chain, row, i, most=SMOOTHEST) for i in range(self.delays.size)]
+        self.jumps = PendingJumps(chain, row, self.delays)
         self.resolution = Resolution(START * max((abs(value) for _, value in self.setpoints), default=0.0))
         for time, _ in self.setpoints:
-            heapq.heappush(self.stops, (time, 0, 1.0))
+            self.jumps.expect(time)
         for time, _ in self.loads:
-            for delay in self.delays:
-                self._stop(time + float(delay), 0, 1.0)
+            self.jumps.expect_load(time)
         a = chain.a + (np.outer(chain.b[:, 0], row.x) / (1.0 - direct) if self.delays[0] == 0.0 else 0.0)
         radius = float(np.max(np.abs(np.linalg.eigvals(a)), initial=0.0))
         self.length = self.resolution.fastest = STARTING / radius if radius else np.inf
@@ -104,7 +99,7 @@ class LimitedSteps:
         while self.breaks[-1] < until * (1.0 - SAME):
             start = self.breaks[-1]
             self._arrive(start)
-            stop = min(self.stops[0][0], until) if self.stops else until
+            stop = min(self.jumps.next, until)
             rest = stop - start
             pieces = max(1.0, np.ceil(rest / self.length * (1.0 - SAME)))
             h = rest / pieces if pieces <= 2.0 else self.length
@@ -126,7 +121,7 @@ class LimitedSteps:
                 y, u, _, command, x = self._piece(start, share, self.mode)
                 self._accept(start + share, y, u, command, x)
                 self.mode = event[1]
-                self._send(start + share, 1, 1.0)
+                self.jumps.send(start + share, 1)
                 self.length = h
             else:
                 self._change_at_once(start, event[1])
@@ -147,30 +142,13 @@ class LimitedSteps:
 
     # ---- what arrives ----------------------------------------------------------------------------------------------
 
-    def _stop(self, time: float, order: int, size: float) -> None:
-        if order < SMOOTHEST and size > SMALLEST_JUMP:
-            heapq.heappush(self.stops, (time, order, size))
-
-    def _send(self, time: float, order: int, size: float) -> None:
-        """Note that a derivative of the control signal jumps: the jump arrives after each dead time."""
-        for delay in self.delays[self.delays > 0.0]:
-            self._stop(time + float(delay), order, size)
-
     def _arrive(self, start: float) -> None:
-        """Take the stops that are reached off the heap, let their jumps go around again, and move the set-point."""
-        order, size = SMOOTHEST, 0.0
-        while self.stops and self.stops[0][0] <= start * (1.0 + SAME):
-            _, other, weight = heapq.heappop(self.stops)
-            order, size = min(order, other), max(size, weight)
-        if size:
-            for i, around in enumerate(self.around):
-                weight = size * abs(float(self.controller.command.v[i])) if around == 0 else size
-                self._send(start, order + around, weight)
+        """Let the jumps that are reached go around again, and move the set-point."""
+        self.jumps.pass_by(start)
         setpoint = _value(self.setpoints, start)
         if setpoint != self.setpoint:
             self.x = self.x + self.controller.chain.start * (setpoint - self.setpoint)
             self.setpoint = setpoint
-            self._send(start, 0, 1.0)
 
     # ---- one piece -------------------------------------------------------------------------------------------------
 
@@ -184,7 +162,7 @@ class LimitedSteps:
                 raise LoopError(msg)
         self.mode = following
         if start:
-            self._send(start, 1, 1.0)
+            self.jumps.send(start, 1)
 
     def _event(self, start: float, h: float, v: Array, command: Array) -> tuple[float, Mode] | None:
         size = max(self.resolution.size_u, float(np.max(np.abs(command))))
