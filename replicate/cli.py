@@ -12,6 +12,7 @@ import signal
 import sys
 import threading
 import traceback
+from types import FrameType
 from typing import Annotated, NoReturn
 
 import typer
@@ -85,7 +86,13 @@ def _prepare() -> None:
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, lambda *_: sys.exit(TERMINATED))
+        signal.signal(signal.SIGTERM, _end)
+
+
+def _end(number: int, _: FrameType | None) -> NoReturn:
+    """Tidy up and end; whoever asks again asks for what is being done."""
+    signal.signal(number, signal.SIG_IGN)
+    sys.exit(TERMINATED)
 
 
 def _one_line(error: Exception) -> str:
@@ -97,6 +104,8 @@ def _one_line(error: Exception) -> str:
         context = getattr(error, "ctx", None)
         hint = f" ({context.command_path} --help shows what is allowed)" if context else ""
         return f"{' '.join(usage().split()).rstrip('.')}{hint}"
+    if isinstance(error, OSError) and error.filename:
+        return f"{error.filename}: {error.strerror or type(error).__name__}"
     return f"unexpected {type(error).__name__}: {text} (--debug shows where)"
 
 

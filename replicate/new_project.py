@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 
 from replicate import resources
@@ -42,7 +43,7 @@ def new_project(folder: Path, title: str = "") -> None:
         if (folder / place).exists():
             msg = f"{folder / place}: exists already; nothing was written"
             raise OutputError(msg)
-    words = folder.resolve().name.replace("-", " ").replace("_", " ")
+    words = Path(os.path.realpath(folder)).name.replace("-", " ").replace("_", " ")
     schemas = {f"{SCHEMAS}/{name}.schema.json": text for name, text in resources.schemas().items() if name in _WRITTEN}
     name = title or words[:1].upper() + words[1:]
     variables = {

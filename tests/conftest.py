@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -110,8 +111,10 @@ def command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
     def run(*arguments: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["replicate", *arguments])
         capsys.readouterr()
+        earlier = signal.getsignal(signal.SIGTERM)
         with pytest.raises(SystemExit) as exit_:
             cli.main()
+        signal.signal(signal.SIGTERM, earlier)
         code = exit_.value.code
         assert isinstance(code, int)
         return code, *capsys.readouterr()

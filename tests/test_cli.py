@@ -14,6 +14,8 @@ import pytest
 from installed_paper import contents
 
 from replicate import cli
+from replicate.staging import stage
+from replicate.staging.journal import throw_away
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -178,9 +180,14 @@ def test_a_terminal_without_unicode(folder: Path, tmp_path: Path) -> None:
 
 
 def test_a_run_that_is_told_to_end_tidies_up(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(target: Path) -> None:
+        os.kill(os.getpid(), signal.SIGTERM)
+        throw_away(target)
+
     replicate("report", "lab", "-j1")
     before = contents(Path("build"))
     monkeypatch.setattr("replicate.report.pages.build_report", lambda *_, **__: os.kill(os.getpid(), signal.SIGTERM))
+    monkeypatch.setattr(stage, "throw_away", interrupted)
     assert replicate("report", "lab", "-j1")[0] == 143
     assert contents(Path("build")) == before
     assert not [path for path in Path("build").rglob("*") if path.name in ("new", "journal.json", "lock")]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 import synthetic
+from conftest import Run
 
 from replicate import plain_text
 from replicate.display import markdown, pandoc
@@ -65,6 +67,34 @@ def test_a_roster_may_come_from_a_pipe(tmp_path: Path) -> None:
     writer.start()
     assert read_roster(path) == ["a1", "b2"]
     writer.join()
+
+
+LONG = "x" * 300
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links in a circle and short names are of POSIX")
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("report", "lab", "--out", "circle"), "circle: cannot be written: it is a link that leads nowhere"),
+        (("report", "lab", "--out", "nowhere"), "nowhere: cannot be written: it is a link that leads nowhere"),
+        (("report", "lab", "--out", LONG), "File name too long"),
+        (("diff", "lab", "--accepted", LONG), "File name too long"),
+        (("list", "--papers", "circle"), "there is no folder circle"),
+        (("list", "--papers", LONG), "File name too long"),
+        (("init", "circle"), "circle: cannot be written: it is a link that leads nowhere"),
+        (("handout", "lab", "--exercises", LONG), "File name too long"),
+    ],
+)
+def test_links_that_lead_nowhere_and_long_names_are_one_line(
+    replicate: Run, arguments: tuple[str, ...], said: str
+) -> None:
+    Path("circle").symlink_to("circle")
+    Path("nowhere").symlink_to("there/is/none")
+    status, _, errors = replicate(*arguments, "-j1") if arguments[0] not in ("init", "list") else replicate(*arguments)
+    assert status == 2
+    assert errors.endswith(f"{said}\n")
+    assert "unexpected" not in errors
 
 
 @pytest.mark.parametrize("text", ["a = " + "[" * 10**5, "a = " + "{b = " * 10**4])

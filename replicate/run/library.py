@@ -6,6 +6,7 @@ those that come with this package. A paper that is named is looked for in all of
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -65,7 +66,7 @@ class Library:
         return found
 
     def _in(self, folder: Path) -> list[Found]:
-        place = folder.resolve()
+        place = Path(os.path.realpath(folder))  # of links in a circle, too
         if place not in self._looked_into:
             self._looked_into[place] = papers_in(folder)
         return self._looked_into[place]

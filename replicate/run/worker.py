@@ -82,7 +82,10 @@ def settled(surroundings: Surroundings) -> Output:
     with contextlib.suppress(OSError):
         os.chdir(surroundings.folder)
     output = Output(surroundings.output)
-    output.begin()
+    try:
+        output.begin()
+    except FileNotFoundError:  # the main process has ended meanwhile, and taken its folder with it
+        os._exit(0)
 
     from replicate.run.isolation import isolate_matplotlib
 

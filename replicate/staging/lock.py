@@ -59,7 +59,7 @@ def locked(path: Path, say: Callable[[str], None]) -> Iterator[None]:
     OSError
         If the file cannot be made.
     """
-    key = path.resolve()
+    key = Path(os.path.realpath(path))  # of links in a circle, too
     if key in _held:
         msg = f"{path.parent.parent}: this process is writing to it already"
         raise OutputError(msg)

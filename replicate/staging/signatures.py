@@ -8,6 +8,7 @@ chunk in PNG.
 from __future__ import annotations
 
 import hashlib
+import os
 import re
 import struct
 import zlib
@@ -69,7 +70,7 @@ def write_signed(path: Path, content: bytes) -> None:
     OutputError
         If another file is there, or one that was changed after we wrote it, or nothing can be written.
     """
-    place = path.resolve() if path.is_symlink() else path
+    place = Path(os.path.realpath(path)) if path.is_symlink() else path
     new = signed(content)
     if place.exists() and not (place.is_file() or place.is_dir()):  # a device may never come to an end
         msg = f"{path}: is in the way, and is not a file; choose another --out"

@@ -138,7 +138,8 @@ def unwritable(target: Path, error: OSError) -> OSError | OutputError:
         return error
     seen = [name.relative_to(folder) for name in ours if name.is_relative_to(folder)]
     place = next((target / name for name in seen if ROOM not in name.parts), target)
-    return OutputError(f"{place}: cannot be written: {error.strerror or error}")
+    why = "it is a link that leads nowhere" if place.is_symlink() and not place.exists() else error.strerror or error
+    return OutputError(f"{place}: cannot be written: {why}")
 
 
 def say(text: str) -> None:
