@@ -36,6 +36,8 @@ from replicate.run.exits import only_ours
 from replicate.run.isolation import isolate_matplotlib
 from replicate.terminal.streams import lost_output, say, whole_output
 
+_LONGEST = 2000  # characters of a message
+
 app = typer.Typer(
     name="replicate",
     help="Recompute the numbers that papers print, compare them, and explain the differences.",
@@ -74,7 +76,7 @@ def _run() -> NoReturn:
         if debug:
             raise
         if lost_output(sys.stdout) is None:  # otherwise that is the error
-            say(f"replicate: {_one_line(error)}")
+            say(f"replicate: {_shortened(_one_line(error))}")
         sys.exit(BROKEN)
     sys.exit(status or 0)
 
@@ -93,6 +95,11 @@ def _end(number: int, _: FrameType | None) -> NoReturn:
     """Tidy up and end; whoever asks again asks for what is being done."""
     signal.signal(number, signal.SIG_IGN)
     sys.exit(TERMINATED)
+
+
+def _shortened(line: str) -> str:
+    """Return a line that a damaged file cannot make endless: its middle is left out."""
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 2 :]}"
 
 
 def _one_line(error: Exception) -> str:

@@ -475,7 +475,7 @@ def test_the_longest_comes_first(tmp_path: Path) -> None:
     assert [unit.exhibit for unit in again] == ["unknown", "long", "middle", "short"]
 
 
-@pytest.mark.parametrize("content", ["", "[]", '{"lab/short": "much"}', "\x00"])
+@pytest.mark.parametrize("content", ["", "[]", '{"lab/short": "much"}', f'{{"lab/short": {"9" * 400}}}', "\x00"])
 def test_a_damaged_file_of_costs_is_no_loss(tmp_path: Path, content: str) -> None:
     (tmp_path / "costs.json").write_text(content)
     units = [Unit("lab", "lab_paper", id) for id in ("a", "b")]

@@ -133,7 +133,10 @@ def test_the_first_version_is_read() -> None:
         ('{"format": "figure record", "version": 2, "figure": {}, "panels": {}}', "expected: a list of objects"),
         ('{"format": "figure record", "version": 2, "figure": [], "panels": []}', "'figure' must be an object"),
         ('{"format": "figure record", "version": 2, "figure": {"parts": [1]}, "panels": []}', "parts of the figure"),
-        ("[" * 100_000, "is not valid JSON"),
+        ("[" * 100_000, "is not valid JSON: too many brackets"),
+        (f"[{'9' * 400}]", r"is not valid JSON: 9+ is beyond the largest number"),
+        ("[1e999]", "1e999 is beyond the largest number"),
+        ('["\\ud800"]', "is not valid JSON: .*surrogates"),
     ],
 )
 def test_damage_is_said_in_one_line(text: str, said: str) -> None:
@@ -158,7 +161,7 @@ def test_every_damaged_value_of_a_record_is_refused_or_compared() -> None:
         owner = damaged
         for key in above:
             owner = owner[key]
-        owner[last] = [None, "x", -1, [], {}][int(noise.integers(5))]
+        owner[last] = [None, "x", -1, 10**400, [], {}][int(noise.integers(6))]
         with contextlib.suppress(FigureRecordError):  # and no other error
             compare(Record.from_json(json.dumps(damaged)), whole)
             compare(whole, Record.from_json(json.dumps(damaged)))

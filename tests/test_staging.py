@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 import signal
@@ -102,7 +103,7 @@ def test_a_folder_that_is_a_link_to_nothing_is_named(tmp_path: Path) -> None:
     (tmp_path / "report").symlink_to("elsewhere")
     with pytest.raises(OutputError, match="report is in the way, which is a symbolic link to nothing"):
         write(tmp_path, {"report/index.html": "new"})
-    with pytest.raises(OutputError, match="/report: cannot be written: File exists"):
+    with pytest.raises(OutputError, match="/report: cannot be written: it is a link that leads nowhere"):
         replace_files(tmp_path, {"report/index.html": b"new"})
     assert [path.name for path in tmp_path.iterdir()] == ["report"]
     with pytest.raises(OutputError, match="report/lab: cannot be written: File exists"):
@@ -232,6 +233,14 @@ def test_a_journal_cannot_lead_out_of_the_folder(tmp_path: Path) -> None:
     with pytest.raises(OutputError, match=r"journal\.json: is not a journal"):
         finish_interrupted(tmp_path / "build")
     assert (tmp_path / "mine").read_text() == "mine"
+
+
+def test_a_journal_with_a_name_that_no_file_can_have_is_one_line(tmp_path: Path) -> None:
+    room = tmp_path / "build/.replicate"
+    room.mkdir(parents=True)
+    (room / "journal.json").write_text(json.dumps({"put": [], "remove": ["x" * 300], "kept": [], "undo": False}))
+    with pytest.raises(OutputError, match=r"x: cannot be written: "):
+        finish_interrupted(tmp_path / "build")
 
 
 @posix

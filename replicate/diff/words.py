@@ -13,6 +13,7 @@ from typing import Any
 
 from replicate.errors import AcceptedStateError
 from replicate.exhibits import Claims, Exhibit, Table
+from replicate.figures.json_text import parse_json
 from replicate.verdicts.ledger import LedgerEntry
 
 #: By what they are about (``title``, ``reading 'x': note``, ``explanation of A x: cause``): the text.
@@ -83,11 +84,11 @@ def read_words(path: Path) -> Words:
     """
     where = f"{path.parent.name}/{path.name}"
     try:
-        content: Any = json.loads(path.read_text(encoding="utf-8"))
+        content: Any = parse_json(path.read_text(encoding="utf-8"))
     except OSError as error:
         msg = f"{where}: cannot be read: {error.strerror or error}"
         raise AcceptedStateError(msg) from error
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
         msg = f"{where}{line}: is not valid JSON: {error}"
         raise AcceptedStateError(msg) from error

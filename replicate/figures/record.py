@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
@@ -15,6 +16,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from replicate.figures.checking import check_record, refuse
+from replicate.figures.json_text import parse_json
 from replicate.figures.polylines import Points
 
 VERSION = 2
@@ -132,11 +134,23 @@ def _points(rows: Any, panel: str, name: str) -> Points:
 
 def _parsed(text: str) -> Any:
     try:
-        return json.loads(text, parse_constant=_no_number)
+        return parse_json(text, parse_constant=_no_number, parse_int=_integer, parse_float=_float)
     except json.JSONDecodeError as error:
         refuse(f"is not valid JSON: {error.msg}", error.lineno)
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         refuse(f"is not valid JSON: {error}")
+
+
+def _integer(digits: str) -> int | float:
+    return int(digits) if len(digits) <= sys.float_info.dig else _float(digits)
+
+
+def _float(digits: str) -> float:
+    value = float(digits)
+    if not math.isfinite(value):
+        msg = f"{digits[:20]} is beyond the largest number"
+        raise ValueError(msg)
+    return value
 
 
 def _no_number(name: str) -> NoReturn:

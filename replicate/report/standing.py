@@ -74,7 +74,7 @@ def standing(folder: Path, papers: Sequence[Paper], texts: str) -> Standing | No
         if found.versions != versions(found.versions) or found.made_of != _made_of(folder, papers, texts):
             return None
         whole = all(_digest((folder / name).read_bytes()) == digest for name, digest in found.files.items())
-    except (OSError, ValueError, TypeError, AttributeError, KeyError):
+    except (OSError, ValueError, TypeError, AttributeError, KeyError, RecursionError):
         return None
     return found if whole else None
 

@@ -63,7 +63,7 @@ class Costs:
             return {}
         if not isinstance(known, dict):
             return {}
-        return {name: float(cost) for name, cost in known.items() if isinstance(cost, int | float)}
+        return {name: float(cost) for name, cost in known.items() if isinstance(cost, float)}
 
     def longest_first(self, units: Iterable[Unit]) -> list[Unit]:
         """Return units in the order in which to begin them; those never seen come first, in the given order."""

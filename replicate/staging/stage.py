@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -138,7 +139,8 @@ def unwritable(target: Path, error: OSError) -> OSError | OutputError:
         return error
     seen = [name.relative_to(folder) for name in ours if name.is_relative_to(folder)]
     place = next((target / name for name in seen if ROOM not in name.parts), target)
-    why = "it is a link that leads nowhere" if place.is_symlink() and not place.exists() else error.strerror or error
+    leads_nowhere = os.path.islink(place) and not os.path.exists(place)  # noqa: PTH110, PTH114  -- of long names, too
+    why = "it is a link that leads nowhere" if leads_nowhere else error.strerror or error
     return OutputError(f"{place}: cannot be written: {why}")
 
 
