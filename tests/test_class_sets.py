@@ -8,10 +8,13 @@ import math
 import re
 from contextlib import suppress
 from dataclasses import replace
+from fractions import Fraction
 from functools import partial
 from pathlib import Path
 from random import Random
+from typing import Any
 
+import numpy as np
 import pytest
 import toy_class
 from typer.testing import CliRunner
@@ -27,7 +30,7 @@ from replicate.handout.drawings import Wanted
 from replicate.handout.edition import edition
 from replicate.handout.key_figures import key_figures
 from replicate.handout.letters import can_be_set
-from replicate.handout.marking_key import KeyRow, key_pdf, key_rows
+from replicate.handout.marking_key import KeyRow, key_pdf, key_rows, plain_decimals
 from replicate.handout.printout import markup, pdf
 from replicate.languages import language
 from replicate.papers.bayhan import paper as bayhan_paper
@@ -73,6 +76,13 @@ def test_what_is_rounded_as_asked_is_accepted() -> None:
     for _ in range(500):
         value, digits = rng.choice((-1, 1)) * 10 ** rng.uniform(-6, 6), rng.randint(1, 6)
         assert Answer(value, digits=digits).accepts(rounded(value, digits))
+
+
+@pytest.mark.parametrize("number", [Fraction(1, 3), np.float32(1 / 3), np.int64(3), 3])
+def test_an_answer_is_a_number_of_any_kind_and_can_be_written_in_decimals(number: Any) -> None:
+    answer = Answer(number, digits=3, carried=(number,), mistakes={"minus": -number})
+    assert answer == Answer(float(number), digits=3, carried=(float(number),), mistakes={"minus": -float(number)})
+    assert [plain_decimals(value) for value in (answer.value, *answer.carried)] == [f"{float(number):.7g}"] * 2
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ import random
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from numbers import Real
+from typing import Any
 
 from replicate.errors import PaperDefinitionError
 
@@ -86,6 +87,13 @@ class Answer:
         if margin is None or not 0 < margin < math.inf:
             msg = f"an answer has digits={self.digits}, tolerance={self.tolerance}; allowed: positive numbers"
             raise PaperDefinitionError(msg)
+        for field_, plain in (
+            ("value", _plain(self.value)),
+            ("tolerance", None if self.tolerance is None else _plain(self.tolerance)),
+            ("carried", tuple(map(_plain, self.carried))),
+            ("mistakes", {words: _plain(value) for words, value in self.mistakes.items()}),
+        ):
+            object.__setattr__(self, field_, plain)
 
     @property
     def accepted(self) -> tuple[float, float]:
@@ -111,6 +119,11 @@ class Answer:
 
 def _is_real(value: object) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def _plain(value: Any) -> float:
+    """Return a number, say a fraction or one of numpy's, as one that can be written in decimals."""
+    return value if isinstance(value, int | float) else float(value)
 
 
 def _is_count(value: object) -> bool:
