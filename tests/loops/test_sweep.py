@@ -16,6 +16,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from replicate.loops import PI, PID, Loop, LoopError, Plant, Signal, SweepResult, sweep
 from replicate.loops.sweep import running
 from replicate.loops.sweep.metric_names import ALLOWED
+from replicate.loops.sweep.paces import by_pace
 from replicate.loops.total_variation import total_variation
 
 FOPTD = Plant.foptd(gain=1.0, time_constant=1.0, dead_time=1.0)
@@ -357,3 +358,32 @@ def test_a_sweep_uses_one_thread_and_leaves_their_number_as_it_was(monkeypatch: 
         sweep(FOPTD, np.array([[0.5, 0.4], [0.6, 0.4]]), metrics="overshoot")
         assert seen == [{1}]
         assert threads() == before
+
+
+@pytest.mark.parametrize(
+    ("plant", "form"),
+    [
+        (Plant([1.0], [1.0, 1.0]), {"ki": 0.0}),
+        (Plant([2.0], [1.0, 3.0, 1.0]), {}),
+        (Plant([1.0], [1.0, 4.0, 6.0, 4.0, 1.0]), {"kd": 0.4, "derivative_filter": 0.05}),
+        (Plant([1.0], [1.0, 1.0, 0.0]), {"b": 0.3, "measurement_filter": 0.2, "setpoint_filter": 1.5}),
+        (Plant([-1.0, 2.0], [1.0, 3.0, 2.0]), {"k": 0.0}),
+    ],
+    ids=["first order, P", "second order, PI", "fourth order, PID", "integrating, filtered", "zero to the right, I"],
+)
+def test_a_block_without_dead_time_has_the_values_of_the_single_loops(plant: Plant, form: dict[str, Any]) -> None:
+    controllers = [PID(**{"k": 0.5 * (1.0 + 0.02 * i), "ki": 0.2 * (1.0 + 0.03 * i), **form}) for i in range(4)]
+    gains = np.array([[c.k, c.ki, c.kd, c.b] for c in controllers]).T
+    ((places, _),) = by_pace(plant, controllers[0], (gains[0], gains[1], gains[2], gains[3]))
+    assert places.size == 4  # they go together
+    result = sweep(plant, controllers, metrics=NAMES)
+    for i, controller in enumerate(controllers):
+        for name, expected in single(Loop(plant, controller), None).items():
+            np.testing.assert_allclose(result[name][0, i], expected, rtol=1e-9, atol=1e-12, err_msg=name)
+
+
+def test_loops_without_dead_time_are_grouped_by_their_pace() -> None:
+    gains = 10.0 ** np.repeat([-1.0, 1.0], 5)
+    groups = list(by_pace(Plant([1.0], [1.0, 1.0]), PI(1.0), (gains, 0.0 * gains, 0.0 * gains, gains**0.0)))
+    assert sorted(places.tolist() for places, _ in groups) == [[0, 1, 2, 3, 4], [5, 6, 7, 8, 9]]
+    assert groups[0][1].time != groups[1][1].time

@@ -34,7 +34,7 @@ def rightmost_poles(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
     poles = _polished(loops, _starts(loops))
     order = np.argsort(np.where(np.isfinite(poles), -poles.real, np.inf), axis=0)
     poles = np.take_along_axis(poles, order, axis=0)
-    first, rest = poles[0], poles[1:]
+    first, rest = poles[0], np.concatenate([poles[1:], np.full_like(poles[:1], np.nan)])  # there may be no other
     with np.errstate(all="ignore"):
         other = np.abs(rest - first) > SAME * np.abs(first)
         second = np.take_along_axis(rest, np.argmax(other, axis=0)[None], axis=0)[0]
@@ -53,7 +53,7 @@ def rightmost_poles(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
 
 def _starts(loops: LoopColumns) -> ComplexArray:
     """Return the rightmost poles of the loops with a rational function in place of the dead time."""
-    top, bottom = dead_time_polynomials(1.0)
+    top, bottom = dead_time_polynomials(1.0) if loops.delay else (np.ones(1), np.ones(1))
     fed_back = column_products(loops.num, top)
     whole = np.zeros((loops.den.size + bottom.size - 1, len(loops)))
     whole += np.convolve(loops.den, bottom)[:, None]

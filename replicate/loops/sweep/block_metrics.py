@@ -16,6 +16,7 @@ from replicate.loops.sweep.loop_columns import LoopColumns
 from replicate.loops.sweep.marching import march
 from replicate.loops.sweep.metric_names import LOAD, POLE, STABLE
 from replicate.loops.sweep.one_loop import UNSTABLE
+from replicate.loops.sweep.paces import FEWEST
 from replicate.loops.sweep.response_metrics import ResponseMetrics
 from replicate.loops.sweep.stability_counts import STABLE as IS_STABLE
 from replicate.loops.sweep.stability_counts import UNDECIDED, stability
@@ -27,7 +28,6 @@ Places = NDArray[np.intp]
 AT_A_TIME = 512
 SHORTER = (1, 2, 4)
 OF_THE_LOOP = ("ms", "mp", "gain_margin", "phase_margin", "delay_margin")
-FEWEST = 4  # loops below which a block costs more than they do one by one
 OF_A_STEP = ("overshoot", "rise_time", "delay_time")  # relative to the final value
 OF_THE_SIZE = ("overshoot", "peak")  # no unit of time in them
 OF_A_SQUARE = ("itae", "itse")  # squares of the unit of time
@@ -91,7 +91,6 @@ def is_batched(plant: Plant, form: PID, count: int) -> bool:
     return (
         count >= FEWEST
         and type(plant) is Plant
-        and plant.dead_time > 0.0
         and bool(plant.num[-1] != 0.0)
         and bool(form.k or form.ki or form.kd)
         and _is_proper(plant, form)
@@ -99,10 +98,12 @@ def is_batched(plant: Plant, form: PID, count: int) -> bool:
 
 
 def _is_proper(plant: Plant, form: PID) -> bool:
-    """Whether the loop gain stays finite at high frequency; of an ideal derivative of a jump it does not."""
+    """Whether the loop gain stays finite at high frequency, without dead time: vanishes there."""
     num, den = form.measurement_filter_polynomials()
     excess = plant.den.size - plant.num.size + den.size - num.size
-    return excess >= (1 if form.kd and not form.derivative_filter else 0)
+    ideal = bool(form.kd and not form.derivative_filter)
+    # a loop without dead time is closed at once: what jumps there is left to the single loop
+    return excess >= int(ideal) + int(not plant.dead_time) and not (ideal and form.c and not plant.dead_time)
 
 
 def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | None, band: float) -> BlockMetrics:

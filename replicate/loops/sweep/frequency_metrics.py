@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.sweep.frequency_scan import Scan, scan
-from replicate.loops.sweep.loop_columns import LoopColumns
+from replicate.loops.sweep.loop_columns import LoopColumns, column_products
+from replicate.loops.sweep.stability_counts import polynomial_roots
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
@@ -156,8 +157,19 @@ class FrequencyMetrics:
             at_rest = np.where((self._at_rest < 0.0) & (self._at_rest > -1.0), -1.0 / self._at_rest, np.inf)
             tail = 1.0 / self.loops.feedthrough
             margin = np.minimum(margin, np.minimum(at_rest, tail))
-            self.doubtful |= self._scan.beyond * (1.0 - 1e-12) > 1.0 / margin
+            self.doubtful |= self._may_be_real_beyond & (self._scan.beyond * (1.0 - 1e-12) > 1.0 / margin)
         return np.asarray(margin)
+
+    @property
+    def _may_be_real_beyond(self) -> Flags:
+        """Which curves may be real at a frequency beyond the grid; without dead time the roots of a polynomial say."""
+        if self.loops.delay:
+            return np.ones(len(self.loops), dtype=bool)
+        mirrored = self.loops.den * (-1.0) ** np.arange(self.loops.den.size - 1, -1, -1)
+        odd = column_products(self.loops.num, mirrored)[::-1][1::2]  # of N(s) D(-s): imaginary on the axis
+        roots, lost = polynomial_roots((odd * ((-1.0) ** np.arange(odd.shape[0]))[:, None])[::-1])
+        near = (roots.real > 0.9 * self._scan.w[-1] ** 2) & (np.abs(roots.imag) <= 0.5 * roots.real)
+        return np.asarray(near.any(axis=0) | lost)
 
 
 def _vertex(w: Array, values: Array, at: Places, column: Places) -> Array:
@@ -180,8 +192,9 @@ def _jet(loops: LoopColumns, w: Array) -> tuple[ComplexArray, ComplexArray, Comp
     q = n * inverse
     q_1 = (n_1 - q * d_1) * inverse
     q_2 = (n_2 - 2.0 * q_1 * d_1 - q * d_2) * inverse
-    delay = np.exp(-s)
-    return np.asarray(q * delay), np.asarray(1j * (q_1 - q) * delay), np.asarray((2.0 * q_1 - q_2 - q) * delay)
+    delay, turn = loops.delay, np.exp(-loops.delay * s)
+    slope, bend = 1j * (q_1 - delay * q), 2.0 * delay * q_1 - q_2 - delay * q
+    return np.asarray(q * turn), np.asarray(slope * turn), np.asarray(bend * turn)
 
 
 def _taylor(coefficients: Array, s: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:

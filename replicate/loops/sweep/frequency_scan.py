@@ -57,7 +57,7 @@ def scan(loops: LoopColumns, crossovers: Array) -> Scan:
     if high / TURN > MOST_FREQUENCIES:
         high = TURN * MOST_FREQUENCIES
     w = _grid(low, high, shared)
-    q = np.polyval(loops.shared_num, 1j * w) / np.polyval(loops.den, 1j * w) * np.exp(-1j * w)
+    q = np.polyval(loops.shared_num, 1j * w) / np.polyval(loops.den, 1j * w) * np.exp(-1j * loops.delay * w)
     powers = [q * (1j * w) ** n for n in range(loops.controller_zeros.shape[0])]
     matrix = np.stack(powers[::-1], axis=1)
     coefficients = loops.controller_zeros

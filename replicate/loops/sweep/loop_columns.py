@@ -1,7 +1,7 @@
 """Many loops of one plant as columns of arrays, and their transfer functions evaluated all at once.
 
 The unit of time is the dead time, so that plants of equal ratio of dead time to time constants share everything that is
-computed from the plant alone.
+computed from the plant alone; without dead time it is one that suits the loops (`replicate.loops.sweep.paces`).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ class LoopColumns:
     Attributes
     ----------
     plant
-        In units in which its dead time is one.
+        In units in which its dead time is one, if it has one.
     form
         A controller with the filters and weights that all share, in the same units; of its gains only which are zero
         counts.
@@ -53,9 +53,12 @@ class LoopColumns:
     gain: float
 
     @classmethod
-    def of(cls, plant: Plant, form: PID, k: Array, ki: Array, kd: Array, b: Array) -> LoopColumns:
-        """Return the columns of a rational plant with dead time."""
-        time, gain = plant.dead_time, Units.of(plant).gain
+    def of(
+        cls, plant: Plant, form: PID, k: Array, ki: Array, kd: Array, b: Array, *, time: float | None = None
+    ) -> LoopColumns:
+        """Return the columns of a rational plant; ``time`` is the unit of one without dead time."""
+        units = Units.of(plant)
+        time, gain = plant.dead_time or time or units.time, units.gain
         scaled = plant.rescaled(time, gain)
         return cls(
             scaled, Units(time, gain).controller(form), k * gain, ki * (gain * time), kd * (gain / time), b, time, gain
@@ -71,6 +74,11 @@ class LoopColumns:
         part.__dict__.update({name: self.__dict__[name] for name in SHARED if name in self.__dict__})
         part.__dict__.update({name: self.__dict__[name][:, places] for name in OWN if name in self.__dict__})
         return part
+
+    @property
+    def delay(self) -> float:
+        """The dead time: one, or zero."""
+        return self.plant.dead_time
 
     @cached_property
     def gains(self) -> Array:
@@ -132,7 +140,7 @@ class LoopColumns:
 
     def value(self, s: ComplexArray) -> ComplexArray:
         """Evaluate L at ``s`` of shape (..., n), in the columns' unit of time."""
-        return np.asarray(horner(self.num, s) / np.polyval(self.den, s) * np.exp(-s))
+        return np.asarray(horner(self.num, s) / np.polyval(self.den, s) * np.exp(-self.delay * s))
 
     def feedback(self, s: ComplexArray) -> ComplexArray:
         """Evaluate the controllers' transfer functions from -y to u at ``s`` of shape (n,)."""
@@ -141,11 +149,11 @@ class LoopColumns:
         return np.asarray(controller * np.polyval(num, s) / np.polyval(den, s))
 
     def newton_step(self, s: ComplexArray) -> ComplexArray:
-        """Return f(s)/f'(s) of the characteristic function f = D + N exp(-s)."""
-        delay = np.exp(-s)
+        """Return f(s)/f'(s) of the characteristic function f = D + N exp(-delay s)."""
+        turn = np.exp(-self.delay * s)
         n, n_slope = horner_with_slope(self.num, s)
         d, d_slope = horner_with_slope(self.den[:, None], s)
-        return np.asarray((d + n * delay) / (d_slope + (n_slope - n) * delay))
+        return np.asarray((d + n * turn) / (d_slope + (n_slope - self.delay * n) * turn))
 
     def final(self, setpoint: float, load: float) -> tuple[Array, Array]:
         """Return the steady-state values of output and control signal; ``nan`` where there is none."""

@@ -1,8 +1,9 @@
 """The method of steps for many loops of one plant at once: one matrix product for each piece of all responses.
 
 The map of a piece (`replicate.loops.method_of_steps`) does not contain the gains, so that it is the same for all loops;
-the control law acts column by column. A loop leaves the block when its response has come to rest, or when what is left
-is one mode (`replicate.loops.sweep.last_mode`), whose rest is known in closed form.
+the control law acts column by column; without dead time each loop has a map of its own. A loop leaves the block when
+its response has come to rest, or when what is left is one mode (`replicate.loops.sweep.last_mode`), whose rest is known
+in closed form.
 """
 
 from __future__ import annotations
@@ -16,8 +17,10 @@ from numpy.typing import NDArray
 from replicate.loops import chebyshev
 from replicate.loops.chain import Chain, build_chain
 from replicate.loops.sweep.block_series import DEGREE
+from replicate.loops.sweep.closed_law import ClosedLaw
 from replicate.loops.sweep.last_mode import LastModes, last_modes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
+from replicate.loops.sweep.paces import PACE
 from replicate.loops.sweep.piece_law import POINTS, WEIGHTS, PieceLaw
 
 Array = NDArray[np.float64]
@@ -127,7 +130,7 @@ def march(
     """
     chain = build_chain(loops.plant, loops.form, integral=bool(loops.form.ki), derivative=bool(loops.form.kd))
     chain = chain.balanced(np.max(np.abs(loops.gains), axis=1))
-    radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
+    radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0)) if loops.delay else PACE
     march = _March(loops, chain, setpoint, load, until, band, control)
     return march.run(shorter * max(1, int(np.ceil(radius / STIFFNESS))))
 
@@ -174,7 +177,8 @@ class _March:
             if self.until is not None or (index + 1) % splits or index < 3 * splits:
                 continue
             leaving = state.at_rest()
-            if (index + 1) // splits >= look:
+            # without dead time the unit is short beside slow modes: over it two of them pass for one
+            if self.loops.delay and (index + 1) // splits >= look:
                 look = int(np.ceil(look * LOOKS))
                 modes = state.last_modes()
                 modes.found &= ~(leaving | state.left)
@@ -207,7 +211,9 @@ class _Moving:
         chain = march.chain
         self.march, self.splits, self.columns = march, splits, columns
         self.loops = march.loops.take(columns)
-        self.law = PieceLaw.of(self.loops, chain, 1.0 / splits, march.setpoint, march.load)
+        self.law: PieceLaw | ClosedLaw = (PieceLaw if self.loops.delay else ClosedLaw).of(
+            self.loops, chain, 1.0 / splits, march.setpoint, march.load
+        )
         self.final, self.band = march.final[columns], march.band[columns]
         self.state = np.repeat(chain.start[:, None] * march.setpoint, columns.size, axis=1)
         self.entering = deque(np.zeros((POINTS + chain.e.size + 1, columns.size)) for _ in range(splits))

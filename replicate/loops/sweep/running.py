@@ -17,9 +17,9 @@ from replicate.loops.sweep.axes import Axis, controller_axis, plant_axis
 from replicate.loops.sweep.block_metrics import answered, block_metrics, is_batched
 from replicate.loops.sweep.blocks import Block, grid_blocks, pair_blocks
 from replicate.loops.sweep.controller_table import ControllerTable
-from replicate.loops.sweep.loop_columns import LoopColumns
 from replicate.loops.sweep.metric_names import POLE, STABLE, checked_metrics
 from replicate.loops.sweep.one_loop import LoopMetrics, loop_metrics
+from replicate.loops.sweep.paces import by_pace
 from replicate.loops.sweep.sweep_result import GRID, PAIRWISE, SweepResult
 
 
@@ -139,18 +139,18 @@ def _compute(
     alone = np.ones(places.size, dtype=bool)
     together = answered(names) if is_batched(block.plant, block.form, places.size) else ()
     if together:
-        loops = LoopColumns.of(
-            block.plant, block.form, *(array[rows] for array in (table.k, table.ki, table.kd, table.b))
-        )  # fmt: skip
+        gains = table.k[rows], table.ki[rows], table.kd[rows], table.b[rows]
         with np.errstate(over="ignore", invalid="ignore"):  # of gains beyond all measure: left to the single loop
-            found = block_metrics(loops, together, until, band)
-        alone = found.alone
-        values[STABLE][places] = found.stable
-        for name, array in found.values.items():
-            values[name][places[~alone]] = array[~alone]
-        for flags, why in found.reasons:
-            for place in places[flags & ~alone]:
-                reason[place] = f"{reason[place]}; {why}" if reason[place] else why
+            for part, loops in by_pace(block.plant, block.form, gains):
+                found = block_metrics(loops, together, until, band)
+                alone[part] = found.alone
+                own = places[part]
+                values[STABLE][own] = found.stable
+                for name, array in found.values.items():
+                    values[name][own[~found.alone]] = array[~found.alone]
+                for flags, why in found.reasons:
+                    for place in own[flags & ~found.alone]:
+                        reason[place] = f"{reason[place]}; {why}" if reason[place] else why
     rest = tuple(name for name in names if name not in together)
     for i in np.arange(places.size) if rest else np.nonzero(alone)[0]:
         asked = names if alone[i] else rest

@@ -8,7 +8,7 @@ crossovers nearly touch or the curve nearly passes through -1, is left to the si
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,7 +28,7 @@ UNSTABLE, STABLE, UNDECIDED = 0, 1, 2
 
 @dataclass(frozen=True)
 class Characteristic:
-    """N, D and the dead time, one, of the characteristic functions D + N exp(-s) of many loops.
+    """N, D and the dead time of the characteristic functions D + N exp(-delay s) of many loops.
 
     Attributes
     ----------
@@ -38,6 +38,8 @@ class Characteristic:
         The roots of N and of D, each of shape (n,) or (1,).
     lost
         Loops whose N is of lower degree than the others'.
+    delay
+        One, or zero; without dead time L must vanish at infinite frequency.
     """
 
     num: Array
@@ -45,17 +47,21 @@ class Characteristic:
     zeros: Sequence[ComplexArray]
     poles: Sequence[ComplexArray]
     lost: Flags
+    delay: float
 
     @classmethod
     def of(cls, loops: LoopColumns) -> Characteristic:
         """Return those of a block."""
         own, lost = _controller_roots(loops.controller_zeros)
-        return cls(loops.num, loops.den[:, None], [*loops.zeros[:, None], *own], [*loops.poles[:, None]], lost)
+        return cls(
+            loops.num, loops.den[:, None], [*loops.zeros[:, None], *own], [*loops.poles[:, None]], lost, loops.delay
+        )
 
     def shifted(self, by: Array) -> Characteristic:
         """Return those whose roots are moved by -by, which differs from loop to loop."""
-        num, den = _shifted(self.num, by) * np.exp(-by), _shifted(self.den, by)
-        return Characteristic(num, den, [z - by for z in self.zeros], [p - by for p in self.poles], self.lost)
+        num, den = _shifted(self.num, by) * np.exp(-self.delay * by), _shifted(self.den, by)
+        zeros, poles = ([root - by for root in roots] for roots in (self.zeros, self.poles))
+        return replace(self, num=num, den=den, zeros=zeros, poles=poles)
 
     @property
     def feedthrough(self) -> Array:
@@ -85,11 +91,11 @@ def unstable_poles(function: Characteristic) -> tuple[Array, Flags, Array]:
     most, count = crossovers.shape
     finite = np.isfinite(crossovers)
     w = np.where(finite, crossovers, 1.0)
-    value = horner(function.num, 1j * w) / horner(function.den, 1j * w) * np.exp(-1j * w)
+    value = horner(function.num, 1j * w) / horner(function.den, 1j * w) * np.exp(-1j * function.delay * w)
     doubtful |= np.any(finite & (np.abs(1.0 + value) < CLEAR), axis=0)
     principal = np.angle(1.0 + value)  # where |L| = 1 the argument of 1 + 1/L is the opposite
     small_side = _argument(function.poles, w) + principal
-    large_side = _argument(function.zeros, w) - w - principal
+    large_side = _argument(function.zeros, w) - function.delay * w - principal
     # at rest
     with np.errstate(all="ignore"):
         at_rest = np.where(function.den[-1] == 0.0, np.inf, function.num[-1] / function.den[-1])
