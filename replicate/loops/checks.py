@@ -23,7 +23,7 @@ def real(value: object) -> float:
     """Return a real number as a float; ``ValueError`` for anything else, ``nan`` and ``inf`` are let through."""
     if type(value) is float or type(value) is int:  # by far the most frequent
         return float(value)
-    if isinstance(value, str | bytes | bool) or np.iscomplexobj(value) or np.ndim(value):  # type: ignore[arg-type]
+    if isinstance(value, str | bytes | bool | np.bool_) or np.iscomplexobj(value) or np.ndim(value):  # type: ignore[arg-type]
         raise ValueError
     try:
         return float(value)  # type: ignore[arg-type]

@@ -387,3 +387,9 @@ def test_loops_without_dead_time_are_grouped_by_their_pace() -> None:
     groups = list(by_pace(Plant([1.0], [1.0, 1.0]), PI(1.0), (gains, 0.0 * gains, 0.0 * gains, gains**0.0)))
     assert sorted(places.tolist() for places, _ in groups) == [[0, 1, 2, 3, 4], [5, 6, 7, 8, 9]]
     assert groups[0][1].time != groups[1][1].time
+
+
+def test_truth_values_are_no_gains() -> None:
+    for given in (np.array([[True, False]]), pd.DataFrame({"k": [True], "ki": [0.1]}), [(True, False)]):
+        with pytest.raises(LoopError, match=r"k must be a finite number, not (np\.)?True"):
+            sweep(FOPTD, given, metrics="ms")
