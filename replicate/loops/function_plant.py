@@ -63,6 +63,9 @@ class FunctionPlant(Plant):
         with np.errstate(all="ignore"):  # values that are not finite are looked for where they matter
             values = np.array(np.asarray(self.function(s), dtype=complex) + np.zeros_like(s))
             lost = ~np.isfinite(values)
+            if np.any(lost & (s == 0.0)):
+                values[lost & (s == 0.0)] = self.gain
+                lost &= s != 0.0
             if lost.any():
                 values[lost] = self._beside(s[lost])
                 lost = ~np.isfinite(values)
@@ -131,7 +134,8 @@ class FunctionPlant(Plant):
     @property
     def gain(self) -> float:
         """The steady-state gain f(0), a limit if need be; ``inf`` where f grows towards it, ``nan`` without one."""
-        at_rest = complex(self.delay_free(0.0))
+        with np.errstate(all="ignore"):
+            at_rest = complex(np.asarray(self.function(np.zeros(1, dtype=complex)) + np.zeros(1))[0])
         if np.isfinite(at_rest):
             return float(at_rest.real)
         low, _ = self.corners

@@ -95,3 +95,10 @@ def test_a_weak_loop_has_the_poles_near_those_of_its_function(k: float) -> None:
     assert loop.poles(3).real == pytest.approx(-(turns**2), rel=1e-12)  # cos(x) = -k at s = -x^2
     rational = Loop(Plant.from_function(lambda s: 1.0 / ((1.0 + s) * (1.0 + 0.1 * s))), PI(k))
     assert rational.poles(2).real == pytest.approx(np.sort(np.roots([0.1, 1.1, 1.0 + k]))[::-1], rel=1e-12)
+
+
+def test_the_value_at_rest_belongs_to_every_peak() -> None:
+    # 0/0 at s = 0, where the complementary sensitivity is largest
+    loop = Loop(Plant.from_function(lambda s: np.tanh(np.sqrt(s)) / np.sqrt(s)), PI(0.4))
+    peak = loop.complementary_peak()
+    assert (peak.value, peak.frequency) == (pytest.approx(0.4 / 1.4, rel=1e-14), 0.0)
