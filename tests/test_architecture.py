@@ -31,6 +31,22 @@ ALLOWED = {
     "diff": {"display", "errors", "exhibits", "figures", "plain_text", "resources", "run", "staging", "verdicts"},
 }
 
+#: Rooms of the core in their order: each imports only rooms before it, and what lies beside them.
+CORE = (
+    "numerics",
+    "plants",
+    "frequency_domain",
+    "time_domain",
+    "closed_loop_poles",
+    "saturation",
+    "prediction",
+    "design",
+    "bounds",
+    "notation",
+    "tune",
+    "sweep",
+    "conformance",
+)
 
 #: Holds no paper itself: discovery walks it.
 NAMESPACE = "replicate.papers"
@@ -82,6 +98,24 @@ def test_a_room_imports_only_what_lies_below_it(name: str) -> None:
         for other in imports(path)
         if room(other) not in ALLOWED[name] | {name, ""} and other != NAMESPACE
     ]
+    assert not wrong
+
+
+def core_room(module: str) -> str:
+    return next((part for part in module.split(".")[2:3] if room(module) == "loops" and part in CORE), "")
+
+
+@pytest.mark.parametrize("name", CORE)
+def test_a_room_of_the_core_imports_only_what_lies_before_it(name: str) -> None:
+    allowed = {*CORE[: CORE.index(name) + 1], ""}
+    wrong = [
+        f"{module} imports {other}"
+        for module, path in MODULES.items()
+        if core_room(module) == name
+        for other in imports(path)
+        if core_room(other) not in allowed
+    ]
+    assert any(core_room(module) == name for module in MODULES)
     assert not wrong
 
 

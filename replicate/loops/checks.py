@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.errors import LoopError
-from replicate.loops.polynomials import trimmed
+from replicate.loops.numerics.polynomials import trimmed
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]

@@ -23,7 +23,7 @@ from replicate.loops import checks
 from replicate.loops.controller_views import ControllerViews
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
-from replicate.loops.polynomials import product
+from replicate.loops.numerics.polynomials import product
 
 ComplexArray = NDArray[np.complex128]
 Array = NDArray[np.float64]

@@ -13,12 +13,13 @@ from functools import reduce
 
 import numpy as np
 
-from replicate.loops import chebyshev, checks
+from replicate.loops import checks
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.inputs import Event, Input, Sine, Step
 from replicate.loops.loop import Loop
-from replicate.loops.signal import Response, Signal
+from replicate.loops.numerics import chebyshev
+from replicate.loops.time_domain.signal import Response, Signal
 
 DEGREE = 26  # of the pieces of a response to a sine,
 ANGLE = 2.0  # each of which is at most so long, in rad

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from replicate.loops import checks
-from replicate.loops.piecewise import Piecewise
+from replicate.loops.time_domain.piecewise import Piecewise
 
 if TYPE_CHECKING:
     import pandas as pd

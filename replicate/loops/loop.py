@@ -8,25 +8,28 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from replicate.loops import checks, function_responses, margins, poles, sensitivity, stability
-from replicate.loops.chain import OpenLoop, open_loop_of
+from replicate.loops import checks
+from replicate.loops.closed_loop_poles import poles
+from replicate.loops.closed_loop_poles.proven_pole import proven_pole_with_others
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError, UnstableLoopError
 from replicate.loops.evaluation import INFINITE, values
-from replicate.loops.function_plant import FunctionPlant
-from replicate.loops.loop_transfer import LoopTransfer
+from replicate.loops.frequency_domain import margins, sensitivity, stability
+from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
+from replicate.loops.frequency_domain.margins import Margins
 from replicate.loops.loop_views import LoopViews
-from replicate.loops.margins import Margins
-from replicate.loops.peaks import FrequencyPeak
+from replicate.loops.numerics.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
-from replicate.loops.proven_pole import proven_pole_with_others
-from replicate.loops.responses import held, responses
+from replicate.loops.plants.function_plant import FunctionPlant
+from replicate.loops.prediction.smith_predictor import SmithPredictor
 from replicate.loops.set_once import SetOnce
-from replicate.loops.signal import Response, Signal
-from replicate.loops.slow_modes import SETTLED, Pieces, slow_group, with_slow_end
-from replicate.loops.slow_signal import SlowSignal
-from replicate.loops.smith_predictor import SmithPredictor
-from replicate.loops.steady_state import steady_state
+from replicate.loops.time_domain import function_responses
+from replicate.loops.time_domain.chain import OpenLoop, open_loop_of
+from replicate.loops.time_domain.responses import held, responses
+from replicate.loops.time_domain.signal import Response, Signal
+from replicate.loops.time_domain.slow_modes import SETTLED, Pieces, slow_group, with_slow_end
+from replicate.loops.time_domain.slow_signal import SlowSignal
+from replicate.loops.time_domain.steady_state import steady_state
 from replicate.loops.units import Units
 
 ComplexArray = NDArray[np.complex128]
@@ -69,7 +72,7 @@ class Loop(LoopViews, SetOnce):
     def __new__(cls, plant: Plant | None = None, controller: PID | SmithPredictor | None = None) -> Self:  # noqa: ARG004
         """Make the loop of a Smith predictor where the controller is one."""
         if cls is Loop and isinstance(controller, SmithPredictor):
-            from replicate.loops.predictor_loop import PredictorLoop
+            from replicate.loops.prediction.predictor_loop import PredictorLoop
 
             return super().__new__(PredictorLoop)  # type: ignore[return-value]
         return super().__new__(cls)

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from replicate.loops import frequency_response
-from replicate.loops.frequency_response import Bode, ComplexArray
-from replicate.loops.limited_response import LimitedViews
+from replicate.loops.frequency_domain import frequency_response
+from replicate.loops.frequency_domain.frequency_response import Bode, ComplexArray
+from replicate.loops.saturation.limited_response import LimitedViews
 from replicate.loops.summary import LoopSummary, summarize_loop
 from replicate.loops.to_control import Kind, loop_to_control
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from replicate.loops.controller import PID
     from replicate.loops.experiments import Given
     from replicate.loops.loop import Loop
-    from replicate.loops.signal import Response, Signal
+    from replicate.loops.time_domain.signal import Response, Signal
 
 
 class LoopViews(LimitedViews):

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
-from replicate.loops.function_resonances import NARROW
+from replicate.loops.numerics.polynomials import horner, horner_with_slope, roots_of, taylor
 from replicate.loops.plant_views import PlantViews
-from replicate.loops.polynomials import horner, horner_with_slope, roots_of, taylor
+from replicate.loops.plants.function_resonances import NARROW
 from replicate.loops.set_once import SetOnce
 
 if TYPE_CHECKING:
@@ -106,7 +106,7 @@ class Plant(PlantViews, SetOnce):
             If the system is neither a transfer function nor a state-space model, is discrete, or has several inputs or
             outputs.
         """
-        from replicate.loops.control_systems import polynomials_of
+        from replicate.loops.plants.control_systems import polynomials_of
 
         return Plant(*polynomials_of(system), dead_time)
 
@@ -130,7 +130,7 @@ class Plant(PlantViews, SetOnce):
         LoopError
             If ``function`` is not callable.
         """
-        from replicate.loops.function_plant import FunctionPlant
+        from replicate.loops.plants.function_plant import FunctionPlant
 
         return FunctionPlant(function, dead_time)
 
@@ -156,7 +156,7 @@ class Plant(PlantViews, SetOnce):
         >>> bool(abs(window(2j) - (1 - np.exp(-2j)) / 2j) < 1e-15)
         True
         """
-        from replicate.loops.sum_plant import sum_of
+        from replicate.loops.plants.sum_plant import sum_of
 
         given = checks.several("the terms of a plant", terms, "a list of (num, den, dead_time)")
         return sum_of([Plant(*checks.triple("each term of a plant", term, "(num, den, dead_time)")) for term in given])
@@ -206,7 +206,7 @@ class Plant(PlantViews, SetOnce):
         order
             The highest derivative.
         """
-        from replicate.loops.jets import series_quotient
+        from replicate.loops.plants.jets import series_quotient
 
         return series_quotient(taylor(self.num.tolist(), s, order), taylor(self.den.tolist(), s, order))
 
@@ -305,7 +305,7 @@ class Plant(PlantViews, SetOnce):
 
     def __mul__(self, other: Plant | float) -> Plant:
         """Return the plants in series, or the plant with its gain multiplied by a number."""
-        from replicate.loops.sum_plant import product_of
+        from replicate.loops.plants.sum_plant import product_of
 
         if not isinstance(other, Plant):
             factor = checks.finite("the factor of a plant", other)
@@ -316,7 +316,7 @@ class Plant(PlantViews, SetOnce):
 
     def __add__(self, other: Plant | float) -> Plant:
         """Return the plants in parallel; a number is a static gain."""
-        from replicate.loops.sum_plant import sum_of
+        from replicate.loops.plants.sum_plant import sum_of
 
         if not isinstance(other, Plant):
             gain = checks.finite("the gain in parallel to a plant", other)

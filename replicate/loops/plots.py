@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from replicate.loops.circles import Circle
-from replicate.loops.gain_plane import GainPlane, gain_plane
+from replicate.loops.design.circles import Circle
+from replicate.loops.design.gain_plane import GainPlane, gain_plane
 from replicate.loops.loop import Loop
 from replicate.loops.plant import Plant
-from replicate.loops.signal import Signal
+from replicate.loops.time_domain.signal import Signal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

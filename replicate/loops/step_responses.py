@@ -9,8 +9,8 @@ from replicate.loops.controller import PID
 from replicate.loops.loop import Loop
 from replicate.loops.one_thread import one_thread
 from replicate.loops.plant import Plant
-from replicate.loops.responses import responses
-from replicate.loops.signal import Signal
+from replicate.loops.time_domain.responses import responses
+from replicate.loops.time_domain.signal import Signal
 from replicate.loops.units import Units
 
 

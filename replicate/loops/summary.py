@@ -11,11 +11,11 @@ import numpy as np
 
 from replicate.loops.errors import LoopError
 from replicate.loops.records import Record
-from replicate.loops.total_variation import total_variation
+from replicate.loops.time_domain.total_variation import total_variation
 
 if TYPE_CHECKING:
     from replicate.loops.loop import Loop
-    from replicate.loops.signal import Signal
+    from replicate.loops.time_domain.signal import Signal
 
 T = TypeVar("T")
 NAN = float("nan")

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from replicate.loops.controller import PID, Filter
-from replicate.loops.function_plant import HIGHEST, LOWEST, FunctionPlant
 from replicate.loops.plant import Plant
+from replicate.loops.plants.function_plant import HIGHEST, LOWEST, FunctionPlant
 
 
 @dataclass(frozen=True)

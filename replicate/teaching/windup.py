@@ -20,7 +20,7 @@ import numpy as np
 
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure, rounded
-from replicate.loops.limited_response import LimitedResponse
+from replicate.loops.saturation.limited_response import LimitedResponse
 from replicate.teaching.drawing_numbers import (
     gain_apart_from_one,
     no_common_value,

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from replicate.loops import PI, PID, Loop, Plant, SmithPredictor, sweep
-from replicate.loops.gain_plane import gain_plane
+from replicate.loops.design.gain_plane import gain_plane
 from replicate.loops.notation import parse_plant
-from replicate.loops.slow_signal import SlowSignal
+from replicate.loops.time_domain.slow_signal import SlowSignal
 
 
 def heat(s: Any) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from replicate.loops import PI, PID, Loop, LoopError, Plant
-from replicate.loops import frequency_response as response
+from replicate.loops.frequency_domain import frequency_response as response
 
 W = np.geomspace(1e-3, 1e3, 61)
 

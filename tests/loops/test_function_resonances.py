@@ -10,7 +10,7 @@ import pytest
 
 from loops.references import polished_root
 from replicate.loops import PI, PID, Loop, Plant, design_pi
-from replicate.loops.function_resonances import resonances
+from replicate.loops.plants.function_resonances import resonances
 
 
 def ratio(num: Any, den: Any) -> Any:

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from scipy import signal
 
 from replicate.loops import Plant
-from replicate.loops.gain_boxes import GainBox, iae_bounds, no_peak_between, sensitivity_at_least
-from replicate.loops.intervals import Interval, derivative, exactly, on_the_axis
+from replicate.loops.bounds.gain_boxes import GainBox, iae_bounds, no_peak_between, sensitivity_at_least
+from replicate.loops.bounds.intervals import Interval, derivative, exactly, on_the_axis
 
 LAGS = np.array([1.0, 4.0, 6.0, 4.0, 1.0])  # (s + 1)^4
 PLANT = Plant([1.0], LAGS)

@@ -7,7 +7,7 @@ import pytest
 import scipy.linalg
 
 from replicate.loops import PI, PID, Loop, LoopError, Plant, UnstableLoopError, Weight, gamma_norm, stability_margin
-from replicate.loops.gamma_norm import singular_value
+from replicate.loops.frequency_domain.gamma_norm import singular_value
 
 FOURTH_ORDER = Plant([1.0], [1.0, 4.0, 6.0, 4.0, 1.0])
 

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from replicate.loops.gaps import Gaps
+from replicate.loops.numerics.gaps import Gaps
 
 ROWS, INTERVALS = 4, 12
 

@@ -9,8 +9,8 @@ import pytest
 from scipy.special import lambertw
 
 from replicate.loops import PI, PID, Loop, Plant
-from replicate.loops.loop_transfer import LoopTransfer
-from replicate.loops.proven_pole import proven_pole_with_others
+from replicate.loops.closed_loop_poles.proven_pole import proven_pole_with_others
+from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 
 RANDOM = np.random.default_rng(1960)
 

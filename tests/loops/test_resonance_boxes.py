@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from replicate.loops import Plant
-from replicate.loops.gain_boxes import complementary_at_least, no_peak_between
-from replicate.loops.intervals import Interval, cosine, exactly, exponential, sine
-from replicate.loops.resonance_boxes import Excludes, ResonanceBox
+from replicate.loops.bounds.gain_boxes import complementary_at_least, no_peak_between
+from replicate.loops.bounds.intervals import Interval, cosine, exactly, exponential, sine
+from replicate.loops.bounds.resonance_boxes import Excludes, ResonanceBox
 
 PLANTS = {
     "lags": Plant([1.0], [1.0, 4.0, 6.0, 4.0, 1.0]),

@@ -10,9 +10,9 @@ import pytest
 from scipy import signal
 
 from replicate.loops import Plant
-from replicate.loops.gain_boxes import GainBox
-from replicate.loops.intervals import Interval, exactly
-from replicate.loops.response_boxes import ResponseBox, load_responses, setpoint_errors
+from replicate.loops.bounds.gain_boxes import GainBox
+from replicate.loops.bounds.intervals import Interval, exactly
+from replicate.loops.bounds.response_boxes import ResponseBox, load_responses, setpoint_errors
 
 Array = np.ndarray
 Triple = tuple[float, float, float]

@@ -12,8 +12,8 @@ import pytest
 from replicate.loops import PI, PID, Loop, LoopError, Plant
 from replicate.loops.frames import signal_frame
 from replicate.loops.summary import summarize_loop, summarize_signal
+from replicate.loops.time_domain.total_variation import total_variation
 from replicate.loops.to_control import controller_to_control, loop_to_control, plant_to_control
-from replicate.loops.total_variation import total_variation
 
 FIRST_ORDER = Loop(Plant([1.0], [1.0, 1.0]), PI(1.0))  # y = (1 - e^{-2t})/2, u = (1 + e^{-2t})/2
 OSCILLATING = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.9, 0.7))

@@ -17,7 +17,7 @@ from replicate.loops import PI, PID, Loop, LoopError, Plant, Signal, SweepResult
 from replicate.loops.sweep import running
 from replicate.loops.sweep.metric_names import ALLOWED
 from replicate.loops.sweep.paces import by_pace
-from replicate.loops.total_variation import total_variation
+from replicate.loops.time_domain.total_variation import total_variation
 
 FOPTD = Plant.foptd(gain=1.0, time_constant=1.0, dead_time=1.0)
 

@@ -1,4 +1,4 @@
-"""The rightmost poles of many loops at once, guessed, polished and proven as `replicate.loops.proven_pole` does one."""
+"""The rightmost poles of many loops at once, guessed, polished and proven as `proven_pole` does one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.proven_pole import (
+from replicate.loops.closed_loop_poles.proven_pole import (
     APART,
     CONVERGED,
     CROWDED,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev, series_roots
+from replicate.loops.numerics import chebyshev, series_roots
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
-from replicate.loops.chain import Chain
+from replicate.loops.numerics import chebyshev
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 from replicate.loops.sweep.piece_law import LAST_ROWS, POINTS, WEIGHTS
+from replicate.loops.time_domain.chain import Chain
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
+from replicate.loops.numerics import chebyshev
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 

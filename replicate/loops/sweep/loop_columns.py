@@ -82,7 +82,7 @@ class LoopColumns:
 
     @cached_property
     def gains(self) -> Array:
-        """Gains of the four building blocks of `replicate.loops.chain`, shape (4, n)."""
+        """Gains of the four building blocks of `replicate.loops.time_domain.chain`, shape (4, n)."""
         return np.stack([self.k * self.b, -self.k, self.ki, self.kd])
 
     @cached_property

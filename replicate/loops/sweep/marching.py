@@ -1,9 +1,9 @@
 """The method of steps for many loops of one plant at once: one matrix product for each piece of all responses.
 
-The map of a piece (`replicate.loops.method_of_steps`) does not contain the gains, so that it is the same for all loops;
-the control law acts column by column; without dead time each loop has a map of its own. A loop leaves the block when
-its response has come to rest, or when what is left is one mode (`replicate.loops.sweep.last_mode`), whose rest is known
-in closed form.
+The map of a piece (`replicate.loops.time_domain.method_of_steps`) does not contain the gains, so that it is the same
+for all loops; the control law acts column by column; without dead time each loop has a map of its own. A loop leaves
+the block when its response has come to rest, or when what is left is one mode (`replicate.loops.sweep.last_mode`),
+whose rest is known in closed form.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
-from replicate.loops.chain import Chain, build_chain
+from replicate.loops.numerics import chebyshev
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.closed_law import ClosedLaw
 from replicate.loops.sweep.last_mode import LastModes, last_modes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
 from replicate.loops.sweep.paces import PACE
 from replicate.loops.sweep.piece_law import POINTS, WEIGHTS, PieceLaw
+from replicate.loops.time_domain.chain import Chain, build_chain
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

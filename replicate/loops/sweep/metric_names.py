@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.loop import Loop
-from replicate.loops.signal import Response
-from replicate.loops.total_variation import total_variation
+from replicate.loops.time_domain.signal import Response
+from replicate.loops.time_domain.total_variation import total_variation
 
 LOAD = "load_"
 

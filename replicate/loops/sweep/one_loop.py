@@ -11,8 +11,8 @@ from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.loop import Loop
 from replicate.loops.plant import Plant
-from replicate.loops.signal import Response
 from replicate.loops.sweep.metric_names import LOAD, MARGINS, OF_A_RESPONSE, OF_THE_LOOP, POLE, STABLE
+from replicate.loops.time_domain.signal import Response
 
 UNSTABLE = "the loop is unstable"
 

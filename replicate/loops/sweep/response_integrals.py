@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as chebyshev_series
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev, series_roots
+from replicate.loops.numerics import chebyshev, series_roots
 from replicate.loops.sweep import block_series
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.response_pieces import MARGIN, ResponsePieces, summits

@@ -1,4 +1,4 @@
-"""Metrics of many responses at once, read from their polynomials as `replicate.loops.signal` does from one.
+"""Metrics of many responses at once, read from their polynomials as `replicate.loops.time_domain.signal` does from one.
 
 Samples only say which piece to look at and between which points; roots and extrema are polished on the polynomial.
 A response in which an extremum nearly touches the level that counts is left to the single loop (``doubtful``).
@@ -11,13 +11,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev, series_roots
-from replicate.loops.piecewise import FLAT
-from replicate.loops.signal import APPROACH, ARRIVAL, ROUNDING
+from replicate.loops.numerics import chebyshev, series_roots
 from replicate.loops.sweep import block_series
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.response_integrals import ResponseIntegrals
 from replicate.loops.sweep.response_pieces import MARGIN, summits
+from replicate.loops.time_domain.piecewise import FLAT
+from replicate.loops.time_domain.signal import APPROACH, ARRIVAL, ROUNDING
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -1,8 +1,8 @@
 r"""Stability of many loops at once, by the argument principle over their gain crossovers.
 
-The same count as `replicate.loops.stability`: between two gain crossovers the change of the argument of
-:math:`f = D (1 + L) = N e^{-sL} (1 + 1/L)` is known in closed form. What cannot be decided here with certainty, because
-crossovers nearly touch or the curve nearly passes through -1, is left to the single loop.
+The same count as `replicate.loops.frequency_domain.stability`: between two gain crossovers the change of the argument
+of :math:`f = D (1 + L) = N e^{-sL} (1 + 1/L)` is known in closed form. What cannot be decided here with certainty,
+because crossovers nearly touch or the curve nearly passes through -1, is left to the single loop.
 """
 
 from __future__ import annotations

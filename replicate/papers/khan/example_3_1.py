@@ -10,9 +10,9 @@ import numpy as np
 
 from replicate.exhibits.exclusion import Box, Ends, Rule
 from replicate.loops import PI, Loop
-from replicate.loops.gain_boxes import NOTHING, GainBox
-from replicate.loops.intervals import Interval, exactly
-from replicate.loops.response_boxes import ResponseBox, setpoint_errors
+from replicate.loops.bounds.gain_boxes import NOTHING, GainBox
+from replicate.loops.bounds.intervals import Interval, exactly
+from replicate.loops.bounds.response_boxes import ResponseBox, setpoint_errors
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import overshoot_fit
 from replicate.papers.khan.processes import plant

@@ -10,7 +10,7 @@ import numpy as np
 
 from replicate.exhibits.exclusion import Box, Ends, Rule
 from replicate.exhibits.near import Near
-from replicate.loops.intervals import Interval, exactly, exponential
+from replicate.loops.bounds.intervals import Interval, exactly, exponential
 from replicate.papers.khan import paper
 from replicate.papers.khan.fits import case_4_parts, overshoot_fit, rise_time_fit, rise_time_parts
 from replicate.papers.khan.sweep import stability_limit, sweep

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
-from replicate.loops import chebyshev
+from replicate.loops.numerics import chebyshev
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]

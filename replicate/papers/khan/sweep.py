@@ -17,7 +17,7 @@ from scipy.special import lambertw
 
 from replicate.loops import PI, Plant
 from replicate.loops import sweep as sweep_of_loops
-from replicate.loops.responses import responses
+from replicate.loops.time_domain.responses import responses
 from replicate.papers.khan.peaks import ROUNDING, Responses
 
 Array = NDArray[np.float64]

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from replicate.exhibits.exclusion import Box, Ends, Rule
 from replicate.loops import Loop, Plant
-from replicate.loops.gain_boxes import GainBox, complementary_at_least, iae_bounds, no_peak_between
-from replicate.loops.intervals import Interval, exactly
-from replicate.loops.response_boxes import load_responses
+from replicate.loops.bounds.gain_boxes import GainBox, complementary_at_least, iae_bounds, no_peak_between
+from replicate.loops.bounds.intervals import Interval, exactly
+from replicate.loops.bounds.response_boxes import load_responses
 
 Loops = Callable[[str, Box], tuple[Plant, GainBox]]
 """From a case and a box of its printed inputs to the plant and a box that holds its controllers."""

@@ -12,7 +12,7 @@ from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number
 from replicate.exhibits.extrema import largest
 from replicate.loops import PI, Circle, Loop, Plant
-from replicate.loops.pi_tangency import smooth_gains
+from replicate.loops.design.pi_tangency import smooth_gains
 from replicate.papers.panagopoulos.part_1 import theorem_1
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
 from replicate.papers.panagopoulos.part_1.designs import (

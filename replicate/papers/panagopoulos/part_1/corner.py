@@ -12,7 +12,7 @@ import numpy as np
 from scipy.optimize import brentq, minimize_scalar
 
 from replicate.loops import PI, Circle, Loop
-from replicate.loops.pi_tangency import smooth_gains
+from replicate.loops.design.pi_tangency import smooth_gains
 from replicate.papers.panagopoulos.part_1.phase import roots_of_h
 from replicate.papers.panagopoulos.part_1.plants import resonant
 

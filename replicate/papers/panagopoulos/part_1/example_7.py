@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from scipy.optimize import brentq
 
 from replicate.loops import Circle
-from replicate.loops.pi_tangency import smooth_gains
+from replicate.loops.design.pi_tangency import smooth_gains
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.plants import PLANTS

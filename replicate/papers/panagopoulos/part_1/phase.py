@@ -6,8 +6,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from replicate.loops import Circle, Plant
-from replicate.loops.frequency_grids import design_grid
-from replicate.loops.pi_tangency import smooth_condition
+from replicate.loops.design.pi_tangency import smooth_condition
+from replicate.loops.frequency_domain.frequency_grids import design_grid
 
 
 def frequencies_of_lag(plant: Plant, degrees: float) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from replicate.exhibits import bound, rank
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PI, Loop, Plant
-from replicate.loops.gain_boxes import GainBox
+from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import (
     BOUNDS,

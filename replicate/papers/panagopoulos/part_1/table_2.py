@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PI, Loop, Plant
-from replicate.loops.gain_boxes import GainBox
+from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows

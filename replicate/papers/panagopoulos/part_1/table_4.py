@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from replicate.exhibits import rank
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PI, PIDesign, Plant, design_pi
-from replicate.loops.gain_boxes import GainBox
+from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import design
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS

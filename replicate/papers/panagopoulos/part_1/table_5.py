@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from replicate.exhibits import rank
 from replicate.exhibits.exclusion import Box, Ends
 from replicate.loops import PI, Loop, Plant, Signal
-from replicate.loops.gain_boxes import GainBox
-from replicate.loops.intervals import Interval, exactly
-from replicate.loops.response_boxes import setpoint_errors
+from replicate.loops.bounds.gain_boxes import GainBox
+from replicate.loops.bounds.intervals import Interval, exactly
+from replicate.loops.bounds.response_boxes import setpoint_errors
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import design, weight
 from replicate.papers.panagopoulos.part_1.frequency_grid import weight_on_grid

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from replicate.loops import PI, Circle, Loop
-from replicate.loops.pi_tangency import smooth_condition, smooth_gains
+from replicate.loops.design.pi_tangency import smooth_condition, smooth_gains
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import design
 from replicate.papers.panagopoulos.part_1.labels import design_rows

@@ -1,6 +1,6 @@
 r"""What is certain of set-point weights and filters whose controllers round to printed ones: where they are not.
 
-With the excess Q at the peak of :math:`|T|` (`replicate.loops.resonance_boxes`), (13) and (16) are
+With the excess Q at the peak of :math:`|T|` (`replicate.loops.bounds.resonance_boxes`), (13) and (16) are
 
 .. math::
 
@@ -15,8 +15,8 @@ from __future__ import annotations
 from typing import Literal
 
 from replicate.exhibits.exclusion import Box, Ends, Rule
-from replicate.loops.intervals import Interval, exactly
-from replicate.loops.resonance_boxes import Excludes, ResonanceBox
+from replicate.loops.bounds.intervals import Interval, exactly
+from replicate.loops.bounds.resonance_boxes import Excludes, ResonanceBox
 from replicate.papers.panagopoulos.certain import side
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, split
 from replicate.papers.panagopoulos.part_2.setpoint import COARSE_GRID

@@ -10,7 +10,7 @@ from scipy.optimize import minimize_scalar
 
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PID, Loop, Plant
-from replicate.loops.gain_boxes import GainBox
+from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import feasible
 from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS, pole_numbers

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import root
 
 from replicate.loops import PID, Circle, Loop, Plant
-from replicate.loops.nyquist_constraints import Constraint, LoopJet, constraint_slope
+from replicate.loops.design.nyquist_constraints import Constraint, LoopJet, constraint_slope
 from replicate.papers.panagopoulos.part_2.processes import G4
 
 Array = NDArray[np.float64]

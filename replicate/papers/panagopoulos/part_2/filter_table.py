@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PID, Plant
-from replicate.loops.gain_boxes import GainBox
-from replicate.loops.intervals import exactly
+from replicate.loops.bounds.gain_boxes import GainBox
+from replicate.loops.bounds.intervals import exactly
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import filters
 from replicate.papers.panagopoulos.part_2.filters import CUT, HEADED

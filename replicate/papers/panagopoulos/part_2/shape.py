@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from replicate.loops import PID, Circle, Plant, search_range
-from replicate.loops.nyquist_constraints import LoopJet
+from replicate.loops.design.nyquist_constraints import LoopJet
 from replicate.papers.panagopoulos.part_2.designs import pi_design
 from replicate.papers.panagopoulos.part_2.processes import PLANTS, split
 

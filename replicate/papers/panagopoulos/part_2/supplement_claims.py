@@ -11,8 +11,8 @@ from replicate.exhibits.evidence import listed, number, share
 from replicate.exhibits.extrema import smallest
 from replicate.exhibits.matching import meets
 from replicate.loops import Loop
-from replicate.loops.gain_boxes import GainBox, sensitivity_at_least
-from replicate.loops.intervals import Interval
+from replicate.loops.bounds.gain_boxes import GainBox, sensitivity_at_least
+from replicate.loops.bounds.intervals import Interval
 from replicate.papers.panagopoulos.part_2 import feasible, filters
 from replicate.papers.panagopoulos.part_2.claims import claims
 from replicate.papers.panagopoulos.part_2.example import bottom_maximum

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from replicate.exhibits import rank
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PID, Loop, Plant
-from replicate.loops.gain_boxes import GainBox
+from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import certain_setpoint
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed

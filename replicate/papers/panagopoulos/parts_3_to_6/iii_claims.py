@@ -10,7 +10,7 @@ from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number
 from replicate.exhibits.extrema import largest, smallest
 from replicate.loops import PI, PID, Loop, Plant, Weight, chordal_distance, gamma_norm
-from replicate.loops.gamma_norm import singular_value
+from replicate.loops.frequency_domain.gamma_norm import singular_value
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.iii_examples import smallest_weight
 from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import PRINTED, PROCESS, TRUE_PROCESS, favourable_weight

@@ -9,17 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.exhibits.extrema import smallest
-from replicate.loops import (
-    PI,
-    Loop,
-    Weight,
-    chordal_distance,
-    gamma_norm,
-    nu_gap,
-    stability_margin,
-    winding_count,
-)
-from replicate.loops.gamma_norm import singular_value
+from replicate.loops import PI, Loop, Weight, chordal_distance, gamma_norm, nu_gap, stability_margin, winding_count
+from replicate.loops.frequency_domain.gamma_norm import singular_value
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.parts_3_to_6.loop_shaping import (
     PRINTED,

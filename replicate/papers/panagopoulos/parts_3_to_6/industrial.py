@@ -11,8 +11,8 @@ from scipy.optimize import brentq, root
 
 from replicate.exhibits.extrema import largest
 from replicate.loops import PI, PID, Loop, PIDDesign, Plant, design_pi, design_pid, search_range
-from replicate.loops.circles import Circle
-from replicate.loops.nyquist_constraints import LoopJet
+from replicate.loops.design.circles import Circle
+from replicate.loops.design.nyquist_constraints import LoopJet
 from replicate.papers.panagopoulos.part_2 import setpoint
 
 Array = NDArray[np.float64]

@@ -1,0 +1,1 @@
+"""Interval arithmetic: what is certain of all gains in a box."""

@@ -1,0 +1,1 @@
+"""Controllers with the largest integral gain whose sensitivity stays below a bound."""

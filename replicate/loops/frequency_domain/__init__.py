@@ -1,0 +1,1 @@
+"""The loop transfer function and what is read from it: stability, margins, sensitivities, gaps."""

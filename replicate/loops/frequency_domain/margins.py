@@ -1,0 +1,140 @@
+"""Gain, phase and delay margins from all crossovers, not the first one met."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from replicate.loops.frequency_domain.frequency_grids import loop_grid
+from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
+from replicate.loops.numerics.bracketed import bracketed_root
+from replicate.loops.records import Record
+
+Array = NDArray[np.float64]
+
+MORE = 2.5 * np.pi  # rad of the dead time, one full turn and more, so that a crossover below one is always included
+SMALL = 1e-6  # |L| beyond which no crossover without dead time matters
+
+
+@dataclass(frozen=True, eq=False)
+class Margins(Record):
+    """The stability margins of a stable loop.
+
+    Attributes
+    ----------
+    gain
+        Smallest factor > 1 on the loop gain that makes the loop unstable; ``inf`` if none does.
+    gain_reduction
+        Largest factor < 1 that makes it unstable (unstable plants, conditional stability); 0 if none does.
+    phase
+        Smallest additional phase lag, in degrees, that makes it unstable; ``inf`` if none does.
+    delay
+        Smallest additional dead time that makes it unstable; ``inf`` if none does.
+    phase_crossover, phase_crossover_low, gain_crossover, delay_crossover
+        Frequencies that belong to gain, gain_reduction, phase and delay (``nan`` where there is none), rad per
+        unit time.
+    gain_crossovers
+        All frequencies with |L| = 1, ascending.
+    phase_crossovers
+        Frequencies with arg L = -180 degrees (modulo 360), ascending. With dead time there are infinitely many: these
+        are all that matter, up to one full turn of the dead time beyond the last frequency at which |L| reaches one
+        half (for a loop whose |L| tends to d > 0, half way between d and one).
+    """
+
+    gain: float
+    gain_reduction: float
+    phase: float
+    delay: float
+    phase_crossover: float
+    phase_crossover_low: float
+    gain_crossover: float
+    delay_crossover: float
+    phase_crossovers: tuple[float, ...]
+    gain_crossovers: tuple[float, ...]
+
+    def in_time(self, time: float) -> Margins:
+        """Return the margins of the same loop in a unit of time that is ``time`` times smaller."""
+        return replace(
+            self,
+            delay=self.delay * time,
+            phase_crossover=self.phase_crossover / time,
+            phase_crossover_low=self.phase_crossover_low / time,
+            gain_crossover=self.gain_crossover / time,
+            delay_crossover=self.delay_crossover / time,
+            phase_crossovers=tuple(w / time for w in self.phase_crossovers),
+            gain_crossovers=tuple(w / time for w in self.gain_crossovers),
+        )
+
+
+def margins(transfer: LoopTransfer) -> Margins:
+    """Return the margins of a stable loop; the caller has checked stability."""
+    phase_crossovers = _phase_crossovers(transfer)
+    factors = 1.0 / np.abs(transfer(1j * phase_crossovers)) if phase_crossovers.size else np.empty(0)
+    above, below = factors > 1.0, factors < 1.0
+    gain, gain_at = _extreme(factors[above], phase_crossovers[above], np.argmin, float("inf"))
+    reduction, reduction_at = _extreme(factors[below], phase_crossovers[below], np.argmax, 0.0)
+    if not transfer.dead_time and transfer.feedthrough and transfer.is_polynomial:
+        limit = _algebraic_limit(transfer)
+        if 1.0 < limit < gain:
+            gain, gain_at = limit, float("inf")
+        elif reduction < limit < 1.0:
+            reduction, reduction_at = limit, float("inf")
+    elif transfer.feedthrough and 1.0 / transfer.feedthrough < gain:
+        # the tail of a neutral loop loses stability when |L(i inf)| reaches one
+        gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
+
+    w = transfer.gain_crossovers
+    lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
+    phase, phase_at = _extreme(np.degrees(lag), w, np.argmin, float("inf"))
+    delay, delay_at = _extreme(lag / w if w.size else lag, w, np.argmin, float("inf"))
+    if not transfer.dead_time and transfer.feedthrough >= 1.0:  # with any dead time the loop is neutral and unstable
+        delay, delay_at = 0.0, float("inf")
+    return Margins(
+        gain, reduction, phase, delay, gain_at, reduction_at, phase_at, delay_at,
+        tuple(phase_crossovers.tolist()), tuple(w.tolist()),
+    )  # fmt: skip
+
+
+def _extreme(values: Array, frequencies: Array, select: object, empty: float) -> tuple[float, float]:
+    if values.size == 0:
+        return empty, float("nan")
+    index = int(select(values))  # type: ignore[operator]
+    return float(values[index]), float(frequencies[index])
+
+
+def _algebraic_limit(transfer: LoopTransfer) -> float:
+    """Return the factor on L at which a loop without dead time is no longer well posed; ``inf`` if there is none."""
+    direct = transfer.num[0] / transfer.den[0]
+    return float(-1.0 / direct) if direct < 0.0 else float("inf")
+
+
+def _phase_crossovers(transfer: LoopTransfer) -> Array:
+    """Return all frequencies with L real and negative, up to where |L| only falls."""
+    if transfer.num.size == 0:
+        return np.empty(0)
+    if transfer.is_polynomial:
+        corners = np.abs(transfer.corner_frequencies)
+        end = 2.0 * max([*transfer.real_frequencies.tolist(), *corners.tolist()], default=1.0)
+    else:
+        end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
+    if transfer.dead_time:
+        end += MORE / transfer.dead_time
+    elif not transfer.is_polynomial:
+        end = transfer.beyond(SMALL)
+    w = loop_grid(transfer, end, per_decade=80)
+    value = transfer(1j * w)
+    turned = value.imag[:-1] * value.imag[1:] < 0.0
+    negative = value.real[:-1] + value.real[1:] < 0.0
+    exact = w[(value.imag == 0.0) & (value.real < 0.0)]
+
+    def imaginary(x: float) -> float:
+        return float(complex(transfer(1j * x)).imag)
+
+    found = [bracketed_root(imaginary, w[i], w[i + 1]) for i in np.nonzero(turned & negative)[0]]
+    roots = np.sort(np.concatenate([np.array(found), exact]))
+    roots = roots[transfer(1j * roots).real < 0.0] if roots.size else roots
+    # without integral action the curve starts on the real axis, where a pole can pass through s = 0
+    starts_negative = bool(transfer.den[-1]) and float(complex(transfer(0.0)).real) < 0.0
+    return np.concatenate([[0.0], roots]) if starts_negative else roots

@@ -1,0 +1,1 @@
+"""Numerics that know no loop: Chebyshev series, polynomials, roots, brackets, peaks."""

@@ -1,0 +1,1 @@
+"""Responses whose control signal has limits, from event to event."""
