@@ -291,7 +291,7 @@ def test_an_interrupted_report_leaves_the_earlier_one(replicate: Run, monkeypatc
     replicate("report", "lab", "-j1")
     before = contents(Path("build"))
 
-    def interrupted(*_: object) -> None:
+    def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("replicate.report.pages.build_report", interrupted)

@@ -25,7 +25,7 @@ from replicate.figures.envelope import envelope
 from replicate.figures.outlines import joined, scattered
 from replicate.figures.polylines import THINNING, Points, simplify
 from replicate.figures.scaling import finite
-from replicate.figures.streams import arrow_heads, joined_up
+from replicate.figures.stream_parts import arrow_heads, joined_up
 from replicate.figures.values import is_function
 
 if TYPE_CHECKING:
