@@ -74,7 +74,7 @@ def _belongs(match: re.Match[str]) -> bool:
 
 
 def read_text(
-    path: Path | Traversable, name: str, error: type[ReplicateError], *, pipes: bool = False, utf_16: bool = False
+    path: Path | Traversable, name: str, error: type[ReplicateError], *, pipes: bool = False, wide: bool = False
 ) -> str:
     """Read a text file of a paper.
 
@@ -87,8 +87,8 @@ def read_text(
         line.
     pipes
         Whether it may be a pipe, which a reader waits for, as in ``--roster <(command)``.
-    utf_16
-        Whether UTF-16 is read, too, with or without a byte order mark, as some programs export tables.
+    wide
+        Whether UTF-16 and UTF-32 are read, too, with or without a byte order mark, as some programs export tables.
     """
     try:
         if isinstance(path, Path) and (path.is_char_device() or path.is_block_device() or path.is_socket()):
@@ -109,7 +109,7 @@ def read_text(
         msg = f"{name}: is a spreadsheet or an archive; expected: text (save a table as CSV in UTF-8)"
         raise error(msg)
     try:
-        text = content.decode(_encoding(content) if utf_16 else "utf-8")
+        text = content.decode(_encoding(content) if wide else "utf-8")
     except UnicodeDecodeError as why:
         line = content[: why.start].count(b"\n") + 1
         msg = f"{name}:{line}: is not UTF-8 text"
@@ -126,10 +126,12 @@ def read_text(
 
 
 def _encoding(content: bytes) -> str:
-    """Return the encoding of a table: UTF-8, unless a byte order mark or its line ends are those of UTF-16."""
+    """Return the encoding of a table: UTF-8, unless a byte order mark or its line ends are those of a wider one."""
+    if content.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):  # the first begins with the mark of UTF-16
+        return "utf-32"
     if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16"
-    for wide in ("utf-16-le", "utf-16-be") if b"\0" in content else ():
+    for wide in ("utf-32-le", "utf-32-be", "utf-16-le", "utf-16-be") if b"\0" in content else ():
         if re.search(r"[\r\n]", content.decode(wide, errors="replace")):
             return wide
     return "utf-8"

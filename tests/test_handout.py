@@ -302,9 +302,21 @@ def test_formulas_are_said_in_words() -> None:
         r"\max_\omega S": "the maximum over omega of S",
         r"a \le b < c": "a is at most b is less than c",
         r"\hat{y}": "y hat",
+        r"\ln 10": "the natural logarithm of 10",
+        r"\exp(x)": "e to the (x)",
+        r"2\sin\omega": "2 sine of omega",
     }
     found = convert([(False, tex) for tex in said])
     assert {tex: found[False, tex].words for tex in said} == said
+
+
+@pytest.mark.parametrize(
+    ("tex", "spaces"),
+    [(r"\ln 10", 1), (r"2\sin\omega", 2), (r"\cosh(x)", 0), (r"K\cosh(x)", 1), (r"\max_\omega S", 0), ("K h", 0)],
+)
+def test_names_of_functions_stand_apart(tex: str, spaces: int) -> None:
+    ((_, found),) = convert([(False, tex)]).items()
+    assert found.mathml.count("<mspace") == spaces
 
 
 def test_names_are_given_once() -> None:

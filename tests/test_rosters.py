@@ -23,6 +23,7 @@ def test_a_roster_of_many_scripts() -> None:
         ("", "", "roster is empty"),
         ("name,mail\n\n", "", "roster is empty"),
         ("Student,ID\n    Points Possible,\n", "", "roster is empty"),
+        ('Student,ID\n    Points Possible,\n"Student, Test",9\n', "", "roster is empty"),
         ("Status;Name\nMitglied;Ada\nMitglied;Bob\n", "", "choose a column in which all differ with --roster-id"),
         ("name,mail\nAda,a\nada,b\n", "", "r.csv:3: 'ada' names the same sheet as 'Ada' in line 2"),
         ("name;mail\nAda;a\n", "id", "no column 'id'; allowed: name, mail"),
@@ -64,6 +65,9 @@ def test_long_names_that_differ_at_their_end_name_two_sheets(tmp_path: Path) -> 
         "\ufeffname;x;\r\n;;\r\nAda;1;\r\nZoë;2;;\r\n".encode("utf-16-be"),
         "name;Größe\nAda;1\nZoë;2".encode("utf-16-le"),  # without a mark
         "name\tx\r\nAda\t1\r\nZoë\t2\r\n".encode("utf-16-be"),
+        "name\tx\r\nAda\t1\r\nZoë\t2\r\n".encode("utf-32"),
+        "\ufeffname;x\nAda;1\nZoë;2\n".encode("utf-32-be"),
+        "name;x\nAda;1\nZoë;2".encode("utf-32-le"),
         b"\r\nname\tx\r\n\r\nAda\t1\r\nZo\xc3\xab\t2",
         b'"name","x"\rAda,"1\r2"\rZo\xc3\xab',
     ],
@@ -84,6 +88,12 @@ def test_a_roster_as_spreadsheets_save_it(tmp_path: Path, content: bytes) -> Non
         ("Student,ID,Section\n    Points Possible,,\nAda,7,A\nAda,8,A\n", "ID", ["7", "8"]),
         ("Student,ID\nAda,7\n    Points Possible,\nBob,8\n", "", ["Ada", "Bob"]),  # sorted by another program
         ("Student,ID,,\nAda,7,,\n", "", ["Ada"]),
+        (  # its test student comes last; without the line of points, it may be a person of that name
+            'Student,ID,SIS Login ID\n    Points Possible,,\n"L, Ada",7,al\n"Student, Test",9,0c1f\n',
+            "SIS Login ID",
+            ["al"],
+        ),
+        ('Student,ID\n"L, Ada",7\n"Student, Test",9\n', "", ["L, Ada", "Student, Test"]),
         # participants of a course of Moodle
         (
             "First name,Last name,Email address,Groups\nAda,L,a@x.org,\nAda,B,b@x.org,G\n",
@@ -125,3 +135,9 @@ def test_a_name_of_any_kind_is_part_of_a_name_of_one_file(tmp_path: Path, studen
     assert len(name.encode()) < 200
     (tmp_path / name).write_bytes(b"")
     assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_names_of_one_letter_in_utf_16_are_not_taken_for_utf_32(tmp_path: Path) -> None:
+    for encoding in ("utf-16", "utf-16-le", "utf-16-be", "utf-32-le", "utf-32-be"):
+        (tmp_path / "r.csv").write_bytes("n\na\nb\n".encode(encoding))
+        assert read_roster(tmp_path / "r.csv") == ["a", "b"]

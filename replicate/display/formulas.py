@@ -13,7 +13,7 @@ _FORMULA = re.compile(
 )
 _FUNCTION = re.compile(
     "(?P<factor>(?<!−)</mi>|</mn>|</m(?:sub|sup|frac)>)?(?<!<msub>)(?<!<munder>)"
-    '<mrow>(?P<name><mi mathvariant="normal">[a-z]+</mi><mo>\N{FUNCTION APPLICATION}</mo>)</mrow>'
+    '<mrow>(?P<name><mi mathvariant="normal">[a-z]+</mi><mo>(?:\N{FUNCTION APPLICATION}|&#8289;)</mo>)</mrow>'
     "(?P<argument><m(?:i|n|sub|sup|frac|sqrt|root)\\b)?"
 )
 _BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space)\\b")
@@ -52,13 +52,24 @@ def without_operators(text: str) -> str:
     return OPERATORS.sub(" ", text)
 
 
+def functions_apart(mathml: str) -> str:
+    r"""Set the names of functions in MathML of pandoc apart from what is beside them.
+
+    Examples
+    --------
+    >>> functions_apart('<mrow><mi mathvariant="normal">ln</mi><mo>\u2061</mo></mrow><mn>10</mn>').count("<mspace")
+    1
+    """
+    return _FUNCTION.sub(_apart, mathml)
+
+
 def _reference(match: re.Match[str]) -> str:
     return f"&#{ord(match[0])};"
 
 
 def _formula(match: re.Match[str]) -> str:
     display, content, tex = match.groups()
-    content = _FUNCTION.sub(_apart, content)
+    content = functions_apart(content)
     long = len(html.unescape(tex)) > _LONG[display]
     if display == "inline" and long:
         inside = 1 if len(html.unescape(tex)) > _VERY_LONG else 0

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
+from replicate.display.formulas import functions_apart
 from replicate.display.pandoc import PandocError, refusal
 from replicate.errors import TemplateError
 from replicate.handout.pandoc import written
@@ -69,7 +70,7 @@ def _converted(formulas: Sequence[Formula]) -> dict[Formula, Converted]:
             except PandocError as error:
                 raise FormulaError(formula[1], refusal(str(error))) from error
         raise
-    mathml = [page[page.index("<math") : page.rindex("</math>")] + "</math>" for page in pages]
+    mathml = [functions_apart(page[page.index("<math") : page.rindex("</math>")] + "</math>") for page in pages]
     return {
         formula: Converted(one, other.replace("<math", f'<math alttext="{escape(spoken(other))}"', 1), spoken(other))
         for formula, one, other in zip(formulas, typst, mathml, strict=True)

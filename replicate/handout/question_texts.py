@@ -7,6 +7,7 @@ import html
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+from replicate.display.formulas import functions_apart
 from replicate.handout.drawings import Drawing
 from replicate.handout.pandoc import written
 from replicate.handout.questions import Question
@@ -42,7 +43,7 @@ def texts_of(questions: Sequence[Question], place: Callable[[Question, str], str
     for question in questions:
         pieces += [_with_images(part, question, place) for part in (question.text, question.solution)]
         pieces += [[plain(inlines(answer.asked or name))] for name, answer in question.answers.items()]
-    made = iter(written(pieces, "html", *options))
+    made = map(functions_apart, written(pieces, "html", *options))
     for question in questions:
         links = "".join(f'<p><a href="{place(question, name)}">{name}</a></p>\n' for name in question.files)
         yield Texts(next(made) + links, next(made), {name: next(made).strip() for name in question.answers})

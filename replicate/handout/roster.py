@@ -19,6 +19,7 @@ _SHOWN = 60  # letters of a name in a message
 _RESERVED = {"key", "solutions", "slides"}  # files of other kinds have these names
 _INVISIBLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
 _NO_STUDENT = "Points Possible"  # in a line of a gradebook of Canvas, in any language
+_NOBODY = "Student, Test"  # whom Canvas puts into such a gradebook when a teacher looks at the course as a student
 _JOINERS = "\u200c\u200d"  # within words of some scripts, and between the parts of a pictograph
 
 
@@ -83,8 +84,10 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
         msg = f"{path.name}:{rows.line_num}: cannot be read as CSV: {error}"
         raise ReplicateError(msg) from error
     lines = [(number, row) for number, row in found[1:] if row[0].strip() != _NO_STUDENT]
-    if len(lines) < len(found) - 1 and lines and not lines[0][1][0].strip():
-        del lines[0]  # how grades are posted: such a gradebook may say it above
+    if len(lines) < len(found) - 1:  # a gradebook
+        if lines and not lines[0][1][0].strip():
+            del lines[0]  # how grades are posted: such a gradebook may say it above
+        lines = [(number, row) for number, row in lines if row[0].strip() != _NOBODY]
     if not lines:
         msg = f"{path.name}: the roster is empty: it needs a line with the names of the columns and one per student"
         raise ReplicateError(msg)
@@ -103,7 +106,7 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 def _text(path: Path) -> str:
     try:
-        return read_text(path, path.name, ReplicateError, pipes=True, utf_16=True)
+        return read_text(path, path.name, ReplicateError, pipes=True, wide=True)
     except ReplicateError as error:
         if isinstance(error.__cause__, UnicodeDecodeError):
             msg = f"{error}; in a spreadsheet, save the roster as 'CSV UTF-8'"

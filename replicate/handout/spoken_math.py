@@ -45,6 +45,9 @@ _NAMES = {
 }  # fmt: skip
 
 
+_OF_TWICE = re.compile(r"\b(of|to the) of\b")  # said by a function's name, and by the sign of its application
+
+
 def spoken(mathml: str | ET.Element) -> str:
     r"""Return a formula in words.
 
@@ -61,7 +64,8 @@ def spoken(mathml: str | ET.Element) -> str:
     """
     root = ET.fromstring(mathml) if isinstance(mathml, str) else mathml  # noqa: S314  -- pandoc's own output
     words = _say(root)
-    return re.sub(r"\s+([,.;)\]])", r"\1", re.sub(r"([(\[])\s+", r"\1", " ".join(words.split())))
+    words = _OF_TWICE.sub(r"\1", " ".join(words.split()))
+    return re.sub(r"\s+([,.;)\]])", r"\1", re.sub(r"([(\[])\s+", r"\1", words))
 
 
 def _say(node: ET.Element) -> str:
