@@ -393,3 +393,27 @@ def test_truth_values_are_no_gains() -> None:
     for given in (np.array([[True, False]]), pd.DataFrame({"k": [True], "ki": [0.1]}), [(True, False)]):
         with pytest.raises(LoopError, match=r"k must be a finite number, not (np\.)?True"):
             sweep(FOPTD, given, metrics="ms")
+
+
+def test_the_peak_of_a_narrow_resonance_is_that_of_its_closed_form() -> None:
+    # S of 1/(s^2 + c s + 1) under k: |S|^2 = ((1 - x)^2 + c^2 x)/((1 + k - x)^2 + c^2 x) with x = w^2, largest at a
+    # root of the quadratic that its derivative leaves
+    c, gains = 2e-3, np.array([0.01, 0.1, 0.3, 1.0, 3.0])
+    expected = []
+    for k in gains:
+        n, d = np.poly1d([1.0, c**2 - 2.0, 1.0]), np.poly1d([1.0, c**2 - 2.0 * (1.0 + k), (1.0 + k) ** 2])
+        x = (n.deriv() * d - n * d.deriv()).roots.real.max()
+        expected.append(np.sqrt(n(x) / d(x)))
+    plant = Plant([1.0], [1.0, c, 1.0])
+    found = sweep(plant, np.column_stack([gains, 0.0 * gains]), metrics="ms")["ms"][0]
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def test_two_integrators_leave_no_integrated_error_however_slow_their_last_mode_is() -> None:
+    plant = Plant([0.3], [1.0, 0.0], dead_time=2.0)
+    gains = np.array([[0.4, 1e-7], [0.3, 2e-7], [0.15, 3e-8], [0.6, 2e-8], [0.5, 1e-6]])
+    found = sweep(plant, gains, metrics=["ie", "iae", "itae"])
+    np.testing.assert_allclose(found["ie"][0], 0.0, atol=1e-9 * found["iae"].max())
+    for i, row in enumerate(gains):
+        y = Loop(plant, PI(*row)).step()
+        np.testing.assert_allclose([found["iae"][0, i], found["itae"][0, i]], [y.iae(), y.itae()], rtol=1e-9)

@@ -18,7 +18,7 @@ Flags = NDArray[np.bool_]
 Places = NDArray[np.intp]
 
 STEPS = 30  # most steps of Newton's method
-SHORT = 2e-5  # relative step after which the value at the next point is known to rounding
+SHORT = 2e-5  # step, of the frequency and of a resonance's width, after which the next value is known to rounding
 NEAR_ONE = 0.05  # relative error of |L| at a phase crossover as read from the grid
 RIVAL = 0.1  # minima this much higher than the lowest are looked at, too
 
@@ -236,7 +236,9 @@ def _polished_minima(loops: LoopColumns, left: Array, start: Array, right: Array
         # where the step is short the parabola's own minimum is exact to the third power of the step
         best[moving] = np.abs(offset) ** 2 + np.where(inside, gradient * step, 0.0)
         w[moving] = following
-        moving = moving[np.abs(following - at) > SHORT * at]
+        with np.errstate(all="ignore"):
+            width = np.abs(offset / slope)  # of a resonance: of a narrow one the frequency says nothing
+        moving = moving[np.abs(following - at) > SHORT * np.fmin(at, width)]
         if moving.size == 0:
             break
     return best
@@ -263,7 +265,9 @@ def _polished_crossovers(loops: LoopColumns, left: Array, right: Array, start: A
         bent = np.where(inside, -0.5 * bend.imag * step**2 / slope.imag, 0.0)
         result[moving] = value + (step + bent) * slope + 0.5 * step**2 * bend
         w[moving] = following
-        moving = moving[np.abs(step) > SHORT * at]
+        with np.errstate(all="ignore"):
+            width = np.abs(slope / bend)
+        moving = moving[np.abs(step) > SHORT * np.fmin(at, width)]
         if moving.size == 0:
             break
     return result

@@ -25,6 +25,7 @@ Flags = NDArray[np.bool_]
 
 SUSPECTED = 2e-11  # residual of the recurrence, of the largest deviation, with which a pole is looked for
 PROVEN = 1e-12  # residual of the fit with which it is the last one
+ROUNDING = 1e-15  # of the largest deviation: what a dead time may add to a slow mode
 
 
 @dataclass
@@ -39,18 +40,22 @@ class LastModes:
         s and c; a real pole has a real coefficient.
     start : array, shape (n,)
         The time t_0.
+    error : array, shape (n,)
+        How far c may be wrong.
     """
 
     found: Flags
     pole: ComplexArray
     coefficient: ComplexArray
     start: Array
+    error: Array
 
     @classmethod
     def none(cls, count: int) -> LastModes:
         """Return the record of loops without one."""
         return cls(
-            np.zeros(count, dtype=bool), np.full(count, -1.0 + 0.0j), np.zeros(count, dtype=complex), np.zeros(count)
+            np.zeros(count, dtype=bool), np.full(count, -1.0 + 0.0j), np.zeros(count, dtype=complex), np.zeros(count),
+            np.zeros(count),
         )  # fmt: skip
 
     def put(self, places: Places, modes: LastModes, start: float) -> None:
@@ -58,6 +63,7 @@ class LastModes:
         at = places[modes.found]
         self.found[at], self.start[at] = True, start
         self.pole[at], self.coefficient[at] = modes.pole[modes.found], modes.coefficient[modes.found]
+        self.error[at] = modes.error[modes.found]
 
     def integral(self) -> Array:
         """Return the integrals of the modes from their start on."""
@@ -127,13 +133,17 @@ class LastModes:
         return self.start + np.where((self.pole.imag == 0.0) & (later > 0.0), later, 0.0)
 
 
-def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: Array, high: Array) -> LastModes:
+def last_modes(
+    loops: LoopColumns, recent: Sequence[Array], elapsed: float, size: Array, band: Array, high: Array
+) -> LastModes:
     """Return the last modes of loops where there is one.
 
     Parameters
     ----------
     recent
         Deviations at the nodes of the pieces of the last three dead times, each of shape (points, n).
+    elapsed
+        Dead times since the step.
     size
         The largest deviation so far.
     band, high
@@ -165,6 +175,7 @@ def last_modes(loops: LoopColumns, recent: Sequence[Array], size: Array, band: A
         proven &= ~over & (~oscillates | (s.imag > 0.0))
     at = chosen[proven]
     found.found[at], found.pole[at], found.coefficient[at] = True, s[proven], c[proven]
+    found.error[at] = residual[proven] + ROUNDING * elapsed * size[at]
     return found
 
 

@@ -180,7 +180,7 @@ class _March:
             # without dead time the unit is short beside slow modes: over it two of them pass for one
             if self.loops.delay and (index + 1) // splits >= look:
                 look = int(np.ceil(look * LOOKS))
-                modes = state.last_modes()
+                modes = state.last_modes((index + 1) / splits)
                 modes.found &= ~(leaving | state.left)
                 found.modes.put(state.columns, modes, (index + 1) / splits)
                 leaving |= modes.found
@@ -267,8 +267,8 @@ class _Moving:
             resting[places] = quiet
         return np.asarray(resting)
 
-    def last_modes(self) -> LastModes:
-        return last_modes(self.loops, list(self.recent), self.size, self.band, self.high)
+    def last_modes(self, elapsed: float) -> LastModes:
+        return last_modes(self.loops, list(self.recent), elapsed, self.size, self.band, self.high)
 
     def leave(self, leaving: Flags, found: Responses, end: int) -> Flags:
         """Note which loops leave after ``end`` pieces; return all that have left but still move along."""

@@ -19,6 +19,7 @@ Places = NDArray[np.intp]
 
 NEGLIGIBLE = 3e-11  # share of an integral that all pieces together may have which are looked at no further
 NEAR_ENOUGH = 1e-5  # last step of Newton's method: the next is of its square, and an integral errs by a square again
+UNSURE = 3e-10  # share of an integral that the error of a last mode may have: one that is slow makes much of it
 FLAT = 1e-13  # of a control signal's size: a slope that is rounding
 
 
@@ -35,7 +36,9 @@ class ResponseIntegrals(ResponsePieces):
 
     def ie(self) -> Array:
         """Return the integrated error, for a load response the integrated deviation."""
-        total = self._areas.sum(axis=0) + self.responses.modes.integral()
+        modes = self.responses.modes
+        total = self._areas.sum(axis=0) + modes.integral()
+        self._require_sure(1.0 / self._decay, np.abs(self._areas).sum(axis=0) + np.abs(modes.integral()))
         return np.asarray(np.where(self.final == 0.0, total, -total))
 
     def ise(self) -> Array:
@@ -46,7 +49,9 @@ class ResponseIntegrals(ResponsePieces):
         for index, piece in enumerate(self.pieces):
             squares[index, piece.columns] = weights @ (matrix @ piece.values) ** 2
         squares = np.where(self._exists, squares, 0.0) * (0.5 * self._lengths())[:, None]
-        return np.asarray(squares.sum(axis=0) + self.responses.modes.square_integral())
+        modes = self.responses.modes
+        found = squares.sum(axis=0) + modes.square_integral()
+        return self._require_sure(np.abs(modes.coefficient) / self._decay, found)
 
     def itse(self) -> Array:
         """Return the integrated squared error, weighted with the time from the step."""
@@ -58,7 +63,9 @@ class ResponseIntegrals(ResponsePieces):
             times = middle[index] + half[index] * points
             total[index, piece.columns] = (half[index] * times * weights) @ (matrix @ piece.values) ** 2
         total = np.where(self._exists, total, 0.0)
-        return np.asarray(total.sum(axis=0) + self.responses.modes.square_moment())
+        modes, decay = self.responses.modes, self._decay
+        found = total.sum(axis=0) + modes.square_moment()
+        return self._require_sure(np.abs(modes.coefficient) * (modes.start + 0.5 / decay) / decay, found)
 
     def iae(self) -> Array:
         """Return the integrated absolute error."""
@@ -67,7 +74,8 @@ class ResponseIntegrals(ResponsePieces):
         if piece.size:
             (area,) = _absolute(self._gathered(piece, column), _area_up_to())
             total[piece, column] = area * (0.5 * self._lengths()[piece])
-        return np.asarray(total.sum(axis=0) + self.responses.modes.absolute_integral())
+        found = total.sum(axis=0) + self.responses.modes.absolute_integral()
+        return self._require_sure(1.0 / self._decay, found)
 
     def itae(self) -> Array:
         """Return the integrated absolute error, weighted with the time from the step."""
@@ -82,7 +90,22 @@ class ResponseIntegrals(ResponsePieces):
         if piece.size:
             area, moment = _absolute(self._gathered(piece, column), _area_up_to(), _moment_up_to())
             total[piece, column] = half[piece] * (middle[piece] * area + half[piece] * moment)
-        return np.asarray(total.sum(axis=0) + self.responses.modes.absolute_moment())
+        modes, decay = self.responses.modes, self._decay
+        found = total.sum(axis=0) + modes.absolute_moment()
+        return self._require_sure((modes.start + 1.0 / decay) / decay, found)
+
+    @property
+    def _decay(self) -> Array:
+        """How fast the last modes decay."""
+        return -self.responses.modes.pole.real
+
+    def _require_sure(self, weight: Array, total: Array) -> Array:
+        """Return integrals; leave to the single loop those to which an error of the last mode's coefficient matters.
+
+        It enters with a weight.
+        """
+        self.doubtful |= self.responses.modes.error * weight > UNSURE * total
+        return total
 
     def _middles(self) -> Array:
         lengths = self._lengths()
