@@ -121,6 +121,7 @@ def test_card_and_note_say_what_the_inputs_leave_open_and_how_certain_that_is() 
     values = {cell.column: cell.values[0] for _, cells in view.rows for cell in cells if cell.printed}
     assert values["sum"].certainty == "none of which gives the print, by proof"
     assert (values["product"].range, values["product"].certainty) == ("5.752 to 6.252", "")
+    assert [name for name, _ in values["product"].point] == ["k", "m"]
 
 
 def test_without_a_rule_it_is_only_searched() -> None:

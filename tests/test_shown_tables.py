@@ -67,6 +67,15 @@ def test_readings_that_agree_in_the_promised_digits_share_a_line() -> None:
     assert len(shown.lines(second)) == 2
 
 
+@pytest.mark.parametrize(
+    ("other", "later"),
+    [(1.0 + 3e-8, True), (1.0 + 1e-11, False), (1.001, False)],  # of six digits shown, and ten promised
+)
+def test_a_table_says_where_numbers_that_look_alike_differ(other: float, later: bool) -> None:
+    row = [5.0, 6.0, 7.0, 8.0]
+    assert view([[1.0, 2.0, 3.0, 4.0], row], [[other, 2.0, 3.0, 4.0], row]).differ_later is later
+
+
 def test_very_many_columns_stand_below_each_other() -> None:
     many = [f"c{place}" for place in range(60)]
     table = Table("table-1", "table", "Wide", rows=("A",), columns=tuple(many), printed=False)

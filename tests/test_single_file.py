@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import base64
 import re
 from collections.abc import Callable
 from pathlib import Path
+from urllib.parse import unquote_to_bytes
 
 import pytest
 
@@ -21,12 +21,12 @@ def test_one_file_holds_the_paper_and_its_data(replicate: Run) -> None:
     ids = set(re.findall(r' id="([^"]*)"', page))
     assert addresses
     for address in addresses:
-        assert address.startswith(("#", "data:text/csv;base64,")), address
+        assert address.startswith(("#", "data:text/csv;charset=utf-8,")), address
         if address.startswith("#") and len(address) > 1:
             assert address[1:] in ids
     for nowhere in ("All papers", ">Search", "Environment"):
         assert nowhere not in page
-    data = [base64.b64decode(one.partition(",")[2]) for one in addresses if one.startswith("data:")]
+    data = [unquote_to_bytes(one.partition(",")[2]) for one in addresses if one.startswith("data:")]
     assert Path("build/tables/lab/table-1.as-written.csv").read_bytes() in data
     assert Path("build/figures/lab/fig-1.csv").read_bytes() in data
     for text in ("Roots and logarithms", "A decaying oscillation", "A photograph", "The root of two is below 1.5."):

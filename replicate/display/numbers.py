@@ -143,6 +143,19 @@ def full(computed: float | None) -> str:
     return minus_signs(computed_text(computed))
 
 
+def between(low: str, high: str) -> str:
+    """Return a range as text, one number if its ends are shown alike; empty if it has none.
+
+    Examples
+    --------
+    >>> between("1.25", "1.3"), between("1.25", "1.25"), between("", "1.3")
+    ('1.25 to 1.3', '1.25', '')
+    """
+    if not low or not high:
+        return ""
+    return low if low == high else f"{low} to {high}"
+
+
 def aligned(texts: Iterable[str]) -> dict[str, str]:
     r"""Return, by text, the number with spaces after it that bring the points of a column in line; not a pair.
 

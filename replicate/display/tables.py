@@ -20,6 +20,7 @@ from replicate.exhibits.results import Ranges, TableResult
 from replicate.verdicts.rows import ERRORS, HOLDING, Computed, VerdictRow
 from replicate.verdicts.strength import Strength, strengths
 
+Point = tuple[tuple[str, str], ...]  # inputs: the name of each, and the number as it is shown
 _PROMISED = 10  # digits in which a computed number is right
 _WRONG = {*ERRORS, "unexplained"}
 
@@ -39,7 +40,7 @@ class Value:
     range
         Its range over the printed inputs of the reading, as text; empty if there is none.
     point
-        The inputs at which most of the case's cells hold together, as text; empty if there is no range.
+        The inputs at which most of the case's cells hold together, names and numbers; empty if there is no range.
     certainty
         Why no inputs that round to the print give the print, in words; empty where some do, or there is no range.
     off
@@ -51,7 +52,7 @@ class Value:
     full: str
     match: Match
     range: str = ""
-    point: str = ""
+    point: Point = ()
     certainty: str = ""
     off: str = ""
     number: float | None = None
@@ -140,6 +141,13 @@ class TableView:
     def matches(self) -> set[str]:
         """The kinds of match that occur."""
         return {value.match.kind for _, cells in self.rows for cell in cells for value in cell.values if value.full}
+
+    @property
+    def differ_later(self) -> bool:
+        """Whether numbers of a cell look alike and differ, beyond the digits that are shown."""
+        cells = [cell for _, row in self.rows for cell in row]
+        found = [{value.same: value.text for value in cell.values if value.full} for cell in cells]
+        return any(len(set(texts.values())) < len(texts) for texts in found)
 
     @property
     def line_count(self) -> int:
@@ -271,21 +279,14 @@ def _cell(
     return Cell(*key, numbers.overlined(verdict.printed) if verdict else "", verdict, values)
 
 
-def _range(table: Table, ranges: Ranges | None, key: Key, printed: PrintedValue | None) -> tuple[str, str]:
+def _range(table: Table, ranges: Ranges | None, key: Key, printed: PrintedValue | None) -> tuple[str, Point]:
     """Return the range of a cell over the printed inputs, and the inputs at which its case holds best, as texts."""
     if ranges is None or key not in ranges.lower:
-        return "", ""
+        return "", ()
     low, high = (numbers.shown(end, printed) for end in (ranges.lower[key], ranges.upper[key]))
     point = ranges.points[table.case(*key)]
-    inputs = ", ".join(f"{input_name(name)} = {numbers.shown(number, None)}" for name, number in point.items())
-    return _between(low, high), inputs
-
-
-def _between(low: str, high: str) -> str:
-    """Return a range as text, one number if its ends are shown alike; empty if it has none."""
-    if not low or not high:
-        return ""
-    return low if low == high else f"{low} to {high}"
+    inputs = tuple((input_name(name), numbers.shown(number, None)) for name, number in point.items())
+    return numbers.between(low, high), inputs
 
 
 def _shortened(table: Table, verdicts: Iterable[VerdictRow]) -> list[tuple[str, str]]:
@@ -343,5 +344,5 @@ def _ranges(group: Iterable[VerdictRow]) -> dict[str, list[tuple[str, str, str]]
         one = next((one for one in verdict.values if one.reading == verdict.reading), None)
         if one is not None and (words := CERTAINTIES.get(one.certainty)):
             low, high = (numbers.shown(end, verdict.value) for end in (one.lower, one.upper))
-            found.setdefault(words, []).append((verdict.row, verdict.column, _between(low, high)))
+            found.setdefault(words, []).append((verdict.row, verdict.column, numbers.between(low, high)))
     return found

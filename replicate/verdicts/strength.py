@@ -30,6 +30,7 @@ from replicate.exhibits.statements import numbers_in, scaled
 from replicate.verdicts.rows import Computed
 
 LEVEL = 0.01  # a reading whose matches are less likely than this to be accidents is strong
+_EVEN = 0.5  # matches that are as likely as not to be accidents say nothing
 _FEWEST_NEIGHBOURS = 3  # cells of one quantity, which can tell of it
 _SAME = 1e-9  # relative: readings that give the same number
 _MEETS = frozenset({"equal", "consistent"})
@@ -91,10 +92,14 @@ class Strength:
         'Meets 1 of 9 values, 1 digit, with 1 alternative tried: by accident in 30 % of cases.'
         >>> Strength(1, 0, 0.0, 6, 1.0).sentence
         'Meets none of 1 value.'
+        >>> Strength(12, 7, 0.2, 1, 1.0).sentence
+        'Meets 7 of 12 values, no more than an accident would: no evidence for this reading.'
         """
         values = f"{self.compared} value{'s' if self.compared != 1 else ''}"
         if not self.met:
             return f"Meets none of {values}."
+        if self.chance >= _EVEN:
+            return f"Meets {self.met} of {values}, no more than an accident would: no evidence for this reading."
         tried = f"{self.choices} alternative{'s' if self.choices != 1 else ''} tried"
         digits = f"{self.digits:.0f} digit{'s' if round(self.digits) != 1 else ''}"
         return f"Meets {self.met} of {values}, {digits}, with {tried}: {self.odds}."
