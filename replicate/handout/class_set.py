@@ -152,7 +152,7 @@ class ClassSet:
             return
         draw = self.artist.order([drawing.wanted("png") for drawing in later])
         for drawing in later:
-            drawing.drawn_by(draw)
+            drawing.drawn_by("png", draw)
 
     def _batch(self, forms: Sequence[Form]) -> list[Document]:
         return editions(

@@ -80,7 +80,7 @@ class DrawnLater(Drawing):
     """
 
     def __init__(self, wanted: Wanted, alt: str, width: float, draw: Callable[[Wanted], bytes]) -> None:
-        self.__dict__.update(name=wanted.figure, alt=alt, width=width, _wanted=wanted, _draw=draw)
+        self.__dict__.update(name=wanted.figure, alt=alt, width=width, _wanted=wanted, _draw={"svg": draw, "png": draw})
 
     @cached_property
     def svg(self) -> str:
@@ -97,12 +97,12 @@ class DrawnLater(Drawing):
         wanted: Wanted = self.__dict__["_wanted"]
         return replace(wanted, kind=kind)
 
-    def drawn_by(self, draw: Callable[[Wanted], bytes]) -> None:
-        """Have what is not drawn yet drawn otherwise."""
-        self.__dict__["_draw"] = draw
+    def drawn_by(self, kind: Literal["svg", "png"], draw: Callable[[Wanted], bytes]) -> None:
+        """Have the picture of a kind drawn otherwise if it is not drawn yet."""
+        self.__dict__["_draw"][kind] = draw
 
     def _drawn(self, kind: Literal["svg", "png"]) -> bytes:
-        made: bytes = self.__dict__["_draw"](self.wanted(kind))
+        made: bytes = self.__dict__["_draw"][kind](self.wanted(kind))
         return made
 
 
