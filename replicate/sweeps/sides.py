@@ -7,6 +7,7 @@ no more memory than a thousand.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NoReturn
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SCALES = ("linear", "log")
+MOST_POINTS = 100_000_000  # of one range: what a small machine keeps in memory
 RANGE = "{ from = 0.1, to = 10, points = 50, scale = 'linear' or 'log' }"
 
 #: Called with a key and what is wrong there; raises.
@@ -95,7 +97,11 @@ def _range(column: str, given: dict[str, Any], refuse: Refuse) -> NDArray[np.flo
     whole = isinstance(points, int) and not isinstance(points, bool) and points >= 1
     if unknown or not _is_number(first) or not _is_number(last) or not whole or scale not in SCALES:
         refuse(column, f"{column} is not a range; expected {RANGE}")
+    if points > MOST_POINTS:
+        refuse(column, f"{column}: a range has at most {MOST_POINTS} points, not {points}")
     if scale == SCALES[0]:
+        if not _is_number(last - first):
+            refuse(column, f"{column}: the difference of 'from' and 'to' is too large")
         return np.linspace(first, last, points)
     if not (first > 0 and last > 0):
         refuse(column, f"{column}: a logarithmic range needs 'from' and 'to' above 0")
@@ -103,4 +109,4 @@ def _range(column: str, given: dict[str, Any], refuse: Refuse) -> NDArray[np.flo
 
 
 def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= sys.float_info.max

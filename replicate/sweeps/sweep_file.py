@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 import re
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -159,7 +159,7 @@ def _check_settings(data: dict[str, Any], refuse: Refuse) -> None:
         refuse("pairing", f"pairing is {data['pairing']!r}; allowed: {', '.join(PAIRINGS)}")
     for key in ("until", "band"):
         value = data.get(key, 1.0)
-        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < math.inf:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= sys.float_info.max:
             refuse(key, f"{key} is {value!r}; expected: a number above 0")
     block = data.get("block", BLOCK)
     if isinstance(block, bool) or not isinstance(block, int) or block < 1:
