@@ -22,6 +22,7 @@ from replicate.exhibits import Figure
 from replicate.figures import capture as record_of
 from replicate.figures import compare
 from replicate.figures import style as plotstyle
+from replicate.figures.curves import compare_curves
 from replicate.figures.distance import distances, exact_distances
 from replicate.figures.off_screen import curves_frame
 from replicate.figures.values import WINDOW, compare_values
@@ -345,3 +346,22 @@ def test_the_window_is_a_sharp_border() -> None:
     for factor, rings in ((0.5, False), (1.5, True)):
         moved = ramp + np.where(ramp[:, :1] == 0.5, [factor * WINDOW, 0.0], 0.0)
         assert compare_values(ramp, moved).alarm.any() == rings
+
+
+@pytest.mark.parametrize("value", [1e160, -1e300, 1.7e308])
+@pytest.mark.parametrize("width", [2.0, 1e-9])
+@pytest.mark.parametrize("shape", ["circle", "function", "points"])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_point_so_far_away_that_its_distance_overflows(value: float, width: float, shape: str, axis: int) -> None:
+    angle = np.linspace(0.0, 6.0, 60)
+    across = angle / 6.0 if shape == "function" else 0.5 + 0.4 * np.cos(angle)
+    curve = np.column_stack([across, 0.5 + 0.4 * np.sin(angle)]) * width
+    far = curve.copy()
+    far[-1 if shape == "function" else 7, axis] = value
+    axes: dict[str, Any] = {"panel": "panel 1", "xlim": [0.0, width], "ylim": [0.0, width]}
+    axes |= {"xscale": "linear", "yscale": "linear", "points": ["c"] if shape == "points" else []}
+    for one, other in ((curve, far), (far, curve)):
+        found = compare_curves(({("panel 1", "c"): one}, [axes]), ({("panel 1", "c"): other}, [axes]))
+        assert [change.kind for change in found.changes] == ["curve"]
+    again = compare_curves(({("panel 1", "c"): far}, [axes]), ({("panel 1", "c"): far.copy()}, [axes]))
+    assert again.changes == []

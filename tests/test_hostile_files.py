@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import pypandoc
 import pytest
 import synthetic
 from conftest import Run
@@ -16,6 +17,7 @@ from conftest import Run
 from replicate import plain_text
 from replicate.display import markdown, pandoc
 from replicate.display.markdown import MarkdownBatch
+from replicate.display.pandoc import NoPandocError, convert
 from replicate.errors import LedgerError, PrintedFileError, ReplicateError, UnreadableTextError
 from replicate.handout.roster import read_roster
 from replicate.plain_text import parse_toml, read_text
@@ -115,6 +117,17 @@ def test_a_text_that_keeps_pandoc_busy_is_named(monkeypatch: pytest.MonkeyPatch)
         batch.substitute(page)
     assert caught.value.why.startswith("it takes more than 3 seconds")
     assert time.monotonic() - begun < 60
+
+
+@pytest.mark.parametrize("program", ["/bin/false", "/nowhere/pandoc", "/x\x1b[31m"])
+def test_a_pandoc_that_does_not_run_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], program: str
+) -> None:
+    monkeypatch.setenv("PYPANDOC_PANDOC", program)
+    monkeypatch.setattr(pypandoc, "__pandoc_path", None)
+    with pytest.raises(NoPandocError, match=r"^PYPANDOC_PANDOC names .*, which is not a pandoc that runs: unset it"):
+        convert("A text.", "html", "markdown")
+    assert capfd.readouterr() == ("", "")
 
 
 def test_an_integer_that_python_does_not_read_is_named_with_its_line() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import re
 import subprocess
@@ -11,10 +12,15 @@ from pathlib import Path
 from replicate.errors import ReplicateError
 
 TIME_LIMIT = 60.0  # seconds; the longest page takes two on a slow machine
+_SILENT = logging.NullHandler()
 
 
 class PandocError(ReplicateError):
     """Pandoc did not convert a text; the message is its own, on several lines."""
+
+
+class NoPandocError(ReplicateError):
+    """There is no pandoc that runs; no text is at fault."""
 
 
 class SlowTextError(PandocError):
@@ -75,13 +81,13 @@ def run(
     ------
     PandocError
         If it fails or takes longer.
+    NoPandocError
+        If it cannot be started.
     """
-    import pypandoc
-
     limit = TIME_LIMIT if limit is None else limit
     try:
         done = subprocess.run(  # noqa: S603  -- options of ours, and no shell
-            [pypandoc.get_pandoc_path(), *options],
+            [_program(), *options],
             input=content,
             capture_output=True,
             check=False,
@@ -92,9 +98,29 @@ def run(
     except subprocess.TimeoutExpired as error:
         msg = f"it takes more than {limit:g} seconds, for example for many brackets that are not closed"
         raise SlowTextError(msg) from error
+    except OSError as error:
+        msg = f"pandoc cannot be started: {error.filename or _program()}: {error.strerror or error}"
+        raise NoPandocError(msg) from error
     if done.returncode:
         raise PandocError(done.stderr.decode("utf-8", errors="replace"))
     return done.stdout
+
+
+def _program() -> str:
+    """Return the path of pandoc, as `pypandoc` finds it but without the traceback that it prints."""
+    import pypandoc
+
+    logging.getLogger("pypandoc").addHandler(_SILENT)  # or it adds one that writes to standard error
+    try:
+        return str(pypandoc.get_pandoc_path())
+    except OSError as error:
+        own = os.environ.get("PYPANDOC_PANDOC")
+        msg = (
+            f"PYPANDOC_PANDOC names {own}, which is not a pandoc that runs: unset it, or give the path of one"
+            if own
+            else "no pandoc was found: install pypandoc_binary, which holds one, again"
+        )
+        raise NoPandocError(msg) from error
 
 
 def refusal(message: str) -> str:

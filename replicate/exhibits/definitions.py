@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from replicate.errors import PaperDefinitionError
 from replicate.plain_text import steering
@@ -124,6 +124,52 @@ def check_mappings(what: str, **mappings: object) -> None:
             refuse(f"{what}: {name} is {_typed(mapping)}; expected: texts by key")
         for key, text in mapping.items():
             check_texts(what, **{f"a key of {name}": key, f"{name} of '{key}'": text})
+
+
+def as_mapping(what: str, name: str, mapping: object) -> dict[Any, Any]:
+    """Return a mapping as a dictionary of its own; nothing given is an empty one.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it is none, or a key is not a text.
+    """
+    if mapping is None:
+        return {}
+    if not isinstance(mapping, Mapping):
+        refuse(f"{what}: {name} is {_typed(mapping)}; expected: a dictionary")
+    for key in mapping:
+        check_texts(what, **{f"a key of {name}": key})
+    return dict(mapping)
+
+
+def check_count(what: str, name: str, value: object) -> None:
+    """Check that a field is a whole number, 1 or more.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it is not.
+    """
+    if not isinstance(value, int) or isinstance(value, bool) or value < 1:
+        refuse(f"{what}: {name} is {_typed(value)}; expected: a whole number, 1 or more")
+
+
+def check_spans(what: str, spans: object) -> None:
+    """Check that a field has, by cell, a list of other cells, each a pair of row and column.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it has not.
+    """
+    listed = spans.items() if isinstance(spans, Mapping) else [(spans, None)]
+    for cell, others in listed:
+        cells = [cell, *others] if isinstance(others, list | tuple) else [None]
+        if not all(
+            isinstance(one, tuple) and len(one) == 2 and all(isinstance(key, str) for key in one) for one in cells
+        ):
+            refuse(f"{what}: spans is {_typed(spans)}; expected: by cell a list of others, each (row, column)")
 
 
 def check_one_of(what: str, name: str, value: object, allowed: Sequence[object]) -> None:

@@ -13,9 +13,16 @@ from pathlib import Path, PurePosixPath
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
-from replicate.exhibits.definitions import as_keys, check_id, check_lists, check_paper_id, check_texts, refuse
+from replicate.exhibits.definitions import (
+    as_keys,
+    check_id,
+    check_lists,
+    check_mappings,
+    check_paper_id,
+    check_texts,
+    refuse,
+)
 from replicate.exhibits.drawn import Chart, Figure, FigureKind
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.near import USUAL, Near
@@ -129,8 +136,7 @@ class Paper:
         """
         path = self._data_place(name)
         if not path.exists():
-            msg = f"{self.id}: there is no data file '{name}' in the paper's folder"
-            raise PaperDefinitionError(msg)
+            refuse(f"{self.id}: there is no data file '{name}' in the paper's folder")
         self._data_read.add(name)
         return path
 
@@ -140,18 +146,14 @@ class Paper:
 
     def _data_place(self, name: str) -> Path:
         if not name or PurePosixPath(name).is_absolute() or Path(name).is_absolute():
-            msg = f"{self.id}: data file '{name}'; expected: a path relative to the paper's folder"
-            raise PaperDefinitionError(msg)
+            refuse(f"{self.id}: data file '{name}'; expected: a path relative to the paper's folder")
         return Path(str(self.folder())) / name
 
     def _declared(self, exhibit: str, depends: Sequence[str]) -> tuple[str, ...]:
-        if isinstance(depends, str):
-            msg = f"{self.id}: {exhibit}: depends is a text; expected: a list of file names"
-            raise PaperDefinitionError(msg)
+        check_lists(f"{self.id}: {exhibit}", depends=depends)
         for name in depends:
             if not self._data_place(name).exists():
-                msg = f"{self.id}: {exhibit} depends on '{name}', which is not there"
-                raise PaperDefinitionError(msg)
+                refuse(f"{self.id}: {exhibit} depends on '{name}', which is not there")
         return tuple(depends)
 
     def printed_cells(self, exhibit: str) -> Mapping[tuple[str, str], str]:
@@ -209,8 +211,8 @@ class Paper:
             If the id is taken, or a printed exhibit names no rows or columns.
         """
         if printed and not (rows and columns):
-            msg = f"{self.id}: {id} has printed values, so its row and column keys must be given"
-            raise PaperDefinitionError(msg)
+            refuse(f"{self.id}: {id} has printed values, so its row and column keys must be given")
+        check_mappings(id, labels=labels or {}, shared_labels=shared_labels or {})
         own = {*as_keys(id, "rows", rows), *as_keys(id, "columns", columns)}
         shared = {key: text for key, text in (shared_labels or {}).items() if key in own}
         exhibit = Table(
@@ -310,8 +312,7 @@ class Paper:
         """
         check_id("chart", id, self.charts)
         if not parameters:
-            msg = f"{self.id}: chart '{id}' has no parameters"
-            raise PaperDefinitionError(msg)
+            refuse(f"{self.id}: chart '{id}' has no parameters")
 
         def register(draw: Callable[..., None]) -> Callable[..., None]:
             self.charts[id] = Chart(id, title, draw, parameters, size)

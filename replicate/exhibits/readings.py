@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
-from replicate.exhibits.definitions import check_function, check_id, check_texts
+from replicate.exhibits.definitions import check_count, check_function, check_id, check_lists, check_texts
 from replicate.exhibits.exclusion import Rule
 from replicate.exhibits.order import module_being_imported
 
@@ -65,6 +65,13 @@ class Reading:
         check_id("reading", self.id)
         check_texts(what, title=self.title, note=self.note)
         check_function(what, "what computes it", self.compute)
+        check_lists(what, inputs=self.inputs)
+        for case, inputs in self.inputs_of.items():
+            check_lists(what, **{f"inputs_of of '{case}'": inputs})
+        for choice, count in self.tried.items():
+            check_count(what, f"tried of '{choice}'", count)
+        for quantity, rule in self.rules_out.items():
+            check_function(what, f"rules_out of '{quantity}'", rule)
 
 
 def is_elsewhere(place: str) -> bool:

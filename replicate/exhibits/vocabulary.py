@@ -18,7 +18,18 @@ from typing import TYPE_CHECKING, Literal, get_args
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Claims
 from replicate.exhibits.comparisons import Comparison
-from replicate.exhibits.definitions import check_id, check_kind, check_lists, check_mappings, check_one_of, check_texts
+from replicate.exhibits.definitions import (
+    as_keys,
+    as_mapping,
+    check_count,
+    check_id,
+    check_kind,
+    check_lists,
+    check_mappings,
+    check_one_of,
+    check_spans,
+    check_texts,
+)
 from replicate.exhibits.drawn import Figure, FigureKind
 from replicate.exhibits.exclusion import Rule
 from replicate.exhibits.near import USUAL, Near
@@ -118,6 +129,9 @@ class Table:
         check_lists(what, rows=self.rows, columns=self.columns)
         check_mappings(what, labels=self.labels, units=self.units)
         check_kind(what, "near", self.near, Near)
+        if self.significant_digits is not None:
+            check_count(what, "significant_digits", self.significant_digits)
+        check_spans(what, self.spans)
         if not isinstance(self.notation, Mapping):
             check_kind(what, "notation", self.notation, Notation)
         else:
@@ -253,15 +267,19 @@ class Table:
                 msg = f"{self.id}: the first reading must be '{AS_WRITTEN}', not '{id}'"
                 raise PaperDefinitionError(msg)
             check_id(f"reading of {self.id}", id, self.readings)
+            what = f"reading '{id}'"
             self.readings[id] = Reading(
                 id,
                 title,
                 compute,
                 note,
-                tuple(inputs),
-                {case: tuple(others) for case, others in (inputs_of or {}).items()},
-                dict(tried or {}),
-                dict(rules_out or {}),
+                as_keys(what, "inputs", inputs),
+                {
+                    case: as_keys(what, f"inputs_of of '{case}'", others)
+                    for case, others in as_mapping(what, "inputs_of", inputs_of).items()
+                },
+                as_mapping(what, "tried", tried),
+                as_mapping(what, "rules_out", rules_out),
             )
             return compute
 

@@ -23,6 +23,9 @@ TOLERANCE = 2e-4
 Array = NDArray[np.float64]
 Axes = Mapping[str, Any]
 
+#: What lies further out of view, in sizes of the axes, counts as lying there: a distance can then be squared.
+_FAR = 1e50
+
 
 def in_units(points: Points, axes: Axes) -> Points:
     """Return points as fractions of the axes.
@@ -35,10 +38,12 @@ def in_units(points: Points, axes: Axes) -> Points:
     [[0.5, 0.25]]
     """
     if axes.get("units") == "box":
-        return np.array(points, dtype=float)
-    if "polar" in axes:
-        return _from_polar(points, axes["polar"])
-    return np.column_stack([_fractions(points[:, place], axes, axis) for place, axis in enumerate("xy")])
+        units = np.array(points, dtype=float)
+    elif "polar" in axes:
+        units = _from_polar(points, axes["polar"])
+    else:
+        units = np.column_stack([_fractions(points[:, place], axes, axis) for place, axis in enumerate("xy")])
+    return np.where(np.isfinite(units), np.clip(units, -_FAR, _FAR), units)
 
 
 def finite(points: Points) -> NDArray[np.bool_]:
@@ -87,7 +92,10 @@ def _fractions(values: Array, axes: Axes, axis: str) -> Array:
     if axes.get(f"{axis}scale") == "log":
         with np.errstate(all="ignore"):
             values = np.log(values)
-    return np.asarray((values - low) / (high - low))
+    with np.errstate(over="ignore"):
+        fractions = np.asarray((values - low) / (high - low))
+    beyond = np.isfinite(values) & np.isinf(fractions)  # a value is there though its fraction has no number
+    return np.where(beyond, np.copysign(_FAR, fractions), fractions)
 
 
 def _table(table: Mapping[str, Sequence[float]]) -> tuple[Array, Array]:
