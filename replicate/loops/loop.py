@@ -342,7 +342,8 @@ class Loop(LoopViews, SetOnce):
         return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps, rest)
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
-        [found] = responses(self._plant, [self._controller], end, setpoint=setpoint, load=load)
+        steps = {"setpoint": setpoint, "load": load}
+        [found] = responses(self._plant, [self._controller], end, **steps, unit=self._units.time)
         return found
 
     def __repr__(self) -> str:

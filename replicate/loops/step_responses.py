@@ -47,7 +47,7 @@ def step_responses(
     with one_thread():
         found = responses(
             units.plant(plant), [units.controller(c) for c in controllers], until / units.time,
-            setpoint=setpoint, load=load * units.gain,
+            setpoint=setpoint, load=load * units.gain, unit=units.time,
         )  # fmt: skip
     signals = []
     for controller, (breaks, y, _) in zip(controllers, found, strict=True):

@@ -5,6 +5,7 @@ Expected values are closed forms, given with each test.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 
 import mpmath
@@ -20,6 +21,7 @@ from replicate.loops import (
     Loop,
     LoopError,
     Plant,
+    SmithPredictor,
     UnstableLoopError,
     design_pi,
     design_pid,
@@ -241,3 +243,24 @@ def test_nonsense_is_refused_in_one_line(name: str) -> None:
 
 def test_no_controllers_no_responses() -> None:
     assert step_responses(FOPTD, [], 5.0) == []
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-3, 1e6])
+def test_a_response_that_grows_out_of_range_says_when_in_the_unit_of_its_loop(unit: float) -> None:
+    one = Plant.foptd(1.0, unit, unit)
+    control = PI(50.0, 10.0 / unit)
+    unstable = Loop(Plant([1.0], [unit, -1.0], unit), PI(3.0, 1.0 / unit))
+    asks: list[Callable[[], object]] = [
+        lambda: Loop(one, control).step(until=1000.0 * unit),
+        lambda: step_responses(one, [control], 1000.0 * unit),
+        lambda: Loop(one + Plant.foptd(0.5, unit, 1.7 * unit), control).step(until=1000.0 * unit),
+        lambda: Loop(one, SmithPredictor(control, Plant.foptd(2.0, unit, 2.0 * unit))).step(until=1000.0 * unit),
+        lambda: unstable.saturated((-0.1, 0.1), until=1000.0 * unit),
+    ]
+    for ask in asks:
+        with pytest.raises(LoopError, match="grows beyond") as caught:
+            ask()
+        said = re.search(r"by t = (\S+):", str(caught.value))
+        assert said is not None
+        # a dead time multiplies by 150 at the most
+        assert 20.0 * unit < float(said[1]) <= 1000.0 * unit

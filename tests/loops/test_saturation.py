@@ -82,6 +82,39 @@ def test_clamping_holds_the_integral_part() -> None:
     assert response.at_limit[0].end == pytest.approx(1.0 - np.log(1.0 - 0.125 / 1.05), rel=1e-12)  # 1.2 (1 - y) = 1.05
 
 
+@pytest.mark.parametrize(
+    ("k", "high", "lag", "delay"), [(2.0, 0.8, 1.0, 1e-4), (2.0, 0.8, 1e3, 400.0), (3.3, 0.9, 2e-3, 1e-5)]
+)
+def test_a_command_that_touches_its_limit_without_slope_slides_on_it(
+    k: float, high: float, lag: float, delay: float
+) -> None:
+    # y = h (1 - exp(-(t - L)/T)); the held command k (1 - y) falls to h where the running one is stationary
+    error = high / k
+    ki = k * (high - 1.0 + error) / (lag * error)
+    touches = delay + lag * np.log(high / (high - 1.0 + error))
+    end = touches + 3.0 * lag
+    limited = Loop(Plant.foptd(1.0, lag, delay), PI(k, ki)).saturated((-0.3, high), "clamping", until=end)
+    (interval,) = limited.at_limit
+    assert (interval.start, interval.end) == (0.0, end)
+    t = np.linspace(0.0, end, 301)
+    exact = np.where(t < delay, 0.0, -high * np.expm1(-np.maximum(t - delay, 0.0) / lag))
+    np.testing.assert_allclose(limited.output(t), exact, atol=1e-12)
+    np.testing.assert_allclose(limited.command(t), np.where(t < touches, k * (1.0 - exact), high), atol=1e-12)
+
+
+def test_a_command_that_touches_its_limit_and_curves_back_goes_free() -> None:
+    # as above, with k (h - 1 + h/k) > h: the running command curves down, back between its limits
+    k, high, delay = 2.0, 1.25, 0.5
+    ki = k * (high - 1.0 + high / k) / (high / k)
+    touches = delay + np.log(high / (high - 1.0 + high / k))
+    limited = Loop(Plant.foptd(1.0, 1.0, delay), PI(k, ki)).saturated((-0.3, high), "clamping", until=6.0)
+    assert limited.at_limit[0].end == pytest.approx(touches, rel=1e-7)  # a double root
+    reference = Reference([1.0], [1.0, 1.0], delay, k, ki, (-0.3, high), "clamping")
+    reference.run(5.0)
+    t = np.linspace(0.013, 4.98, 120)
+    np.testing.assert_allclose(limited.output(t), [reference.output(x) for x in t], atol=2e-11)
+
+
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("ki", [1e-5, 1e-9])
 def test_weak_integral_action_meets_a_limit_after_a_million_dead_times(scheme: Any, ki: float) -> None:

@@ -163,33 +163,43 @@ class _Quadratics:
         c = np.stack([one[0], 2.0 * one[1], 2.0 * one[3], k[1], 2.0 * k[3], kd[3]])
         return cls(ki[2], b, c)
 
-    def roots(self, terms: Array) -> tuple[Array, Array, NDArray[np.bool_]]:
-        """Return the lower and the upper root in ki, and where they are real; ``terms`` has the six terms of c."""
+    def roots(self, terms: Array) -> tuple[NDArray[np.intp], Array, Array, NDArray[np.bool_]]:
+        """Return the frequencies that may forbid a ki > 0, the lower and the upper root there, and where they are real.
+
+        ``terms`` has the six terms of c. With a > 0, b >= 0 and c >= 0 no root is positive: on a fine grid that is so
+        at most frequencies, whatever the gains.
+        """
         b, c = terms[:, :3] @ self.b, terms @ self.c
+        may = np.nonzero(~(self.a > 0.0) | ((b < 0.0) | (c < 0.0)).any(axis=0))[0]
+        a, b, c = self.a[may], b.take(may, axis=1), c.take(may, axis=1)
         discriminant = b * b
-        discriminant -= 4.0 * self.a * c
+        discriminant -= 4.0 * a * c
         real = discriminant > 0.0
         with np.errstate(all="ignore"):
             q = -0.5 * (b + np.copysign(np.sqrt(discriminant), b))
-            first, second = q / self.a, c / q
-        return np.fmin(first, second), np.fmax(first, second), real
+            first, second = q / a, c / q
+        return may, np.fmin(first, second), np.fmax(first, second), real
 
 
 def _forbidden(quadratics: Sequence[_Quadratics], k: Array, kd: Array) -> tuple[Array, Array, NDArray[np.intp]]:
     """Return lower and upper ends of the forbidden intervals of ki > 0, shape (len(k), len(kd), intervals)."""
     both = np.repeat(k, kd.size), np.tile(kd, k.size)
     terms = np.stack([np.ones(both[0].size), *both, both[0] ** 2, both[0] * both[1], both[1] ** 2], axis=1)
-    low, high = [], []
+    low, high, names = [], [], []
+    first = 0
     for quadratic in quadratics:
-        left, right, real = quadratic.roots(terms)
+        may, left, right, real = quadratic.roots(terms)
         # a > 0: forbidden between the roots
-        up = quadratic.a > 0.0
+        up = quadratic.a[may] > 0.0
+        kinds = 1 if up.all() else 3
+        names += [first + kind * quadratic.a.size + may for kind in range(kinds)]
+        first += kinds * quadratic.a.size
         low.append(np.where(up & real & (right > 0.0), left, np.inf))
         high.append(np.where(up & real, right, -np.inf))
-        if not up.all():  # a < 0: below the lower and above the upper one, or everywhere
+        if kinds > 1:  # a < 0: below the lower and above the upper one, or everywhere
             low += [np.where(up, np.inf, np.zeros_like(left)), np.where(real & ~up, np.maximum(right, 0.0), np.inf)]
             high += [np.where(up, -np.inf, np.where(real, left, np.inf)), np.where(real & ~up, np.inf, -np.inf)]
     shape = (k.size, kd.size, -1)
     lows, highs = np.concatenate(low, axis=1), np.concatenate(high, axis=1)
     seen = np.nonzero(lows.min(axis=0) < np.inf)[0]
-    return lows[:, seen].reshape(shape), highs[:, seen].reshape(shape), seen
+    return lows[:, seen].reshape(shape), highs[:, seen].reshape(shape), np.concatenate(names)[seen]

@@ -140,9 +140,10 @@ class PredictorLoop(Loop):
         return self._units, open_loop_of_spaces(self._plant, self._difference, self._controller)
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
-        _, parts = self.open_loop()
+        units, parts = self.open_loop()
+        loads = load * parts.loaded
         return adaptive_steps.march(
-            parts.chain, parts.gains, parts.delays, end, setpoint=setpoint, loads=load * parts.loaded
+            parts.chain, parts.gains, parts.delays, end, setpoint=setpoint, loads=loads, unit=units.time
         )
 
     @property

@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 
 from replicate.loops.numerics import chebyshev
 from replicate.loops.saturation.anti_windup import FREE, LimitedController, Mode
+from replicate.loops.time_domain.piece_flow import DEGREE
 from replicate.loops.time_domain.piecewise import MARGIN, SAMPLES
 
 Array = NDArray[np.float64]
 
 TOLERANCE = 1e-13  # of the largest command: a transgression that is rounding
 RATE_TOLERANCE = 1e-11  # of the largest rate, which is a derivative of a polynomial
+# of the largest command in half a piece: the rate that its rounding becomes in the derivative (Markov's inequality)
+RATE_ROUNDING = 4.0 * float(np.finfo(float).eps) * DEGREE**2
 WITHIN = np.array([0.1, 0.3, 0.5, 0.7, 0.9])  # of an interval without a sign change, where its sign is looked at
 
 
@@ -81,6 +84,7 @@ def _conditions(controller: LimitedController, mode: Mode, piece: Piece, size: f
         slope = np.asarray(cheb.chebder(piece.command), dtype=float) * (2.0 * mode.side / piece.length)
         moving: Array = np.append(slope, 0.0)
         tolerance = RATE_TOLERANCE * float(np.max(np.abs(moving)) + np.max(np.abs(running)))
+        tolerance += RATE_ROUNDING * size * 2.0 / piece.length
         return [
             Condition(moving, tolerance, Mode("held", mode.side)),
             Condition(-(moving + running), tolerance, FREE),

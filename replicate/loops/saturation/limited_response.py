@@ -138,6 +138,7 @@ class LimitedViews:
             limited, parts.delays, parts.loaded,
             [(time / units.time, value) for time, value in setpoints],
             [(time / units.time, value * units.gain) for time, value in loads],
+            units.time,
         )  # fmt: skip
         last = max([0.0, *(time for time, _ in [*setpoints, *loads])])
         final_y, final_u, comes_back = _steady_state(loop, setpoints, loads, (low, high))

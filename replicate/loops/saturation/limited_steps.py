@@ -53,6 +53,8 @@ class LimitedSteps:
         1 for the inputs that the load enters, 0 for the others.
     setpoints, loads
         Piecewise constant inputs: their jumps in order of time, the first at t = 0.
+    unit
+        Unit of time in the user's, for messages.
     """
 
     controller: LimitedController
@@ -60,6 +62,7 @@ class LimitedSteps:
     loaded: Array
     setpoints: list[Jump]
     loads: list[Jump]
+    unit: float = 1.0
     mode: Mode = FREE
     breaks: list[float] = field(default_factory=lambda: [0.0])
     output: list[Array] = field(default_factory=list)  # coefficients
@@ -78,7 +81,8 @@ class LimitedSteps:
         self.x = np.zeros(chain.e.size)
         self.setpoint = 0.0
         self.jumps = PendingJumps(chain, row, self.delays)
-        self.resolution = Resolution(START * max((abs(value) for _, value in self.setpoints), default=0.0))
+        largest = max((abs(value) for _, value in self.setpoints), default=0.0)
+        self.resolution = Resolution(START * largest, unit=self.unit)
         for time, _ in self.setpoints:
             self.jumps.expect(time)
         for time, _ in self.loads:
@@ -108,7 +112,7 @@ class LimitedSteps:
             if not as_good_as_it_gets(remaining, previous):
                 previous, self.length = remaining, 0.5 * h
                 if start + self.length == start:
-                    msg = f"the response is not resolved at t = {start:g}"
+                    msg = f"the response is not resolved at t = {start * self.unit:g}"
                     raise LoopError(msg)
                 continue
             previous = np.inf
@@ -126,7 +130,8 @@ class LimitedSteps:
             else:
                 self._change_at_once(start, event[1])
             if len(self.output) > MOST_PIECES:
-                msg = f"the response needs more than {MOST_PIECES} pieces up to t = {until:g}: choose a shorter horizon"
+                end = until * self.unit
+                msg = f"the response needs more than {MOST_PIECES} pieces up to t = {end:g}: choose a shorter horizon"
                 raise LoopError(msg)
 
     def _accept(self, end: float, y: Array, u: Array, command: Array, x: Array) -> None:
@@ -158,7 +163,7 @@ class LimitedSteps:
         if following in self.tried:
             following = Mode("sliding", max(self.tried, key=lambda mode: abs(mode.side)).side)
             if self.controller.anti_windup != "clamping" or following in self.tried:
-                msg = f"the control signal leaves its limit and returns to it at once, at t = {start:g}"
+                msg = f"the control signal leaves its limit and returns to it at once, at t = {start * self.unit:g}"
                 raise LoopError(msg)
         self.mode = following
         if start:

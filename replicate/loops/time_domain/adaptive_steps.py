@@ -43,7 +43,9 @@ from replicate.loops.time_domain.resolution import START, Resolution, as_good_as
 Array = NDArray[np.float64]
 
 
-def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, load: float) -> tuple[Array, Array, Array]:
+def respond(
+    plant: Plant, controller: PID, until: float, *, setpoint: float, load: float, unit: float = 1.0
+) -> tuple[Array, Array, Array]:
     """Return breaks and the Chebyshev coefficients of output and control signal on [0, until].
 
     Parameters
@@ -52,6 +54,8 @@ def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, loa
         Rational with any number of dead times.
     setpoint, load
         Heights of the steps at t = 0 in the set-point and at the plant input (before the dead times).
+    unit
+        Unit of time in the user's, for messages.
 
     Raises
     ------
@@ -59,14 +63,15 @@ def respond(plant: Plant, controller: PID, until: float, *, setpoint: float, loa
         If the response needs too many pieces, or grows out of range.
     """
     parts = open_loop_of(plant, controller)
-    return march(parts.chain, parts.gains, parts.delays, until, setpoint=setpoint, loads=load * parts.loaded)
+    loads = load * parts.loaded
+    return march(parts.chain, parts.gains, parts.delays, until, setpoint=setpoint, loads=loads, unit=unit)
 
 
 def march(
-    chain: Chain, g: Array, delays: Array, until: float, *, setpoint: float, loads: Array
+    chain: Chain, g: Array, delays: Array, until: float, *, setpoint: float, loads: Array, unit: float = 1.0
 ) -> tuple[Array, Array, Array]:
     """Return the response of a chain closed by the gains ``g`` as `respond` does; each input has a load of its own."""
-    steps = _March(chain, g, delays, setpoint, loads)
+    steps = _March(chain, g, delays, setpoint, loads, unit)
     with np.errstate(over="ignore", invalid="ignore"):
         steps.run(until)
     return np.array(steps.breaks), coefficients(np.array(steps.output)), np.array(steps.control)
@@ -81,6 +86,7 @@ class _March:
     delays: Array
     setpoint: float
     loads: Array
+    unit: float  # of time, in the user's
     breaks: list[float] = field(default_factory=lambda: [0.0])
     output: list[Array] = field(default_factory=list)  # node values of y
     control: list[Array] = field(default_factory=list)  # coefficients of u
@@ -91,7 +97,7 @@ class _March:
         self.row = Row(self.g @ self.chain.wx, self.g @ self.chain.wv, float(self.g @ self.chain.wr))
         self.jumps = PendingJumps(self.chain, self.row, self.delays)
         self.x = self.chain.start * self.setpoint
-        self.resolution = Resolution(START * abs(self.setpoint))
+        self.resolution = Resolution(START * abs(self.setpoint), unit=self.unit)
         self.algebraic = 1.0 - (float(self.row.v[0]) if self.delays[0] == 0.0 else 0.0)
         if abs(self.algebraic) < ILL_POSED:
             msg = "the loop without dead time is not well posed: its algebraic feedback equals one"
@@ -115,7 +121,7 @@ class _March:
             if not as_good_as_it_gets(remaining, previous):
                 previous, length = remaining, 0.5 * h
                 if start + length == start:
-                    msg = f"the response is not resolved at t = {start:g}"
+                    msg = f"the response is not resolved at t = {start * self.unit:g}"
                     raise LoopError(msg)
                 continue
             previous = np.inf
@@ -126,7 +132,8 @@ class _March:
             self.x = end
             length = 2.0 * h if smooth else max(h, length if pieces <= 1.0 else h)
             if len(self.output) > MOST_PIECES:
-                msg = f"the response needs more than {MOST_PIECES} pieces up to t = {until:g}: choose a shorter horizon"
+                stop = until * self.unit
+                msg = f"the response needs more than {MOST_PIECES} pieces up to t = {stop:g}: choose a shorter horizon"
                 raise LoopError(msg)
 
     def _first_length(self) -> float:

@@ -95,7 +95,7 @@ def _solved(half_s: Array, a: Array, right: Array) -> Array:
 
 
 def respond(
-    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float
+    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float, unit: float = 1.0
 ) -> list[tuple[Array, Array, Array]] | None:
     """Compute output and control signal of one plant under several controllers that differ only in k, ki, kd and b.
 
@@ -105,6 +105,8 @@ def respond(
         Horizon.
     setpoint, load
         Heights of the steps at t = 0 in the set-point and at the plant input (before the dead time).
+    unit
+        Unit of time in the user's, for messages.
 
     Returns
     -------
@@ -137,7 +139,7 @@ def respond(
                 parts = [_march_closed(c, chain, length, pieces, setpoint, load) for c in closed]
                 values = np.stack([[p[i] for p in parts] for i in range(2)])
             found = values @ to_coefficients
-        remaining = _unresolved(found, length)
+        remaining = _unresolved(found, length * unit)
         # halving the pieces no longer helps once the tail is the rounding error of an ill-conditioned plant
         if remaining <= RESOLVED or (remaining < NEARLY and remaining > 0.25 * previous):
             breaks, share = chebyshev.cut(length, pieces, until)

@@ -30,6 +30,7 @@ class Resolution:
     size_y: float
     size_u: float = 0.0
     fastest: float = float("inf")  # length of a piece that suits the fastest mode
+    unit: float = 1.0  # of time, in the user's: for messages
 
     def check(self, start: float, h: float, y: Array, u: Array, v: Array) -> tuple[float, bool]:
         """Return the size of what is not resolved, and whether a longer piece would be resolved, too.
@@ -45,7 +46,7 @@ class Resolution:
         size_u = max(self.size_u, float(np.max(np.abs(u))))
         size_v = max(size_u, float(np.max(np.abs(v))))
         if not (size_y < LARGEST and size_u < LARGEST):
-            msg = f"the response grows beyond {LARGEST:g} by t = {start:g}: choose a shorter horizon"
+            msg = f"the response grows beyond {LARGEST:g} by t = {start * self.unit:g}: choose a shorter horizon"
             raise LoopError(msg)
         # times are known to rounding only: what changes fast carries that error
         blur = CLOCK * start * 2.0 / h

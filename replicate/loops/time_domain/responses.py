@@ -15,11 +15,12 @@ Array = NDArray[np.float64]
 
 
 def responses(
-    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float
+    plant: Plant, controllers: Sequence[PID], until: float, *, setpoint: float, load: float, unit: float = 1.0
 ) -> list[tuple[Array, Array, Array]]:
     """Return (breaks, output, control signal) for each controller; they may differ in k, ki, kd and b.
 
     Output and control signal are Chebyshev coefficients, shape (pieces, degree + 1); the last break is ``until``.
+    ``unit`` is the unit of time in the user's, for messages.
 
     Raises
     ------
@@ -27,10 +28,10 @@ def responses(
         If the controllers differ in more than their gains, or a response grows out of range.
     """
     if plant.is_rational:
-        found = method_of_steps.respond(plant, controllers, until, setpoint=setpoint, load=load)
+        found = method_of_steps.respond(plant, controllers, until, setpoint=setpoint, load=load, unit=unit)
         if found is not None:
             return found
-    return [adaptive_steps.respond(plant, c, until, setpoint=setpoint, load=load) for c in controllers]
+    return [adaptive_steps.respond(plant, c, until, setpoint=setpoint, load=load, unit=unit) for c in controllers]
 
 
 def held(breaks: Array, output: Array, control: Array, until: float) -> tuple[Array, Array, Array]:
