@@ -241,6 +241,28 @@ async def test_drawn():
     return figure
 """
 
+UNITTEST = """
+import unittest
+import pytest
+from matplotlib.figure import Figure
+
+class TestLoop(unittest.IsolatedAsyncioTestCase):
+    async def asyncSetUp(self):
+        self.figure = Figure()
+        self.figure.subplots()
+
+    @pytest.mark.figure_diff
+    async def test_drawn(self):
+        return self.figure
+
+    @pytest.mark.figure_diff
+    async def test_nothing(self):
+        pass
+
+    async def test_unmarked(self):
+        pass
+"""
+
 #: As plugins for coroutines do, what a test returns is dropped.
 LOOP = """
 import asyncio
@@ -261,6 +283,15 @@ def test_what_is_to_be_awaited_is_not_taken_as_passed(project: Project) -> None:
         "test_figures-TestOuter-TestInner-test_it.json",
         "test_figures-test_drawn.json",
     } <= project.accepted().keys()
+
+
+def test_what_a_coroutine_of_unittest_returns_is_compared(project: Project) -> None:
+    project.write(UNITTEST)
+    status, said = project.run("--accept-figures", "--reason", "first")
+    assert (status, "1 failed, 2 passed" in said) == (1, True), said
+    assert "TestLoop::test_nothing: is marked figure_diff, but returns NoneType" in said
+    assert "test_figures-TestLoop-test_drawn.json" in project.accepted()
+    assert "figures compared: 1" in project.run("-k", "drawn")[1]
 
 
 SEVERAL = """

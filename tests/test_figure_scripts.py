@@ -123,6 +123,29 @@ def test_accept_compare_change(folder: Folder, monkeypatch: pytest.MonkeyPatch) 
     assert (folder.path / "comment.md").read_text().startswith("<!-- replicate-figures -->\n## 🟢 Figures\n")
 
 
+CANVAS = """
+import matplotlib.animation
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_ps import FigureCanvasPS
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+fig = Figure()
+curve, = fig.subplots().plot([2, 1, 0])
+FigureCanvasAgg(fig).print_png("canvas.png")
+FigureCanvasSVG(fig).print_svg("canvas.svg")
+curve.set_color("red")
+FigureCanvasPS(fig).print_eps("canvas.eps")
+film = matplotlib.animation.FuncAnimation(fig, lambda frame: curve.set_ydata([frame, 2, 0]), frames=3)
+film.save("film.gif", writer="pillow", dpi=20)
+"""
+
+
+def test_what_a_canvas_of_any_kind_writes_is_captured_once_and_the_frames_of_films_are_not(folder: Folder) -> None:
+    folder.write("plot_canvas.py", CANVAS)
+    status, _, err = folder.run("accept", "plots/plot_canvas.py", "--reason", "first")
+    assert (status, folder.accepted()) == (0, ["plots/plot_canvas-1", "plots/plot_canvas-2"]), err
+
+
 def test_a_figure_whose_script_is_gone_is_noticed_and_its_absence_can_be_accepted(folder: Folder) -> None:
     for name in ("plot_shown.py", "plot_forked.py"):
         (folder.path / "plots" / name).unlink()

@@ -212,6 +212,16 @@ def test_the_arrows_of_a_stream_plot_are_spoken_of_together(what: str, values: A
     assert "arrow heads of lines 1" in changes[0]
 
 
+@pytest.mark.parametrize("change", [{"cmap": "autumn"}, {"color": X}])
+def test_arrows_of_many_colours_are_spoken_of_once(change: dict[str, Any]) -> None:
+    draw = {"color": Y - 1 - X**2, "density": 0.5}
+    changes = said(lambda ax, v: ax.streamplot(X, Y, Y - 1 - X**2, 1 + X - Y**2, **draw | v), {}, change)
+    heads = [change for change in changes if "arrow heads" in change]
+    assert len(heads) == 1
+    assert heads[0].startswith("colour of arrow heads of lines 1 changed from ")
+    assert heads[0].endswith(" others likewise")
+
+
 def stream(axes: Any, given: tuple[Any, Any]) -> None:
     x, y = np.meshgrid(np.linspace(-3.0, 3.0, 20), np.linspace(-2.0, 2.0, 20))
     field, change = given

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import unittest
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import wraps
@@ -155,10 +156,15 @@ def _returned(item: pytest.Item) -> Iterator[list[object]]:
 
     # What is to be awaited has to look so: else pytest would take it as passed.
     item.obj = await_call if inspect.iscoroutinefunction(original) else call
+    # A coroutine of unittest is called by its name, and not as what pytest has collected.
+    owner = getattr(original, "__self__", None)
+    own = vars(owner) if isinstance(owner, unittest.TestCase) else {}
+    own[item.name] = item.obj
     try:
         yield returned
     finally:
         item.obj = original
+        own.pop(item.name, None)
 
 
 def _check_returned(item: pytest.Item, mark: pytest.Mark, figure: object) -> None:

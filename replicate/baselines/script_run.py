@@ -11,6 +11,8 @@ import os
 import runpy
 import sys
 import traceback
+from collections.abc import Callable
+from functools import partialmethod, wraps
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +30,7 @@ class Keeper:
         self.problems: list[str] = []
         self._last: dict[int, tuple[Any, str]] = {}
         self._busy = False
+        self._saving: set[int] = set()
 
     def keep(self, figure: Any) -> None:
         """Keep the present state of a figure, unless it is the one that was kept last."""
@@ -52,6 +55,36 @@ class Keeper:
         (self.folder / f"{self.count}.json").write_text(drawn.record, encoding="utf-8", newline="\n")
         (self.folder / f"{self.count}.png").write_bytes(drawn.picture)
 
+    def saving(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        """Return a method of figures or canvases that saves, and keeps the figure when it has; saving calls saving."""
+
+        @wraps(original)
+        def save(owner: Any, *arguments: Any, **options: Any) -> Any:
+            figure = getattr(owner, "figure", owner)
+            # A film saves each of its frames.
+            film = sys._getframe(1).f_globals.get("__name__", "").startswith("matplotlib.animation")  # noqa: SLF001
+            if id(figure) in self._saving:
+                return original(owner, *arguments, **options)
+            self._saving.add(id(figure))
+            try:
+                result = original(owner, *arguments, **options)
+            finally:
+                self._saving.discard(id(figure))
+            if not film:
+                self.keep(figure)
+            return result
+
+        return save
+
+    def watch(self, canvas: type) -> None:
+        """Keep what the methods ``print_png``, ``print_figure``, ... of a class of canvases save."""
+        for name, method in list(vars(canvas).items()):
+            if name.startswith("print_") and isinstance(method, partialmethod):
+                again = partialmethod(self.saving(method.func), *method.args, **method.keywords)
+                setattr(canvas, name, again)
+            elif name.startswith("print_") and callable(method):
+                setattr(canvas, name, self.saving(method))
+
     def keep_open(self) -> None:
         """Keep every figure that pyplot has open."""
         plt: Any = sys.modules.get("matplotlib.pyplot")
@@ -69,35 +102,30 @@ def _watch(keeper: Keeper) -> None:
     plt.switch_backend("agg")
     mpl.use = lambda *_, **__: None
     plt.switch_backend = lambda *_, **__: None
-    original = Figure.savefig
 
-    def savefig(figure: Any, *arguments: Any, **options: Any) -> Any:
-        result = original(figure, *arguments, **options)
-        # A film saves each of its frames.
-        if not sys._getframe(1).f_globals.get("__name__", "").startswith("matplotlib.animation"):  # noqa: SLF001
-            keeper.keep(figure)
-        return result
-
-    original_print = FigureCanvasBase.print_figure
-
-    def print_figure(canvas: Any, *arguments: Any, **options: Any) -> Any:
-        result = original_print(canvas, *arguments, **options)
-        if sys._getframe(1).f_globals.get("__name__") != "matplotlib.figure":  # noqa: SLF001  -- that is `savefig`
-            keeper.keep(canvas.figure)
-        return result
+    def begin(canvas: Any, **options: Any) -> None:  # those of other formats are imported when they are needed
+        super(FigureCanvasBase, canvas).__init_subclass__(**options)
+        keeper.watch(canvas)
 
     def show(*_: Any, block: bool | None = None, **__: Any) -> None:
         keeper.keep_open()
         if block is not False:  # who looks at a window closes it
             plt.close("all")
 
-    Figure.savefig = savefig  # type: ignore[assignment, method-assign]
-    FigureCanvasBase.print_figure = print_figure  # type: ignore[assignment, method-assign]
+    Figure.savefig = keeper.saving(Figure.savefig)  # type: ignore[method-assign]
+    for canvas in (FigureCanvasBase, *_below(FigureCanvasBase)):
+        keeper.watch(canvas)
+    FigureCanvasBase.__init_subclass__ = classmethod(begin)  # type: ignore[arg-type, assignment]
     # Nobody clicks, and what is shown during a pause is a frame of a film.
     FigureCanvasBase.start_event_loop = lambda *_, **__: None  # type: ignore[method-assign]
     plt.pause = lambda *_, **__: None
     plt.show = show
     Figure.show = lambda figure, *_, **__: keeper.keep(figure)  # type: ignore[method-assign]
+
+
+def _below(kind: type) -> list[type]:
+    direct: list[type] = kind.__subclasses__()
+    return [found for below in direct for found in (below, *_below(below))]
 
 
 def run(script: Path, keeper: Keeper) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from replicate.figures.grouping import are_many, without_details
 from replicate.figures.looks import Mark, Words, look_words, place_words
 from replicate.figures.places import LOOSE, TOLERANCE
 
@@ -70,13 +71,28 @@ def mark_words(one: Sequence[Mark], other: Sequence[Mark], frame: Frame, *, loos
         if len(first) != len(second):
             yield from _unlike(kind, first, second, tolerance, frame)
         else:
-            for before, after in zip(first, second, strict=True):
-                yield from _pair(before, after, tolerance, frame)
+            yield from _pairs(first, second, tolerance, frame)
 
 
 def _kind(mark: Mark) -> str:
     """Return what a mark is; one marker alone, or many of one look, come to the renderer in another way than others."""
     return "markers" if "symbol" in mark or "symbols" in mark else str(mark["draws"])
+
+
+def _pairs(first: Sequence[Mark], second: Sequence[Mark], tolerance: float, frame: Frame) -> Iterator[Words]:
+    """Say how marks differ; what many of them say in other numbers and colours once, of the one that moved most."""
+    groups: dict[str, list[Words]] = {}
+    for before, after in zip(first, second, strict=True):
+        for words, size in _pair(before, after, tolerance, frame):
+            common = words if "texts" in before else without_details(words)
+            groups.setdefault(common, []).append((words, size))
+    for group in groups.values():
+        different = dict.fromkeys(words for words, _ in group)
+        if are_many(len(different)):
+            words, size = max(group, key=lambda said: said[1] or 0.0)
+            yield f"{words}, and {len(different) - 1} others likewise", size
+        else:
+            yield from group
 
 
 def _pair(before: Mark, after: Mark, tolerance: float, frame: Frame) -> Iterator[Words]:
@@ -101,8 +117,7 @@ def _unlike(
     if len(left) != len(right):
         yield from _counts(kind, first, second, *_unpaired(left, right))
         return
-    for before, after in zip(left, right, strict=True):
-        yield from _pair(before, after, tolerance, frame)
+    yield from _pairs(left, right, tolerance, frame)
 
 
 def _each(marks: Sequence[Mark]) -> list[dict[str, Any]]:
