@@ -134,11 +134,13 @@ def test_a_worker_killed_at_any_moment_loses_the_unit_it_was_at(attack: Attack, 
 
 
 def _kill_a_worker(delay: float) -> None:
-    """Kill the first child of this process' children that is there after a while."""
+    """Kill the first worker that is there after a while; a browser is a child of this process' children, too."""
     time.sleep(delay)
     children = Path(f"/proc/{os.getpid()}/task").glob("*/children")
     for child in " ".join(path.read_text() for path in children).split():
         try:
+            if b"multiprocessing.forkserver" not in Path(f"/proc/{child}/cmdline").read_bytes():
+                continue
             workers = Path(f"/proc/{child}/task/{child}/children").read_text().split()
         except OSError:
             continue
