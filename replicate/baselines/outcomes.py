@@ -153,12 +153,18 @@ def accept(store: Store, outcome: Outcome, drawn: Drawn | None, reason: str, rep
 
 
 def _small_picture(figure: Figure) -> bytes:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
     large, small = io.BytesIO(), io.BytesIO()
     if max(figure.get_size_inches()) > _MOST_INCHES:
         return b""
-    figure.savefig(large, format="png", dpi=_PICTURE_DPI, facecolor=figure.get_facecolor(), metadata={"Software": None})
+    canvas, face = figure.canvas, figure.get_facecolor()
+    FigureCanvasAgg(figure)  # makes itself the figure's: what is drawn on the other one may still be read
+    try:
+        figure.savefig(large, format="png", dpi=_PICTURE_DPI, facecolor=face, metadata={"Software": None})
+    finally:
+        figure.set_canvas(canvas)
     with Image.open(large) as picture:
         few = picture.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
     few.save(small, format="png", optimize=True)

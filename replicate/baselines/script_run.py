@@ -19,6 +19,9 @@ from typing import Any
 from replicate.baselines.outcomes import draw
 from replicate.errors import FigureError
 
+#: Methods of canvases that hand the pixels to the script, which may write them as it likes.
+_PIXELS = ("buffer_rgba", "tostring_argb", "tostring_rgb")
+
 
 class Keeper:
     """Keeps the states of figures in the order in which they were saved or left open."""
@@ -77,12 +80,14 @@ class Keeper:
         return save
 
     def watch(self, canvas: type) -> None:
-        """Keep what the methods ``print_png``, ``print_figure``, ... of a class of canvases save."""
+        """Keep what the methods ``print_png``, ``print_figure``, ``buffer_rgba``, ... of a class of canvases yield."""
         for name, method in list(vars(canvas).items()):
-            if name.startswith("print_") and isinstance(method, partialmethod):
+            if not name.startswith(("print_", *_PIXELS)):
+                continue
+            if isinstance(method, partialmethod):
                 again = partialmethod(self.saving(method.func), *method.args, **method.keywords)
                 setattr(canvas, name, again)
-            elif name.startswith("print_") and callable(method):
+            elif callable(method):
                 setattr(canvas, name, self.saving(method))
 
     def keep_open(self) -> None:
