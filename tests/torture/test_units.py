@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import threading
-import time
 from pathlib import Path
 
 import pytest
@@ -113,11 +112,15 @@ def test_a_worker_killed_at_any_moment_loses_the_unit_it_was_at(attack: Attack, 
 
     def try_one(delay: float) -> str:
         steps: list[Progress] = []
+        killer = threading.Timer(delay, _kill_a_worker)
+
+        def progress(step: Progress) -> None:
+            if not steps:
+                killer.start()  # both workers are at work
+            steps.append(step)
+
         with rogue.installed(tmp_path / str(delay), readings):
-            paper = Library().paper("rogue")
-            killer = threading.Thread(target=_kill_a_worker, args=(delay,))
-            killer.start()
-            result = run([paper], jobs=2, cache_dir=None, progress=steps.append)["rogue", "table-1"]
+            result = run([Library().paper("rogue")], jobs=2, cache_dir=None, progress=progress)["rogue", "table-1"]
             killer.join()
         assert isinstance(result, TableResult)
         if {*result.frames, *result.errors} != {"as-written", *readings}:
@@ -130,12 +133,11 @@ def test_a_worker_killed_at_any_moment_loses_the_unit_it_was_at(attack: Attack, 
         odd = [why for why in result.errors.values() if "worker process was ended by SIGKILL" not in why]
         return f"said: {odd}" if odd or len(result.errors) > 1 else ""
 
-    attack("a worker is killed at any moment", [i * 0.02 for i in range(60)], try_one, short=3)
+    attack("a worker is killed at any moment", [i * 0.003 for i in range(60)], try_one, short=3)
 
 
-def _kill_a_worker(delay: float) -> None:
-    """Kill the first worker that is there after a while; a browser is a child of this process' children, too."""
-    time.sleep(delay)
+def _kill_a_worker() -> None:
+    """Kill the first worker; a browser of other tests is a child of this process' children, too."""
     children = Path(f"/proc/{os.getpid()}/task").glob("*/children")
     for child in " ".join(path.read_text() for path in children).split():
         try:
