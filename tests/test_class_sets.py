@@ -9,7 +9,6 @@ import re
 from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -25,8 +24,6 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answer, Variation, rounded
 from replicate.handout import ClassSet, Form, Sheet, stressed
 from replicate.handout import class_set as class_set_module
-from replicate.handout.artist import Artist
-from replicate.handout.drawings import Wanted
 from replicate.handout.edition import edition
 from replicate.handout.key_figures import key_figures
 from replicate.handout.letters import can_be_set
@@ -204,23 +201,11 @@ def test_the_key_shows_the_curves_that_students_were_to_sketch() -> None:
     assert [(figure.heading, figure.student) for figure in figures] == [
         ("sketch: The response", student) for student in students
     ]
-    draw = partial(Wanted.drawn, exercises=bayhan)
-    assert len({draw(figure.wanted) for figure in figures}) == len(students)
+    assert len({figure.drawing.svg for figure in figures}) == len(students)
     rows = [row for student, form in forms.items() for row in key_rows(bayhan.variations, student, form)]
-    without, together = (key_pdf(rows, bayhan_paper, "1", some, draw) for some in ((), figures))
+    without, together = (key_pdf(rows, bayhan_paper, "1", some) for some in ((), figures))
     assert together.count(b"/S/Figure") == without.count(b"/S/Figure") + len(students)
     assert b"<pdfuaid:part>1</pdfuaid:part>" in together
-
-
-def test_an_artist_draws_the_same_pictures_in_a_process_of_its_own() -> None:
-    forms = {student: Form.of("bayhan", "1", student) for student in ("Ada", "Bob")}
-    wanted = [figure.wanted for figure in key_figures(bayhan.variations, forms, "bayhan")]
-    wrong = replace(wanted[0], figure="none")
-    with Artist(bayhan_paper.package, ()) as artist:
-        draw, fail = artist.order(wanted), artist.order([wrong])
-        assert [draw(one) for one in wanted] == [one.drawn(bayhan) for one in wanted]
-        with pytest.raises(ReplicateError, match="KeyError: 'none'"):
-            fail(wrong)
 
 
 @pytest.mark.parametrize(

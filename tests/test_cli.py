@@ -295,8 +295,9 @@ def test_an_interrupted_report_leaves_the_earlier_one(replicate: Run, monkeypatc
         raise KeyboardInterrupt
 
     monkeypatch.setattr("replicate.report.pages.build_report", interrupted)
-    status, _, _ = replicate("report", "lab", "-j1")
+    status, _, err = replicate("report", "lab", "-j1")
     assert status == 130
+    assert err.endswith("build: interrupted; nothing was changed there\n")
     assert contents(Path("build")) == before
 
 

@@ -1,75 +1,102 @@
-"""Figures of a class's sheets: one thread draws, and pictures for questions may be drawn elsewhere."""
+"""Figures of a class's sheets: no two threads draw at once, and an artist draws both kinds of pictures elsewhere."""
 
 from __future__ import annotations
 
+import io
 import threading
-from collections.abc import Callable, Sequence
+import xml.etree.ElementTree as ET
+from base64 import b64decode
 from pathlib import Path
 
 import pytest
 import toy_class
+from matplotlib import image
 
-from replicate.exhibits.exercises import Exercises
-from replicate.exhibits.variants import Answer, Answers, Inputs, VariedFigure
+from replicate.errors import ReplicateError
+from replicate.handout import Form, Sheet, own_exercises
+from replicate.handout.artist import Artist
 from replicate.handout.drawings import Wanted
+from replicate.handout.edition import AT_ONCE
+from replicate.papers.bayhan import paper as bayhan
 
-TEXT = """# A toy
-
-## Exercises
-
-::: exercise
-## Read {vary="reading"}
+TEXT = "# A toy\n\n## Exercises\n"
+OWN_TEXT = """## Read
 Read the slope.
 
 {{ figure('line') }}
 A caption.
 
 ::: solution
-${{ fixed(answer('reading')['slope'], 0) }}$
-:::
+${{ fixed(answer['answer'], 0) }}$
+
+{{ figure('answered') }}
 :::
 """
-DRAWN = {"svg": toy_class.SVG.encode(), "png": toy_class.PNG}
-STUDENTS = ["Ada", "Bob", "Zoë", "Eve"]
+OWN_PROGRAM = """
+from replicate.exhibits.variants import Answer, VariedFigure
+
+def variant(rng):
+    return {"a": rng.randint(2, 999)}
+
+def answers(inputs):
+    return Answer(inputs["a"], tolerance=0.5)
+
+def draw(figure, inputs):
+    axes = figure.subplots()
+    axes.axis("off")
+    axes.plot([0, inputs["a"]])
+
+figures = {
+    "line": VariedFigure("A line", "It rises.", draw, (1.0, 1.0)),
+    "answered": VariedFigure("Its slope", "It rises.", draw, (1.2, 1.0), in_key=True),
+}
+"""
 
 
-def exercises() -> Exercises:
-    found = Exercises()
-
-    @found.vary(
-        "reading",
-        original={"a": 1},
-        variant=lambda rng: {"a": rng.randint(2, 99)},
-        requires={},
-        figures={"line": VariedFigure("A line", "It rises.", lambda *_: None, (3.0, 2.0))},
-    )
-    def slope(inputs: Inputs) -> Answers:
-        return {"slope": Answer(float(inputs["a"]), tolerance=0.5, mistakes={"sign": -float(inputs["a"])})}
-
-    return found
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    folder = tmp_path / "reading"
+    folder.mkdir()
+    (folder / "exercise.md").write_text(OWN_TEXT, encoding="utf-8")
+    (folder / "exercise.py").write_text(OWN_PROGRAM, encoding="utf-8")
+    return folder
 
 
-class Elsewhere:
-    """Draws the pictures that were ordered, and no others."""
-
-    def order(self, wanted: Sequence[Wanted]) -> Callable[[Wanted], bytes]:
-        return {one: DRAWN[one.kind] for one in wanted}.__getitem__
-
-
-@pytest.mark.parametrize("artist", [None, Elsewhere()])
-def test_only_the_thread_that_reports_draws(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, artist: Elsewhere | None
+def test_without_an_artist_the_thread_that_reports_draws(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: Path
 ) -> None:
-    drawn: list[tuple[str, str]] = []
+    drawn: list[tuple[str, str, str]] = []
 
-    def draw(wanted: Wanted, _: Exercises) -> bytes:
-        drawn.append((wanted.kind, threading.current_thread().name))
-        return DRAWN[wanted.kind]
+    def draw(wanted: Wanted, _: object) -> bytes:
+        drawn.append((wanted.figure, wanted.kind, threading.current_thread().name))
+        return {"svg": toy_class.SVG.encode(), "png": toy_class.PNG}[wanted.kind]
 
     monkeypatch.setattr(Wanted, "drawn", draw)
-    monkeypatch.setattr(toy_class, "exercises", exercises)
-    made = dict(toy_class.class_set(tmp_path, monkeypatch, TEXT, artist=artist).files(STUDENTS, "1", "moodle"))
-    assert [name for name in made if name.endswith(".pdf")] == [f"toy-{one}.pdf" for one in [*STUDENTS, "key"]]
-    kinds = ["svg"] if artist else ["png", "svg"]
+    students = ["Ada", "Bob", "Zoë", "Eve"]
+    sheet = Sheet(own=tuple(own_exercises(own)))
+    made = dict(toy_class.class_set(tmp_path, monkeypatch, TEXT, sheet=sheet).files(students, "1", "moodle"))
+    assert [name for name in made if name.endswith(".pdf")] == [f"toy-{one}.pdf" for one in [*students, "key"]]
     here = threading.current_thread().name
-    assert sorted(drawn) == [(kind, here) for kind in kinds for _ in STUDENTS]
+    wanted = {("line", "svg", here), ("line", "png", here), ("answered", "png", here), ("answered", "svg", here)}
+    assert set(drawn) == wanted  # of the solution's figure the key has the SVG, the sheet nothing
+    assert len(drawn) == len(wanted) * len(students)
+
+
+def test_an_artist_draws_for_a_class_of_thirty(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, own: Path) -> None:
+    students = [f"{number}" for number in range(AT_ONCE + 5)]
+    sheet = Sheet(own=tuple(own_exercises(own)))
+    with Artist(bayhan.package, (own,)) as artist, monkeypatch.context() as elsewhere:
+        elsewhere.delattr(Wanted, "drawn")
+        class_set = toy_class.class_set(tmp_path, monkeypatch, TEXT, sheet=sheet, artist=artist)
+        made = dict(class_set.files(students, "1", "moodle"))
+        wrong = Wanted("toy", "0", "reading", "none", "1", "", (1.0, 1.0), "svg")
+        with pytest.raises(ReplicateError, match="KeyError: 'none'"):
+            artist.order([wrong])(wrong)
+    assert list(made) == ["toy-key.csv", *(f"toy-{one}.pdf" for one in students), "toy-key.pdf", "toy-moodle.xml"]
+    assert made["toy-key.pdf"].count(b"/S/Figure") == len(students)
+    pictures = [b64decode(file.text or "") for file in ET.fromstring(made["toy-moodle.xml"]).iter("file")]  # noqa: S314  -- ours
+    assert len(pictures) == 2 * len(students)
+    assert {image.imread(io.BytesIO(picture)).ndim for picture in pictures} == {3}
+    here = toy_class.class_set(tmp_path, monkeypatch, TEXT, sheet=sheet)
+    last = Form.of("toy", "1", students[-1])
+    assert list(dict(here.again(last)).values()) == [made[f"toy-{students[-1]}.pdf"]]

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
 from types import TracebackType
 
-from replicate.exhibits.exercises import Exercises
+from replicate.exhibits.variants import Variation
 from replicate.handout.drawings import Wanted
 from replicate.handout.own_code import LONGEST_RUN
 from replicate.handout.own_exercises import own_exercises, with_own
@@ -55,10 +55,11 @@ class Artist:
 
 def pictures(package: str, folders: tuple[Path, ...], wanted: Sequence[Wanted]) -> Iterator[bytes]:
     """Yield pictures of the exercises of a paper and of folders."""
-    exercises = _exercises(package, folders)
-    return (one.drawn(exercises) for one in wanted)
+    variations = _variations(package, folders)
+    return (one.drawn(variations) for one in wanted)
 
 
 @cache
-def _exercises(package: str, folders: tuple[Path, ...]) -> Exercises:
-    return with_own(exercises_of(loaded(package)), tuple(own for folder in folders for own in own_exercises(folder)))
+def _variations(package: str, folders: tuple[Path, ...]) -> Mapping[str, Variation]:
+    own = tuple(one for folder in folders for one in own_exercises(folder))
+    return with_own(exercises_of(loaded(package)), own).variations

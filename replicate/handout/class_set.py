@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
 from typing import Any
@@ -13,15 +13,15 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import Results
 from replicate.exhibits.variants import Variation
 from replicate.handout.artist import Artist
-from replicate.handout.drawings import Wanted
+from replicate.handout.drawings import Drawing, Kind, have_drawn
 from replicate.handout.edition import AT_ONCE, Document, editions, without_solutions
 from replicate.handout.form import Form
-from replicate.handout.formats import BANKS, EDITIONS, named
-from replicate.handout.key_figures import key_figures
+from replicate.handout.formats import BANKS, EDITIONS, PICTURES, named
+from replicate.handout.key_figures import KeyFigure, key_figures
 from replicate.handout.marking_key import KeyRow, key_csv, key_pdf, key_rows
 from replicate.handout.own_exercises import OwnExercise, with_own
 from replicate.handout.placing import exercises_of
-from replicate.handout.questions import Question, pictures_of, questions_of
+from replicate.handout.questions import Question, drawings_in, questions_of
 from replicate.handout.roster import file_stem
 from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
@@ -44,7 +44,7 @@ class ClassSet:
     progress
         Is given how many sheets of how many are done.
     artist
-        Draws the pictures of key and questions meanwhile; without one, they are drawn when they are needed.
+        Draws pictures of sheets, questions and key meanwhile; without one, they are drawn before a batch is set.
     """
 
     paper: Paper
@@ -80,25 +80,24 @@ class ClassSet:
         rows = self._key(chosen, forms)
         yield f"{self.paper.id}-key.csv", key_csv(rows)
         figures = list(key_figures(chosen, forms, self.paper.id))
-        draw = self._draw([figure.wanted for figure in figures], exercises)
         for student, form in forms.items():
             yield from self._data(exercises, file_stem(student), form)
-        questions: list[Question] = []
-        stems = [file_stem(student) for student in students]
+        questions: list[Question] | None = [] if bank else None
+        sheets = self._sheets(forms.values(), exercises, questions, figures)
         if self.file_format in EDITIONS:
-            yield from self._sheets(stems, self._documents(forms.values(), exercises, questions if bank else None))
+            yield from self._written([file_stem(student) for student in students], sheets)
         else:
-            for number, _ in enumerate(self._documents(forms.values(), exercises, questions), start=1):
+            for number, _ in enumerate(sheets, start=1):
                 self.progress(number, len(forms))
-        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed, figures, draw)
-        if bank:
+        yield f"{self.paper.id}-key.pdf", key_pdf(rows, self.paper, seed, figures)
+        if questions is not None:
             yield from named(BANKS[bank](questions), self.paper.id).items()
 
     def again(self, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the name and content of one sheet, made again from its id."""
         exercises = varying(self.paper, self.sheet.own)
         yield from self._data(exercises, form.key, form)
-        yield from self._sheets([form.key], self._documents([form], exercises, None))
+        yield from self._written([form.key], self._sheets([form], exercises))
 
     def _key(self, chosen: Mapping[str, Variation], forms: Mapping[str, Form]) -> list[KeyRow]:
         rows: list[KeyRow] = []
@@ -109,10 +108,6 @@ class ClassSet:
                 msg = f"{self.paper.id}, seed '{form.seed}', student '{student}': {error}"
                 raise PaperDefinitionError(msg) from error
         return rows
-
-    def _draw(self, wanted: Sequence[Wanted], exercises: Exercises) -> Callable[[Wanted], bytes]:
-        """Return what draws pictures that will be wanted."""
-        return self.artist.order(wanted) if self.artist else lambda one: one.drawn(exercises)
 
     def _data(self, exercises: Exercises, stem: str, form: Form) -> Iterator[tuple[str, bytes]]:
         """Yield the files that go with a sheet."""
@@ -130,29 +125,38 @@ class ClassSet:
         names = self._shared["on sheet"]
         return {name: variation for name, variation in exercises.variations.items() if name in names}
 
-    def _documents(
-        self, forms: Iterable[Form], exercises: Exercises, questions: list[Question] | None
+    def _sheets(
+        self,
+        forms: Iterable[Form],
+        exercises: Exercises,
+        questions: list[Question] | None = None,
+        figures: Collection[KeyFigure] = (),
     ) -> Iterator[Document]:
-        """Yield sheets with their solutions, made in batches; their questions go to the list if there is one."""
+        """Yield sheets, made in batches, whose pictures are drawn together: also those of the key and of questions.
+
+        Parameters
+        ----------
+        questions
+            To which those of the sheets are added, if there is such a list.
+        figures
+            Of the key.
+        """
         waiting = iter(forms)
         while some := list(islice(waiting, AT_ONCE)):
-            for form, document in zip(some, self._batch(some), strict=True):
-                if questions is not None:
-                    asked = list(questions_of(document, exercises, form))
-                    questions += asked
-                    self._pictures(asked)
-                yield document
-
-    def _pictures(self, questions: Iterable[Question]) -> None:
-        """Have pictures of questions drawn: by the artist, or now, while another thread still sets sheets."""
-        later = pictures_of(questions)
-        if not self.artist:
-            for drawing in later:
-                drawing.png  # noqa: B018  -- it is kept
-            return
-        draw = self.artist.order([drawing.wanted("png") for drawing in later])
-        for drawing in later:
-            drawing.drawn_by("png", draw)
+            solved = self._batch(some)
+            sheets = solved if self.solutions else [without_solutions(one) for one in solved]
+            pictures: list[tuple[Drawing, Kind]] = []
+            if kind := PICTURES.get(self.file_format):
+                pictures += [(drawing, kind) for sheet in sheets for drawing in sheet.drawings.values()]
+            if questions is not None:
+                pairs = zip(solved, some, strict=True)
+                asked = [one for document, form in pairs for one in questions_of(document, exercises, form)]
+                texts = (drawings_in([*one.text, *one.solution], one.document) for one in asked)
+                pictures += [(drawing, "png") for drawings in texts for drawing in drawings]
+                questions += asked
+            pictures += [(figure.drawing, "svg") for figure in figures if figure.form in some]
+            have_drawn(pictures, self.artist)
+            yield from sheets
 
     def _batch(self, forms: Sequence[Form]) -> list[Document]:
         return editions(
@@ -165,9 +169,8 @@ class ClassSet:
             shared=self._shared,
         )
 
-    def _sheets(self, stems: Sequence[str], documents: Iterable[Document]) -> Iterator[tuple[str, bytes]]:
-        shown = (document if self.solutions else without_solutions(document) for document in documents)
-        for number, (stem, made) in enumerate(zip(stems, EDITIONS[self.file_format](shown), strict=True), start=1):
+    def _written(self, stems: Sequence[str], sheets: Iterable[Document]) -> Iterator[tuple[str, bytes]]:
+        for number, (stem, made) in enumerate(zip(stems, EDITIONS[self.file_format](sheets), strict=True), start=1):
             self.progress(number, len(stems))
             yield from named(made, f"{self.paper.id}-{stem}{'-solutions' if self.solutions else ''}").items()
 

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from types import ModuleType
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Figure
-from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import FigureResult
+from replicate.exhibits.variants import Variation
+
+if TYPE_CHECKING:
+    from replicate.handout.artist import Artist
+
+Kind = Literal["svg", "png"]
 
 
 @dataclass(frozen=True)
@@ -51,11 +56,11 @@ class Wanted:
     draw: str
     title: str
     size: tuple[float, float]
-    kind: Literal["svg", "png"]
+    kind: Kind
 
-    def drawn(self, exercises: Exercises) -> bytes:
+    def drawn(self, variations: Mapping[str, Variation]) -> bytes:
         """Return the picture."""
-        variation = exercises.variations[self.exercise]
+        variation = variations[self.exercise]
         found = variation.figures[self.figure]
         inputs = variation.drawn(self.draw) if self.draw else variation.original
         draw = partial(found.draw, inputs=inputs)
@@ -75,12 +80,13 @@ class DrawnLater(Drawing):
 
     Parameters
     ----------
-    draw
-        Returns the picture of one kind.
+    variations
+        Whose figure it is, among others.
     """
 
-    def __init__(self, wanted: Wanted, alt: str, width: float, draw: Callable[[Wanted], bytes]) -> None:
-        self.__dict__.update(name=wanted.figure, alt=alt, width=width, _wanted=wanted, _draw={"svg": draw, "png": draw})
+    def __init__(self, wanted: Wanted, alt: str, width: float, variations: Mapping[str, Variation]) -> None:
+        draw: Callable[[Wanted], bytes] = lambda one: one.drawn(variations)  # noqa: E731
+        self.__dict__.update(name=wanted.figure, alt=alt, width=width, _wanted=wanted, _draw=draw)
 
     @cached_property
     def svg(self) -> str:
@@ -92,18 +98,30 @@ class DrawnLater(Drawing):
         """The picture."""
         return self._drawn("png")
 
-    def wanted(self, kind: Literal["svg", "png"]) -> Wanted:
+    def wanted(self, kind: Kind) -> Wanted:
         """Return which picture it is."""
         wanted: Wanted = self.__dict__["_wanted"]
         return replace(wanted, kind=kind)
 
-    def drawn_by(self, kind: Literal["svg", "png"], draw: Callable[[Wanted], bytes]) -> None:
-        """Have the picture of a kind drawn otherwise if it is not drawn yet."""
-        self.__dict__["_draw"][kind] = draw
+    def drawn_by(self, draw: Callable[[Wanted], bytes]) -> None:
+        """Have what is not drawn yet drawn otherwise."""
+        self.__dict__["_draw"] = draw
 
-    def _drawn(self, kind: Literal["svg", "png"]) -> bytes:
-        made: bytes = self.__dict__["_draw"][kind](self.wanted(kind))
+    def _drawn(self, kind: Kind) -> bytes:
+        made: bytes = self.__dict__["_draw"](self.wanted(kind))
         return made
+
+
+def have_drawn(pictures: Iterable[tuple[Drawing, Kind]], artist: Artist | None) -> None:
+    """Have pictures drawn that vary: by an artist meanwhile, or now, while no other thread draws."""
+    later = [(drawing, kind) for drawing, kind in pictures if isinstance(drawing, DrawnLater)]
+    if artist is None:
+        for drawing, kind in later:
+            getattr(drawing, kind)  # it is kept
+        return
+    draw = artist.order([drawing.wanted(kind) for drawing, kind in later])
+    for drawing, _ in later:
+        drawing.drawn_by(draw)
 
 
 def captured(call: str, paper: str, figure: Figure) -> FigureResult:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from replicate.errors import ReplicateError
 
 if TYPE_CHECKING:
+    from replicate.handout.drawings import Kind
     from replicate.handout.edition import Document
     from replicate.handout.questions import Question
 
@@ -79,6 +80,15 @@ EDITIONS: dict[str, Callable[[Iterable[Document]], Iterator[Files]]] = {
     "docx": _docx,
     "tex": _tex,
     "typ": _typ,
+}
+#: The pictures that each of them places.
+PICTURES: dict[str, Kind] = {
+    "pdf": "svg",
+    "html": "svg",
+    "docx": "png",
+    "tex": "svg",
+    "typ": "svg",
+    "ipynb": "png",
 }
 #: All exercises together, for a learning platform.
 BANKS: dict[str, Callable[[Sequence[Question]], Files]] = {"moodle": _moodle, "qti": _qti}

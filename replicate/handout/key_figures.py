@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from replicate.exhibits.variants import Variation
-from replicate.handout.drawings import Wanted
+from replicate.handout.drawings import DrawnLater, Wanted
 from replicate.handout.form import Form
 
 _SIZE = (3.25, 1.3)  # inches: two beside each other, six below each other on a page
@@ -24,8 +24,8 @@ class KeyFigure:
 
     heading: str
     student: str
-    alt: str
-    wanted: Wanted
+    form: Form
+    drawing: DrawnLater
 
 
 def key_figures(variations: Mapping[str, Variation], forms: Mapping[str, Form], paper: str) -> Iterator[KeyFigure]:
@@ -44,4 +44,4 @@ def key_figures(variations: Mapping[str, Variation], forms: Mapping[str, Form], 
             for student, form in forms.items():
                 id = f"{name}-{form.key}"
                 wanted = Wanted(f"{paper}-key", id, name, key, form.draw, heading, _SIZE, "svg")
-                yield KeyFigure(heading, student, figure.alt, wanted)
+                yield KeyFigure(heading, student, form, DrawnLater(wanted, figure.alt, 1.0, variations))

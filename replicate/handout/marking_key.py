@@ -7,7 +7,7 @@ import io
 import json
 import re
 import tempfile
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, fields, replace
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from pathlib import Path
@@ -17,7 +17,6 @@ import typst
 from replicate.errors import TemplateError
 from replicate.exhibits import Paper
 from replicate.exhibits.variants import Answer, Variation
-from replicate.handout.drawings import Wanted
 from replicate.handout.form import Form
 from replicate.handout.key_figures import KeyFigure
 from replicate.handout.letters import FAMILIES, can_be_set, fonts
@@ -84,21 +83,13 @@ def _not_run(text: str) -> str:
     return f"'{text}" if text.startswith(_FORMULA) and not _NUMBER.fullmatch(text) else text
 
 
-def key_pdf(
-    rows: Sequence[KeyRow],
-    paper: Paper,
-    seed: str,
-    figures: Iterable[KeyFigure] = (),
-    draw: Callable[[Wanted], bytes] = lambda _: b"",
-) -> bytes:
+def key_pdf(rows: Sequence[KeyRow], paper: Paper, seed: str, figures: Iterable[KeyFigure] = ()) -> bytes:
     """Return the key as PDF; a student whose name no font at hand can show stands there by the key of the form.
 
     Parameters
     ----------
     figures
         Behind the table.
-    draw
-        Returns the picture of one.
 
     Raises
     ------
@@ -111,8 +102,8 @@ def key_pdf(
         (root / "key.csv").write_bytes(_csv(asdict(replace(row, student=names[row.student])) for row in rows))
         listed: dict[str, list[dict[str, str]]] = {}
         for number, figure in enumerate(figures):
-            (root / f"{number}.svg").write_bytes(draw(figure.wanted))
-            about = {"file": f"{number}.svg", "student": names[figure.student], "alt": figure.alt}
+            (root / f"{number}.svg").write_text(figure.drawing.svg, encoding="utf-8")
+            about = {"file": f"{number}.svg", "student": names[figure.student], "alt": figure.drawing.alt}
             listed.setdefault(figure.heading, []).append(about)
         (root / "figures.json").write_text(json.dumps(listed), encoding="utf-8")
         (root / TEMPLATE).write_text((templates_dir() / TEMPLATE).read_text(encoding="utf-8"), encoding="utf-8")

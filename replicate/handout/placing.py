@@ -279,7 +279,7 @@ class Placing:
             if figure is not None:
                 owner = f"{self.paper.id}-handout"
                 wanted = Wanted(owner, name, variation.name, name, self.form, figure.title, size or figure.size, "svg")
-                return DrawnLater(wanted, figure.alt, width, lambda wanted: wanted.drawn(self.exercises))
+                return DrawnLater(wanted, figure.alt, width, self.exercises.variations)
         return None
 
     def _mark(self, thing: Drawing | Placed) -> str:

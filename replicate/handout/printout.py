@@ -86,8 +86,6 @@ def pdfs(documents: Iterable[Document], at_once: int = 1) -> Iterator[bytes]:
         first = True
         for some in _batches(documents, at_once):
             for document, text in zip(some, markups(some), strict=True):
-                for drawing in document.drawings.values():
-                    drawing.svg  # noqa: B018  -- drawn now and kept: what draws must not be disturbed by other threads
                 under_way.append(pool.submit(typeset, document, text, tables_fit=not first))
                 first = False
             while len(under_way) > at_once:

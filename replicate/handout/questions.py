@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Answers
-from replicate.handout.drawings import Drawing, DrawnLater
+from replicate.handout.drawings import Drawing
 from replicate.handout.edition import Document
 from replicate.handout.form import Form
 from replicate.handout.tree import Blocks, attribute, classes, elements
@@ -93,12 +93,6 @@ def drawings_in(blocks: Blocks, document: Document) -> list[Drawing]:
     """Return the drawings in a text, each once."""
     found = [attribute(element, "name") for element in elements(blocks) if "drawing" in classes(element)]
     return [document.drawings[name] for name in dict.fromkeys(found)]
-
-
-def pictures_of(questions: Iterable[Question]) -> list[DrawnLater]:
-    """Return the drawings in questions that are still to be drawn, as pictures."""
-    found = (drawings_in([*one.text, *one.solution], one.document) for one in questions)
-    return [drawing for drawings in found for drawing in drawings if isinstance(drawing, DrawnLater)]
 
 
 def different(questions: Iterable[Question]) -> list[Question]:

@@ -50,7 +50,11 @@ def staged(
     with _room(target) as fresh:
         manifest = Manifest.read(target)
         refuse_foreign(target, manifest, dict.fromkeys((*manifest.of(part, renews), *expects)))
-        yield fresh
+        try:
+            yield fresh
+        except KeyboardInterrupt:
+            say(f"{target}: interrupted; nothing was changed there")
+            raise
         written = files_below(fresh)
         gone = manifest.obsolete(part, written, renews)
         refuse_foreign(target, manifest, (*written, *gone), fresh)
