@@ -352,7 +352,7 @@ def test_a_picture_that_cannot_be_shown_is_told_and_renewed(accepted: Path, data
 @pytest.mark.parametrize(
     ("field", "value", "said"),
     [
-        ("thinned", {"output": 9}, "curve 'output' is accepted within 9 of its axes"),
+        ("thinned", {"output": 9}, "curve 'output' has less fine detail now"),
         ("loose", ["output"], "curve 'output' is accepted as one that labels interrupt, which it is not"),
     ],
 )

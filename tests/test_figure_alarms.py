@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.markers import MarkerStyle
 from matplotlib.patches import Circle
-from matplotlib.patheffects import TickedStroke, withSimplePatchShadow
+from matplotlib.patheffects import TickedStroke, withSimplePatchShadow, withStroke
 from matplotlib.transforms import Affine2D, Bbox
 
 from replicate.figures import Record, capture, compare
@@ -394,7 +394,7 @@ PAIRS: list[tuple[str, Callable[[Any, Any], object], tuple[Any, Any], str]] = [
     ("side of the title", lambda ax, v: ax.set_title("t", loc=v), ("center", "left"), "title is now at the left .was in the centre"),
     ("turned about", lambda ax, v: ax.text(0.5, 0.5, "words", rotation=45, rotation_mode=v), ("default", "anchor"), "turning of text 'words'"),
     ("clip of a text", lambda ax, v: ax.text(0.9, 0.5, "many words", clip_on=v), (False, True), "clipping of text 'many words'"),
-    ("clip of a note", lambda ax, v: ax.annotate("a", (1.2, 0.2), annotation_clip=v), (False, True), "text 'a' is no longer drawn"),
+    ("clip of a note", lambda ax, v: ax.annotate("a", (1.2, 0.2), annotation_clip=v), (False, True), "^text 'a' at .1.2, 0.2. is gone$"),
     ("colour above", lambda ax, v: ax.imshow(Z, cmap=coloured(v), vmax=0.5), ("k", "r"), "colour of values above the range of image 1 changed from black to red"),
     ("missing value", lambda ax, v: ax.imshow([[1.0, 2.0], [3.0, v]], vmin=0, vmax=4), (4.0, np.nan), "image 1 now leaves out 1 value "),
     ("shape of a clip", lambda ax, v: ax.plot([0, 1])[0].set_clip_path(Circle((0, 0), v, transform=ax.transData)), (0.5, 0.6), "the shape to which curve 'line 1' is clipped changed"),
@@ -405,6 +405,10 @@ PAIRS: list[tuple[str, Callable[[Any, Any], object], tuple[Any, Any], str]] = [
     ("shape on top", lambda ax, v: ax.figure.add_artist(Circle((0.5, 0.5), 0.2, zorder=v)), (-1, 9), "shape 1 is drawn over panel 'panel 1' now"),
     ("pad of a box", lambda ax, v: ax.text(0.5, 0.5, "a", bbox={"boxstyle": f"round,pad={v}"}), (0.3, 0.4), "shape of box of text 'a' is now pad=0.4"),
     ("ticked line", lambda ax, v: ax.plot([0, 1], path_effects=[TickedStroke(angle=v)]), (60, 90), "path effects of curve 'line 1' are now .TickedStroke angle=90"),
+    ("outlined word", lambda ax, v: ax.text(0.5, 0.5, "a", color=v, path_effects=[withStroke(linewidth=3)]), ("k", "r"), "^colour of text 'a' changed from black to red$"),
+    ("outlined labels", lambda ax, v: [text.set_path_effects([withStroke(foreground=v)]) for text in ax.get_xticklabels()], ("w", "r"), "path effects of tick labels of the x axis are now .withStroke foreground=#ff0000"),
+    ("nothing on a log axis", lambda ax, v: (ax.plot([1, 0, 10]), ax.set_yscale("log", nonpositive=v)), ("clip", "mask"), "^curve 'line 1' now has a gap"),
+    ("angles", lambda ax, v: ax.figure.add_subplot(projection="polar").set_thetamax(v), (180, 150), "angle now ends at 150° .was 180°.$"),
     ("points in a legend", lambda ax, v: ax.legend(ax.plot([0, 1], "o"), ["a"], numpoints=v), (1, 2), "number of markers on each line of legend is now 2"),
     ("wide legend", lambda ax, v: ax.legend(ax.plot([0, 1]), ["a"], mode=v), (None, "expand"), "width of legend is now expanded"),
     ("legend outside", lambda ax, v: ax.figure.legend(ax.plot([0, 1]), ["a"], loc=f"{v}upper right"), ("", "outside "), "place outside the axes of legend is now upper"),

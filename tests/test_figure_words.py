@@ -44,8 +44,28 @@ def test_what_cannot_be_seen_is_no_curve_and_no_text() -> None:
             axes.fill_between(T, np.cos(T), alpha=0.0)
             axes.add_patch(Circle((3, 0), 0.5, fill=False, linewidth=0))
             axes.text(3, 0.5, "words", alpha=0.0)
+            axes.text(4, 0.5, " ")
+            axes.annotate("far", (99, 99))
 
     assert said(draw, False, True) == said(draw, True, False) == []
+
+
+@pytest.mark.parametrize("look", [{"alpha": 0.0}, {"color": "none"}, {"linewidth": 0}])
+def test_what_cannot_be_seen_may_move(look: dict[str, Any]) -> None:
+    def draw(axes: Any, end: float) -> None:
+        axes.set(xlim=(0, 1), ylim=(0, 1))
+        axes.plot([0, end], **look)
+
+    assert said(draw, 1.0, 2.0) == []
+
+
+def test_what_a_log_axis_cannot_show_is_far_below() -> None:
+    def draw(axes: Any, value: float) -> None:
+        axes.semilogy([1.0, value, 10.0])
+        axes.set_ylim(0.1, 20.0)
+
+    assert said(draw, 0.0, -3.0) == []
+    assert said(draw, 0.0, np.nan) == ["curve 'line 1' now has a gap from x = 0.0003302 to 2"]
 
 
 def test_what_is_clipped_away_and_the_order_of_axes_are_not_seen() -> None:
@@ -137,7 +157,8 @@ def test_points_are_counted_where_they_can_be_seen() -> None:
         axes.set(xlim=(0, 2), ylim=(0, 2))
         axes.scatter([1.0, 1.5, *more], [1.0, 1.5, *more], alpha=0.5)
 
-    assert said(draw, [], [np.nan]) == said(draw, [np.nan], []) == []
+    for unseen in (np.nan, 7.0):
+        assert said(draw, [], [unseen]) == said(draw, [unseen], []) == []
     assert said(draw, [], [1.0]) == ["curve 'points 1' now has 3 points (was 2)"]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
@@ -162,27 +163,37 @@ def _polar(one: Mapping[str, Any], other: Mapping[str, Any]) -> Iterator[str]:
     for name, called in words.items():
         if not same_value(one.get(name), other.get(name)):
             yield f"{called} is now {_shown(other.get(name))} (was {_shown(one.get(name))})"
-    if not close(one.get("rlim", [0.0, 1.0]), other.get("rlim", [0.0, 1.0])):
+    if not _same_radii(one, other):
         yield f"radius now runs over {_shown(other.get('rlim'))} (ran over {_shown(one.get('rlim'))})"
     if not close(one.get("matrix", []), other.get("matrix", [])):
         yield "the axes show another part of the circle"
 
 
+def _same_radii(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
+    return close(one.get("rlim", [0.0, 1.0]), other.get("rlim", [0.0, 1.0]))
+
+
 def _limits(axis: str, before: Axes, after: Axes) -> Iterator[str]:
+    polar = "polar" in before and "polar" in after
+    if polar and axis == "y" and not _same_radii(before["polar"], after["polar"]):
+        return  # said already
     one, other = before[f"{axis}lim"], after[f"{axis}lim"]
+    called = {"x": "angle", "y": "radius"}[axis] if polar else f"{axis} axis"
     if same_value(list(one), list(reversed(other))):
         ends = [_end(value, axis, after) for value in other]
-        yield f"{axis} axis now runs from {ends[0]} to {ends[1]}, the other way round"
+        yield f"{called} now runs from {ends[0]} to {ends[1]}, the other way round"
         return
     for verb, was, now in zip(("begins", "ends"), one, other, strict=True):
         if not same_value(was, now):
             shown = _end(now, axis, after), _end(was, axis, before)
             if shown[0] == shown[1]:  # dates within one second
                 shown = _shown(now), _shown(was)
-            yield f"{axis} axis now {verb} at {shown[0]} (was {shown[1]})"
+            yield f"{called} now {verb} at {shown[0]} (was {shown[1]})"
 
 
 def _end(value: float, axis: str, axes: Axes) -> str:
+    if axis == "x" and "polar" in axes:
+        return f"{math.degrees(value):.9g}°"
     return on_axis(value, axes, axis) if axes.get(f"{axis}kind") == "date" else _shown(value)
 
 

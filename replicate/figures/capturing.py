@@ -21,7 +21,7 @@ from replicate.figures.record import Record
 from replicate.figures.recorder import Drawn
 from replicate.figures.stacking import Stack, box_around, extent
 from replicate.figures.sub_figures import in_order_of_place, names_of_sub_figures
-from replicate.figures.uncommon import uncommon
+from replicate.figures.uncommon import path_effects, uncommon
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -162,7 +162,9 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
     entry |= {flag: True for flag in ("told", "loose") if getattr(part, flag)}
     if not part.named:
         entry["net"] = True
-    properties = dict(part.properties) | _placed_by_hand(part) | uncommon(part.owner)
+    texts = (call.artists[-1] for call in part.drawn if call.kind == "text" and call.artists)
+    special = uncommon(part.owner) | path_effects([part.owner, *texts])
+    properties = dict(part.properties) | _placed_by_hand(part) | special
     if properties:
         entry["properties"] = properties
     field = read_field(part.owner) or next(

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from replicate.figures.contours import interrupted_words
-from replicate.figures.differences import Difference, FigureChange
-from replicate.figures.distance import Distances, distances, point_distances
+from replicate.figures.differences import Difference, FigureChange, percent
+from replicate.figures.distance import Distances, distances, point_counts, point_distances
 from replicate.figures.envelope import compare_envelopes
 from replicate.figures.grouping import NUMBERED, grouped
 from replicate.figures.pair import Pair
@@ -212,11 +212,13 @@ class _Panel:
             return Pair(self.old, new_name, one, other, bool(way), tolerance, words=way, size=float(bool(way)))
         if kinds == ["points", "points"]:
             apart = (point_distances(after, before, self.view), point_distances(before, after, self.view))
-            fewer = finite(before).sum() != finite(after).sum()
-            far = bool(fewer) or max(part.largest for part in apart) > tolerance
-        else:
-            apart = self.apart(before, after, tolerance, labels)
-            far = max(part.largest for part in apart) > tolerance
+            size = max(part.largest for part in apart)
+            counts = point_counts(before, after, self.view)
+            words = f"now has {counts[1]} points (was {counts[0]})" if counts[0] != counts[1] else ""
+            far = bool(words) or size > tolerance
+            return Pair(self.old, new_name, one, other, far, tolerance, None, apart, words, size)
+        apart = self.apart(before, after, tolerance, labels)
+        far = max(part.largest for part in apart) > tolerance
         return Pair(self.old, new_name, one, other, far, tolerance, None, apart)
 
     @staticmethod
@@ -229,7 +231,9 @@ class _Panel:
         allowed, needed = self.thinned(name, self.old), self.thinned(name, self.new)
         alike = (name in self.old.get("streams", {})) == (name in self.new.get("streams", {}))  # else as many points
         if alike and not needed / _SLACK <= allowed <= needed * _SLACK:
-            text = f"curve '{name}' is accepted within {allowed:g} of its axes, needed: {needed:g}"
+            detail = "more" if needed > allowed else "less"
+            kept = f"the record follows it within {percent(needed)} of the axes (was {percent(allowed)})"
+            text = f"curve '{name}' has {detail} fine detail now: {kept}"
             self.say(found, "axes", text, name)
         heads = [axes["streams"][name] for axes in (self.old, self.new)] if self.are_streams(name, name) else [0, 0]
         for words in filter(None, (interrupted_words(self.old, self.new, name), heads_words(*heads))):

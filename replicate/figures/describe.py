@@ -57,7 +57,7 @@ def describe(panel: str, axes: Axes, ink: Ink | None = None) -> dict[str, Any]:
     """
     legend = axes.get_legend() if hasattr(axes, "get_legend") else None
     said = said_titles(axes)
-    texts = (text for text in said_texts(axes) if text.get_visible() and not (ink and ink.hides(text)))
+    texts = (text for text in said_texts(axes) if text.get_visible() and (ink is None or ink.shows(text)))
     found: dict[str, Any] = {
         "panel": panel,
         "title": said[0] if said else "",

@@ -18,13 +18,15 @@ from numpy.typing import NDArray
 
 from replicate.figures.contours import uncovered
 from replicate.figures.polylines import Points, distance_to_segments
-from replicate.figures.scaling import finite
+from replicate.figures.scaling import TOLERANCE, finite
 
 Array = NDArray[np.float64]
 
 # Points on long segments that are measured as well; what happens between two of them is smaller than this.
 _STEP = 2e-3
 _CHUNK = 64
+# So far out of view a marker may still reach into it.
+_REACH = 0.02
 
 
 def nearest(points: Points, targets: Points) -> tuple[Array, NDArray[np.intp]]:
@@ -119,6 +121,25 @@ def point_distances(one: Points, other: Points, view: Array | None = None) -> Di
     if not len(points) or not len(targets):
         return Distances(points, np.full(len(points), np.inf))
     return Distances(points, nearest(points, targets)[0])
+
+
+def point_counts(one: Points, other: Points, view: Array) -> tuple[int, int]:
+    """Return how many points of two sets can be seen; the same number where rounding decides of which they can.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> view = np.array([[0.0, 1.0], [0.0, 1.0]])
+    >>> points = np.array([[0.5, 0.5], [0.2, 0.9], [7.0, 0.5]])
+    >>> point_counts(points, points[:1], view), point_counts(points, points[:2], view)
+    ((2, 1), (2, 2))
+    """
+    margins = (_REACH, _REACH + TOLERANCE)
+    first, second = (
+        [len(_in_view(side, view + margin * np.array([-1.0, 1.0]))) for margin in margins] for side in (one, other)
+    )
+    same = first[0] <= second[1] and second[0] <= first[1]
+    return first[0], first[0] if same else second[0]
 
 
 def _in_view(points: Points, view: Array | None) -> Points:

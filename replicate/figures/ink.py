@@ -24,12 +24,10 @@ class Ink:
 
     Attributes
     ----------
-    drawn, seen
-        The identities of the artists that draw, or consist of others that do, and of those of which something can be
-        seen.
+    seen
+        The identities of the artists of which something can be seen, or that consist of such.
     """
 
-    drawn: frozenset[int] = frozenset()
     seen: frozenset[int] = frozenset()
 
     @classmethod
@@ -47,15 +45,11 @@ class Ink:
         [False, True]
         """
         seen = [artist for call in calls if _leaves_ink(call) for artist in call.artists]
-        return cls(frozenset(id(artist) for call in calls for artist in call.artists), frozenset(map(id, seen)))
+        return cls(frozenset(map(id, seen)))
 
     def shows(self, artist: Artist) -> bool:
         """Whether something can be seen of an artist."""
         return id(artist) in self.seen
-
-    def hides(self, artist: Artist) -> bool:
-        """Whether an artist draws, but nothing that could be seen."""
-        return id(artist) in self.drawn - self.seen
 
 
 def _leaves_ink(call: Drawn) -> bool:

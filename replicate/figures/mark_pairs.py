@@ -80,17 +80,18 @@ def _kind(mark: Mark) -> str:
 
 
 def _pairs(first: Sequence[Mark], second: Sequence[Mark], tolerance: float, frame: Frame) -> Iterator[Words]:
-    """Say how marks differ; what many of them say in other numbers and colours once, of the one that moved most."""
+    """Say how marks differ: how far they moved once, and so what many say in other numbers and colours."""
     groups: dict[str, list[Words]] = {}
     for before, after in zip(first, second, strict=True):
         for words, size in _pair(before, after, tolerance, frame):
             common = words if "texts" in before else without_details(words)
-            groups.setdefault(common, []).append((words, size))
-    for group in groups.values():
+            groups.setdefault(common if size is None else "moved", []).append((words, size))
+    for name, group in groups.items():
         different = dict.fromkeys(words for words, _ in group)
-        if are_many(len(different)):
-            words, size = max(group, key=lambda said: said[1] or 0.0)
-            yield f"{words}, and {len(different) - 1} others likewise", size
+        if name == "moved":  # by up to so much
+            yield max(group, key=lambda said: said[1] or 0.0)
+        elif are_many(len(different)):
+            yield f"{group[0][0]}, and {len(different) - 1} others likewise", None
         else:
             yield from group
 

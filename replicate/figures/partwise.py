@@ -211,7 +211,8 @@ def _differ(one: Part, other: Part, frame: Frame, *, follows: bool) -> Iterator[
     marks = one["marks"], other["marks"]
     if follows:
         marks = _anywhere(marks[0]), _anywhere(marks[1])
-    yield from mark_words(*marks, frame, loose=loose)
+    if shows(one) or shows(other):
+        yield from mark_words(*marks, frame, loose=loose)
 
 
 def _anywhere(marks: Sequence[Mark]) -> list[Mark]:

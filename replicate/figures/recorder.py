@@ -114,8 +114,12 @@ class RecordingRenderer(RendererBase):
             return
         artist = self.artists[-1] if self.artists else None
         if isinstance(artist, Text) and self._groups[-1][-1:] == ["text"]:  # letters as outlines, for path effects
+            own: Any = self.new_gc()  # what the effects put around it is a property of the text
+            own.copy_properties(gc)
+            own.set_foreground(to_rgba(artist.get_color()), isRGBA=True)
+            own.set_alpha(artist.get_alpha())
             font, angle = artist.get_fontproperties(), artist.get_rotation()
-            self.draw_text(gc, 0.0, 0.0, artist.get_text(), font, angle)
+            self.draw_text(own, 0.0, 0.0, artist.get_text(), font, angle)
             return
         self._add("path", gc, paths=[_moved(path, transform)], faces=_face(gc, rgbFace))
 
@@ -215,7 +219,7 @@ class RecordingRenderer(RendererBase):
         ismath: Any = False,  # noqa: ARG002
         mtext: Any = None,  # noqa: ARG002
     ) -> None:
-        if not self.recording:
+        if not self.recording or not s.strip():
             return
         found: dict[str, Any] = {"text": s, "place": (x, y), "font": prop, "angle": float(angle)}
         artist = self.artists[-1] if self.artists else None

@@ -26,6 +26,9 @@ Axes = Mapping[str, Any]
 #: What lies further out of view, in sizes of the axes, counts as lying there: a distance can then be squared.
 _FAR = 1e50
 
+#: The logarithm of what matplotlib puts in place of values that have none; curves without such values have breaks.
+_CLIPPED = -1000.0 * np.log(10.0)
+
 
 def in_units(points: Points, axes: Axes) -> Points:
     """Return points as fractions of the axes.
@@ -47,7 +50,7 @@ def in_units(points: Points, axes: Axes) -> Points:
 
 
 def finite(points: Points) -> NDArray[np.bool_]:
-    """Return which points are there; the others are breaks, or have no place on a logarithmic axis."""
+    """Return which points are there; the others are breaks."""
     return np.asarray(np.logical_and.reduce(np.isfinite(points), axis=1))
 
 
@@ -91,7 +94,7 @@ def _fractions(values: Array, axes: Axes, axis: str) -> Array:
     low, high = _limits(axes, axis)
     if axes.get(f"{axis}scale") == "log":
         with np.errstate(all="ignore"):
-            values = np.log(values)
+            values = np.where(values <= 0.0, _CLIPPED, np.log(values))
     with np.errstate(over="ignore"):
         fractions = np.asarray((values - low) / (high - low))
     beyond = np.isfinite(values) & np.isinf(fractions)  # a value is there though its fraction has no number

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -25,24 +26,24 @@ _LONGEST = 40
 
 def uncommon(artist: Any) -> dict[str, Any]:
     """Return such settings of a line, a text, a legend or an image by their names; most artists have none."""
-    effects = _effects(artist)
     match artist:
         case Text():
-            return _of_text(artist) | effects
+            return _of_text(artist)
         case Legend():
-            return _of_legend(artist) | effects
+            return _of_legend(artist)
         case AxesImage():
-            return _of_image(artist) | effects
+            return _of_image(artist)
         case Line2D() if _has_markers(artist):
             every = artist.get_markevery()
-            return {"choice of markers": "all" if every is None else _shortened(str(every))} | effects
-    return effects
+            return {"choice of markers": "all" if every is None else _shortened(str(every))}
+    return {}
 
 
-def _effects(artist: Any) -> dict[str, Any]:
-    effects = artist.get_path_effects() if hasattr(artist, "get_path_effects") else None
-    said = [f"{type(effect).__name__} {style_numbers(effect)}".strip() for effect in effects or ()]
-    return {"effects": said} if said else {}
+def path_effects(artists: Iterable[Any]) -> dict[str, Any]:
+    """Return the path effects of artists that are one part, such as the labels of an axis, each once."""
+    effects = [effect for artist in artists for effect in getattr(artist, "get_path_effects", list)() or ()]
+    said = dict.fromkeys(f"{type(effect).__name__} {style_numbers(effect)}".strip() for effect in effects)
+    return {"effects": list(said)} if said else {}
 
 
 def _has_markers(line: Line2D) -> bool:

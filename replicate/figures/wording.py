@@ -44,9 +44,6 @@ def moved_words(pair: Pair, view: Array) -> tuple[str, float]:
 
 def _distance_words(pair: Pair) -> tuple[str, float]:
     furthest = max(pair.distance, key=lambda part: part.largest)
-    counts = [int(finite(points).sum()) for points in (pair.before, pair.after)]
-    if pair.name in pair.axes.get("points", ()) and counts[0] != counts[1]:
-        return f"now has {counts[1]} points (was {counts[0]})", furthest.largest
     if not np.isfinite(furthest.largest):
         return "is no longer visible" if furthest is pair.distance[1] else "is now visible", furthest.largest
     at = _at(pair.axes, furthest.place)
@@ -115,7 +112,8 @@ def _at_most(pair: Pair, found: ValueDifference, worst: int, *, first: bool) -> 
     words += f" at {symbol(pair.axes, 'x')} = {at}"
     apart = max((part.largest for part in pair.distance), default=size)
     if first and size > _STEEP * apart:
-        words += f", where it is steep; the curves are {percent(apart)} of the axes apart"
+        words += ", where it is steep"
+        words += f"; the curves are {percent(apart)} of the axes apart" if apart > pair.tolerance else ""
     return words
 
 
