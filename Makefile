@@ -113,7 +113,7 @@ clean: ## remove what runs leave behind (build/ and caches); .venv stays
 help: ## list the targets
 	@awk 'BEGIN { FS = ":.*## " } \
 	    /^##@/ { printf "%s%s\n", (n++ ? "\n" : ""), substr($$0, 5) } \
-	    /^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	    /^[a-z]+:.*## / { printf "  make %-11s  %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 # ------------------------------------------------------------------------------------------- environments
 

@@ -7,11 +7,12 @@ ReplicateError                 shown to the user as one line, exit status 2
 ├── PrintedFileError           a printed CSV is malformed (file, line, cell)
 ├── LedgerError                a ledger entry names nothing, or no longer applies
 ├── AcceptedStateError         a file of the accepted state is damaged (file, line)
-├── FigureError                what should be compared is not a figure, or has no name that can be a file's
+├── FigureError                what should be compared is not a figure, or cannot be named
 ├── FigureRecordError          a record of a figure is damaged, or newer than this version
 ├── SweepFileError             the file of a sweep is malformed (file, line)
 ├── TemplateError              prose asks for a result that does not exist
-│   └── UnreadableFormulaError     a formula is not LaTeX that can be converted
+│   ├── UnreadableFormulaError     a formula is not LaTeX that can be converted
+│   └── UnreadableTextError        a text that pandoc does not convert in reasonable time
 └── OutputError                a result cannot be written
 
 `replicate.loops` has its own tree (`replicate.loops.errors`), because it knows nothing of papers.

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 app = typer.Typer(help="Compare and accept the figures of plotting scripts.", no_args_is_help=True)
 
-Patterns = Annotated[list[str], typer.Argument(metavar="PATTERN...", help="Scripts, folders, or patterns with *.")]
+Patterns = Annotated[list[str], typer.Argument(metavar="PATTERN", help="Scripts, folders, or patterns with *.")]
 AcceptedFigures = Annotated[Path, typer.Option("--accepted", help="Folder of the accepted figures.", file_okay=False)]
 Timeout = Annotated[float, typer.Option("--timeout", metavar="SECONDS", help="Stop a script that takes longer.")]
 
@@ -32,15 +32,16 @@ def diff(
     accepted: AcceptedFigures = _FOLDER,
     out: Annotated[Path, typer.Option("--out", help="Folder for the page and its data.", file_okay=False)] = _OUT,
     comment: Annotated[
-        Path | None, typer.Option("--comment", help="Write the text of a comment here.", dir_okay=False)
+        Path | None,
+        typer.Option("--comment", help="Also write the text of a comment on the pull request here.", dir_okay=False),
     ] = None,
     jobs: Jobs = None,
     timeout: Timeout = 300.0,
 ) -> None:
-    """Run plotting scripts and say what their figures show differently.
+    """Say what the figures of plotting scripts show differently.
 
-    In words, and with pictures in the page. Exit status 1 if something differs, 2 if a script failed or nothing was
-    compared.
+    Runs the scripts, and draws on a page what differs. Exit status 1 if something differs, 2 if a script failed or
+    nothing was compared.
     """
     from replicate.baselines.outputs import counted, worst_first, write_outputs
     from replicate.baselines.scripts import compare_runs
@@ -70,13 +71,17 @@ def accept(
     reason: Annotated[str, typer.Option("--reason", help="Why the new state is right.")] = "",
     only: Annotated[
         list[str] | None,
-        typer.Option("--only", metavar="NAME[=DIGEST]", help="This figure, if its accepted state is still this one."),
+        typer.Option(
+            "--only",
+            metavar="NAME[=DIGEST]",
+            help="Accept only this figure; with a digest, only if that is still its accepted state.",
+        ),
     ] = None,
     accepted: AcceptedFigures = _FOLDER,
     jobs: Jobs = None,
     timeout: Timeout = 300.0,
 ) -> None:
-    """Run plotting scripts and make what their figures show the accepted state."""
+    """Run plotting scripts and accept what their figures show."""
     from replicate.baselines.outputs import worst_first
     from replicate.baselines.scripts import accept_runs
     from replicate.baselines.store import Store, chosen_figure

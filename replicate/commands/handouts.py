@@ -29,10 +29,11 @@ def handout(
         ),
     ] = "pdf",
     variants: Annotated[
-        int | None, typer.Option("--variants", min=1, help="A class set: so many sheets, each with its own numbers.")
+        int | None,
+        typer.Option("--variants", min=1, help="A class set of this many sheets, each with its own numbers."),
     ] = None,
     roster: Annotated[
-        Path | None, typer.Option("--roster", help="A class set: a CSV file with one student per line.")
+        Path | None, typer.Option("--roster", help="A class set for the students of a CSV file, one per line.")
     ] = None,
     roster_id: Annotated[
         str, typer.Option("--roster-id", help="The roster's column that names the sheets; default: the first.")
@@ -40,20 +41,24 @@ def handout(
     seed: Annotated[str, typer.Option("--seed", help="What the numbers of a class set are drawn from.")] = "1",
     form: Annotated[str | None, typer.Option("--form", help="Make one sheet again, from the id on its pages.")] = None,
     stress: Annotated[
-        int | None, typer.Option("--stress", min=1, help="Draw so many forms of each exercise and test the answers.")
+        int | None, typer.Option("--stress", min=1, help="Draw this many forms of each exercise and test the answers.")
     ] = None,
     select: Annotated[
         str, typer.Option("--select", metavar="2,4,5", help="Only these exercises; they keep their numbers.")
     ] = "",
     points: Annotated[
-        str, typer.Option("--points", metavar="4,6,2", help="For the exercises of the sheet; one number is for each.")
+        str,
+        typer.Option(
+            "--points", metavar="4,6,2", help="Points for the exercises of the sheet; one number is for each."
+        ),
     ] = "",
-    title: Annotated[str, typer.Option("--title", help="In place of the handout's own.")] = "",
-    date: Annotated[str, typer.Option("--date", help="Printed at the top, as it stands.")] = "",
+    title: Annotated[str, typer.Option("--title", help="Title in place of the handout's own.")] = "",
+    date: Annotated[str, typer.Option("--date", help="Date, printed at the top as it stands.")] = "",
     language: Annotated[
         str | None,
         typer.Option(
-            "--language", help="Of the words besides the text: en, de, or a file like en.toml; default: the project's."
+            "--language",
+            help="Language of the words besides the text: en, de, or a file like en.toml; default: the project's.",
         ),
     ] = None,
     exercises: Annotated[

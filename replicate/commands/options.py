@@ -36,9 +36,9 @@ Names = Annotated[list[str] | None, typer.Argument(metavar="PAPER[/EXHIBIT]", he
 
 PapersDir = Annotated[
     list[Path] | None,
-    typer.Option("--papers", metavar="DIR", help="Folder that holds papers; may be given several times."),
+    typer.Option("--papers", metavar="DIR", help="A folder that holds papers; may be given several times."),
 ]
-Bundled = Annotated[bool, typer.Option("--bundled", help="The papers that come with replicate.")]
+Bundled = Annotated[bool, typer.Option("--bundled", help="Use the papers that come with replicate.")]
 
 Backend = Annotated[str, typer.Option("--backend", metavar="local|dask", help="Where the work is done.")]
 Scheduler = Annotated[

@@ -10,14 +10,17 @@ import typer
 from replicate.commands.options import DIFFERS
 from replicate.terminal.streams import echo
 
-app = typer.Typer(help="Work on the files of printed numbers.", no_args_is_help=True)
+app = typer.Typer(no_args_is_help=True)
 
 File = Annotated[Path, typer.Argument(metavar="FILE.csv", dir_okay=False)]
 
 
 @app.command()
 def compare(one: File, other: File) -> None:
-    """Show where two transcriptions of one table differ; exit status 1 if they do."""
+    """Show where two transcriptions of a table differ.
+
+    Exit status 1 if they do.
+    """
     from replicate.exhibits.transcriptions import differences
 
     lines, cells = differences(one, other)

@@ -13,7 +13,7 @@ from replicate.terminal.streams import echo
 
 def sweep(
     file: Annotated[Path, typer.Argument(metavar="FILE.toml", help="Plants, controllers and metrics.")],
-    file_format: Annotated[str, typer.Option("--format", metavar="csv|parquet", help="Of the blocks.")] = "csv",
+    file_format: Annotated[str, typer.Option("--format", metavar="csv|parquet", help="Format of the blocks.")] = "csv",
     jobs: Jobs = None,
     out: Out = None,
     backend: Backend = "local",
