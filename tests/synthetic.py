@@ -57,6 +57,12 @@ def paper(folder: Path | None = None, *, significant_digits: int | None = None) 
     return made
 
 
+FINDINGS = {
+    "big": Finding("holds", 3.1, "The smallest is 3.1."),
+    "smooth": Finding("fails", 0.2, "It jumps."),
+}
+
+
 def frame(ax: object = 1.0, ay: object = 2.0, bx: object = 3.0, by: object = 4.0) -> pd.DataFrame:
     return pd.DataFrame([[ax, ay], [bx, by]], index=list(ROWS), columns=list(COLUMNS))
 
@@ -71,15 +77,11 @@ def results(
     errors = dict(errors or {})
     given = {"as-written": as_written, "authors": authors}
     frames = {id: frame() if made is None else made for id, made in given.items() if id not in errors}
-    found = {
-        "big": Finding("holds", 3.1, "The smallest is 3.1."),
-        "smooth": Finding("fails", 0.2, "It jumps."),
-    }
     nothing = pd.DataFrame(columns=["panel", "curve", "x", "y"])
     return {
         ("toy", "table-1"): TableResult("toy", "table-1", frames, errors),
         ("toy", "fig-1"): FigureResult("toy", "fig-1", "<svg/>", b"png", nothing, []),
-        ("toy", "claims"): ClaimsResult("toy", "claims", dict(findings or found)),
+        ("toy", "claims"): ClaimsResult("toy", "claims", dict(findings or FINDINGS)),
     }
 
 

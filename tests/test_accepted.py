@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import json
 from collections.abc import Callable
@@ -17,10 +18,12 @@ from PIL import Image
 
 from replicate.diff.accept import LOG, accept
 from replicate.diff.check import check
+from replicate.diff.checksums import SUMS
 from replicate.diff.comparison import compare as compare_all
 from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.exhibits.results import FigureResult, Results
+from replicate.run.library import Library
 from replicate.run.outcome import Outcome
 from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
@@ -37,6 +40,7 @@ AXES: list[dict[str, Any]] = [
         "legend": ["output", "input"],
     }
 ]
+FIGURES = Path(__file__).parent.parent / "figures"
 T = np.linspace(0.0, 10.0, 201)
 
 
@@ -52,6 +56,7 @@ def picture(colour: str) -> bytes:
     return buffer.getvalue()
 
 
+BIG = synthetic.FINDINGS["big"]
 PICTURE, OTHER_FONTS = picture("red"), picture("blue")
 
 
@@ -72,6 +77,12 @@ def compare(present: Outcome, folder: Path) -> list[str]:
     return compare_all(present, folder).lines
 
 
+def edit_json(path: Path, change: Callable[[dict[str, Any]], None]) -> None:
+    content = json.loads(path.read_text())
+    change(content)
+    path.write_text(json.dumps(content))
+
+
 @pytest.fixture
 def data(tmp_path: Path) -> Path:
     return tmp_path / "data"
@@ -86,6 +97,7 @@ def accepted(tmp_path: Path, data: Path) -> Path:
 
 def test_what_is_stored(accepted: Path) -> None:
     assert sorted(path.name for path in (accepted / "toy").iterdir()) == [
+        "SHA256SUMS",
         "claims.csv",
         "claims.json",
         "fig-1.csv",
@@ -135,10 +147,10 @@ def test_other_pictures_and_rounding_do_not_matter(accepted: Path, data: Path) -
             "toy/table-1: A x 1 -> 1.3 (+30 %); verdict reproduced -> unexplained; 7 values unchanged",
         ),
         (
-            {"findings": {"big": Finding("holds", 3.1, "e"), "smooth": Finding("holds-partly", 0.2, "e")}},
+            {"findings": {"big": BIG, "smooth": Finding("holds-partly", 0.2, "It jumps once.")}},
             "toy/claims: smooth verdict fails -> holds-partly; 1 claim unchanged",
         ),
-        ({"findings": {"big": Finding("holds", 3.1, "e")}}, "toy/claims: smooth is gone; 1 claim unchanged"),
+        ({"findings": {"big": BIG}}, "toy/claims: smooth is gone; 1 claim unchanged"),
         (
             {"errors": {"authors": "ValueError: no"}},
             "toy/table-1: authors: could not be computed: ValueError: no",
@@ -377,6 +389,93 @@ def test_the_order_of_panels_is_state(tmp_path: Path, data: Path) -> None:
     turned = replace(drawn, axes=two[::-1])
     (line,) = compare(outcome(data, turned), tmp_path / "accepted")
     assert "the panels now stand in the order 'right', 'left' (was 'left', 'right')" in line
+    edit_json(tmp_path / "accepted/toy/fig-1.json", lambda content: content["panels"].reverse())
+    (line,) = compare(outcome(data, drawn), tmp_path / "accepted")
+    assert "the panels now stand in the order 'left', 'right' (was 'right', 'left')" in line
+
+
+def less_thinned(content: dict[str, Any]) -> None:
+    content["panels"][0]["thinned"] = {"output": 9e-5}
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("fig-1.png", lambda path: path.write_bytes(OTHER_FONTS)),
+        ("fig-1.json", lambda path: edit_json(path, less_thinned)),
+        ("fig-1.csv", lambda path: path.write_text(path.read_text().replace("0.0487705754993", "0.0487705755"))),
+        ("claims.csv", lambda path: path.write_text(path.read_text().replace("3.1", "3.10000001"))),
+        ("claims.json", lambda path: edit_json(path, lambda content: content["evidence"].update(more="x"))),
+    ],
+)
+def test_an_alteration_that_nothing_else_tells_is_told(
+    accepted: Path, data: Path, name: str, change: Callable[[Path], object]
+) -> None:
+    path = accepted / "toy" / name
+    good = path.read_bytes()
+    change(path)
+    assert path.read_bytes() != good
+    (line,) = compare(outcome(data), accepted)
+    assert f"toy/{name} is not as it was accepted: an edit or a merge altered it" in line
+    accept(outcome(data), accepted, "as computed")
+    assert path.read_bytes() == good
+    assert compare(outcome(data), accepted) == []
+
+
+def test_a_state_that_an_older_version_accepted_is_read_as_before(accepted: Path, data: Path) -> None:
+    sums = accepted / "toy" / SUMS
+    first = sums.read_bytes()
+    sums.unlink()
+    edit_json(accepted / "toy/claims.json", lambda content: content.pop("evidence"))
+    (accepted / "toy/fig-1.png").write_bytes(OTHER_FONTS)
+    assert compare(outcome(data), accepted) == []
+    accept(outcome(data), accepted, "with checksums")
+    assert (accepted / "toy/fig-1.png").read_bytes() == OTHER_FONTS
+    assert sums.read_bytes().splitlines()[:2] == first.splitlines()[:2]  # of the claims, which say more now
+    assert (accepted / LOG).read_text().splitlines()[-2:] == [
+        "- written in the present format, which says more: toy/claims",
+        "- checksums of what was accepted before: toy",
+    ]
+
+
+def test_accepting_one_exhibit_accepts_no_alteration_of_another(accepted: Path, data: Path) -> None:
+    (accepted / "toy/fig-1.png").write_bytes(OTHER_FONTS)
+    present = outcome(data, as_written=synthetic.frame(ax=1.5))
+    one = replace(present, results={("toy", "table-1"): present.results["toy", "table-1"]}, complete=False)
+    accept(one, accepted, "only the table")
+    (line,) = compare(present, accepted)
+    assert "toy/fig-1.png is not as it was accepted" in line
+
+
+@pytest.mark.parametrize("content", ["<<<<<<< ours\n", "0" * 64 + "  a\n" + "1" * 64 + "  a\n", "\xe9"])
+def test_damaged_checksums_name_their_line(accepted: Path, data: Path, content: str) -> None:
+    sums = accepted / "toy" / SUMS
+    good = sums.read_bytes()
+    sums.write_bytes(good + content.encode("latin-1"))
+    for line in compare(outcome(data), accepted):
+        assert f"its accepted state is damaged: toy/{SUMS}:" in line
+    accept(outcome(data), accepted, "anew")
+    assert sums.read_bytes() == good
+
+
+def test_checksums_of_the_bundled_papers_are_those_of_their_files() -> None:
+    folders = [sums.parent for sums in sorted(FIGURES.glob(f"*/{SUMS}"))]
+    assert {folder.name for folder in folders} == {paper.id for paper in Library(bundled=True).papers()}
+    for folder in folders:
+        there = {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.name != SUMS}
+        lines = [f"{hashlib.sha256(content).hexdigest()}  {name}\n" for name, content in there.items()]
+        assert (folder / SUMS).read_text() == "".join(lines)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "changes"),
+    [("The smallest is 3.1.", 0), ("The largest is 3.1.", 1), ("The smallest is 3.2.", 1)],
+)
+def test_the_evidence_of_a_claim_is_state(accepted: Path, data: Path, evidence: str, changes: int) -> None:
+    findings = synthetic.FINDINGS | {"big": Finding("holds", 3.1, evidence)}
+    lines = compare(outcome(data, findings=findings), accepted)
+    assert len(lines) == changes
+    assert all(line.startswith("toy/claims: claim 'big': evidence 'The smallest is 3.1.' -> ") for line in lines)
 
 
 @pytest.mark.parametrize(

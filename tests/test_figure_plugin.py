@@ -9,6 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
+
+from replicate.baselines.outcomes import compared, draw
+from replicate.baselines.store import Store, digest
 
 TESTS = """
 import pytest
@@ -151,6 +155,24 @@ def test_damage_and_merges_are_said(project: Project) -> None:
     status, out = project.run("-k", "fixture", "--accept-figures", "--reason", "mended")
     assert status == 0, out
     assert project.run()[0] == 0
+
+
+def test_a_picture_that_is_not_the_accepted_one_is_said(tmp_path: Path) -> None:
+    figure = Figure()
+    figure.subplots().plot([0, 1])
+    drawn, store = draw(figure), Store(tmp_path)
+    store.write("step", drawn.record, drawn.picture, "first", [])
+    assert compared(store, "step", drawn).status == "same"
+    picture = store.path("step", ".png")
+    picture.write_bytes(drawn.picture + b"more")
+    outcome = compared(store, "step", drawn)
+    assert (outcome.status, list(outcome.changes)) == (
+        "failed",
+        [f"{picture}: is not the picture that was accepted last, a merge or an edit changed it: accept it again"],
+    )
+    log = store.path("step", ".log")  # as an older version wrote it
+    log.write_text(json.dumps({"accepted": digest(drawn.record)}) + "\n")
+    assert compared(store, "step", drawn).status == "same"
 
 
 CLASSES = """

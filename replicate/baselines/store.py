@@ -1,8 +1,8 @@
 """The folder of accepted figures: one record, one small picture and one list of acceptances for each.
 
 ``NAME.json`` is the record that is compared, ``NAME.png`` a picture for people, and each line of ``NAME.log`` an
-acceptance: why, what had changed, and the digests of the state that it replaced and of the one that it made. A merge
-that mixes two acceptances shows, because the last line does not speak of the state that is there.
+acceptance: why, what had changed, and the digests of the state that it replaced, and of the record and the picture that
+it made. A merge that mixes two acceptances shows, because the last line does not speak of the state that is there.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ _DIGITS = 16
 _MARK = 6
 
 
-def digest(text: str) -> str:
-    """Return the digest of a record: the first digits of its SHA-256.
+def digest(content: str | bytes) -> str:
+    """Return the digest of a record, or of a picture: the first digits of its SHA-256.
 
     Examples
     --------
     >>> digest("")
     'e3b0c44298fc1c14'
     """
-    return hashlib.sha256(text.encode()).hexdigest()[:_DIGITS]
+    return hashlib.sha256(content.encode() if isinstance(content, str) else content).hexdigest()[:_DIGITS]
 
 
 def checked_name(name: object) -> str:
@@ -113,7 +113,8 @@ class Store:
         Raises
         ------
         FigureRecordError
-            If its record is damaged, newer than this version, or not the one that was accepted last.
+            If its record is damaged, newer than this version, or not the one that was accepted last; if its picture
+            is not.
         """
         path = self.path(name)
         with _reading(path):
@@ -127,12 +128,16 @@ class Store:
             where = f"{path}:{error.line}" if error.line else str(path)
             raise FigureRecordError(f"{where}: {error.why}") from None  # noqa: EM102  -- the class makes the sentence
         last = self._last(name)
-        if last is not None and last != digest(text):
+        if last.get("accepted", digest(text)) != digest(text):
             why = f"{path}: is not the state that was accepted last, a merge or an edit changed it: accept it again"
             raise FigureRecordError(why)
-        picture = self.path(name, ".png")
-        with _reading(picture):
-            return Accepted(record, digest(text), picture.read_bytes() if picture.is_file() else b"")
+        shown = self.path(name, ".png")
+        with _reading(shown):
+            picture = shown.read_bytes() if shown.is_file() else b""
+        if picture and last.get("picture", digest(picture)) != digest(picture):
+            why = f"{shown}: is not the picture that was accepted last, a merge or an edit changed it: accept it again"
+            raise FigureRecordError(why)
+        return Accepted(record, digest(text), picture)
 
     def digest(self, name: str) -> str:
         """Return the digest of the accepted state, whatever it is; empty if there is none."""
@@ -153,14 +158,17 @@ class Store:
         OutputError
             If the folder cannot be written; it is as it was, then.
         """
-        self._replace(name, {".json": record.encode(), ".png": picture}, reason, changes, digest(record))
+        made = {"accepted": digest(record)} | ({"picture": digest(picture)} if picture else {})
+        self._replace(name, {".json": record.encode(), ".png": picture}, reason, changes, made)
 
     def remove(self, name: str, reason: str) -> None:
         """Accept that there is no such figure any more; its acceptances stay."""
-        self._replace(name, {}, reason, ["is not drawn any more"], "")
+        self._replace(name, {}, reason, ["is not drawn any more"], {"accepted": ""})
 
-    def _replace(self, name: str, files: dict[str, bytes], reason: str, changes: Sequence[str], accepted: str) -> None:
-        entry = {"reason": reason, "changes": list(changes), "replaces": self.digest(name), "accepted": accepted}
+    def _replace(
+        self, name: str, files: dict[str, bytes], reason: str, changes: Sequence[str], made: dict[str, str]
+    ) -> None:
+        entry = {"reason": reason, "changes": list(changes), "replaces": self.digest(name), **made}
         log = self.path(name, ".log")
         earlier = self._text(log) if self._has(log) else ""
         line = json.dumps(entry, ensure_ascii=False) + "\n"
@@ -168,15 +176,15 @@ class Store:
         gone = [] if files else [f"{log.stem}{ending}" for ending in (".json", ".png")]
         replace_files(log.parent, {**fresh, log.name: (earlier + line).encode()}, gone)
 
-    def _last(self, name: str) -> str | None:
-        """Return the digest of the state that was accepted last; ``None`` if nobody wrote that down."""
+    def _last(self, name: str) -> dict[str, str]:
+        """Return the digests of what was accepted last, by name; empty if nobody wrote them down."""
         log = self.path(name, ".log")
         if not self._has(log):
-            return None
+            return {}
         lines = self._text(log).splitlines()
         try:
             entry = json.loads(lines[-1]) if lines else {}
-            return str(entry["accepted"])
+            return {"accepted": str(entry["accepted"])} | {key: str(entry[key]) for key in ("picture",) if key in entry}
         except (ValueError, KeyError, TypeError, RecursionError):
             why = f"{log}:{len(lines)}: is not an acceptance; needed: an object with 'accepted' in each line"
             raise FigureRecordError(why) from None

@@ -59,5 +59,6 @@ def accept(
     comparison = accept_state(outcome, folder, reason, run.within.ids())
     print_changes(comparison, console())
     changes = len(comparison.changes)
-    echo(f"changes accepted: {changes}; in {folder}" if changes else f"nothing differs from {folder}")
+    renewed = "; written anew in the present format" if comparison.outdated or comparison.unsigned else ""
+    echo(f"changes accepted: {changes}; in {folder}" if changes else f"nothing differs from {folder}{renewed}")
     exit_with(run.within, outcome)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from replicate.diff.accepted import files_of, is_state, state_files
+from replicate.diff.accepted import ENDINGS, files_of, is_state, state_files
+from replicate.diff.checksums import SUMS, checksum, checksums, checksums_text, read_checksums
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
-from replicate.errors import OutputError, ReplicateError
+from replicate.errors import AcceptedStateError, OutputError, ReplicateError
 from replicate.plain_text import steering
 from replicate.run.outcome import Outcome
 from replicate.staging import replace_files
@@ -51,25 +52,49 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
         raise ReplicateError(msg)
     comparison = compare(outcome, folder, known)
     fresh_states = dict.fromkeys((diff.paper, diff.exhibit) for diff in (*comparison.changed, *comparison.outdated))
-    if not fresh_states:
+    papers = dict.fromkeys([paper for paper, _ in fresh_states] + [diff.paper for diff in comparison.unsigned])
+    if not papers:
         return comparison
     log = _log(folder)
     if not log:
         _refuse_foreign(comparison, folder)
-    files: dict[str, bytes] = {}
-    obsolete: list[str] = []
+    made: dict[str, dict[str, bytes]] = {paper: {} for paper in papers}
+    gone: dict[str, list[str]] = {paper: [] for paper in papers}
     for paper, exhibit in fresh_states:
         result = outcome.results.get((paper, exhibit))
-        made = state_files(outcome, result) if result is not None else {}
-        files |= {f"{paper}/{name}": content for name, content in made.items()}
-        old = [path for path in files_of(folder / paper, exhibit) if path.name not in made]
-        if old and not made and not is_state(folder / paper, exhibit):
+        fresh = state_files(outcome, result) if result is not None else {}
+        old = [path for path in files_of(folder / paper, exhibit) if path.name not in fresh]
+        if old and not fresh and not is_state(folder / paper, exhibit):
             msg = f"{old[0]}: is not of an accepted state, so it is not removed; move it away; nothing was written"
             raise OutputError(msg)
-        obsolete += [f"{paper}/{path.name}" for path in old]
+        made[paper] |= fresh
+        gone[paper] += [path.name for path in old]
+    for paper in papers:
+        sums = _checksums(folder / paper, made[paper], gone[paper])
+        if sums:
+            made[paper][SUMS] = checksums_text(sums).encode()
+        else:
+            gone[paper].append(SUMS)
+    files = {f"{paper}/{name}": content for paper, fresh in made.items() for name, content in fresh.items()}
     files[LOG] = ((log or _TITLE) + _entry(reason, comparison)).encode()
-    replace_files(folder, files, obsolete)
+    replace_files(folder, files, [f"{paper}/{name}" for paper, names in gone.items() for name in names])
     return comparison
+
+
+def _checksums(folder: Path, made: Mapping[str, bytes], gone: Collection[str]) -> dict[str, str]:
+    """Return the checksums of a paper's accepted files after files were made, and others removed.
+
+    Those of other exhibits stay as they are: what was altered in them has not been accepted. Where nothing was written
+    down, what is there counts as accepted.
+    """
+    try:
+        known = read_checksums(folder)
+    except AcceptedStateError:
+        known = {}
+    if known is None:
+        known = checksums(path for path in sorted(folder.glob("*")) if path.suffix in ENDINGS)
+    kept = {name: found for name, found in known.items() if name not in gone and (folder / name).is_file()}
+    return kept | {name: checksum(name, content) for name, content in made.items()}
 
 
 def require_reason(reason: str) -> str:
@@ -109,7 +134,8 @@ def _refuse_foreign(comparison: Comparison, folder: Path) -> None:
     """Refuse to replace files in a folder without our log, unless they can be read as an accepted state."""
     for diff in comparison.changed:
         if diff.before is None:
-            for path in files_of(folder / diff.paper, diff.exhibit):
+            sums = [folder / diff.paper / SUMS] if diff.damaged and (folder / diff.paper / SUMS).exists() else []
+            for path in (*files_of(folder / diff.paper, diff.exhibit), *sums):
                 msg = f"{path}: is in the way, and not of an accepted state: {folder} has no {LOG}; nothing was written"
                 raise OutputError(msg)
 
@@ -129,6 +155,9 @@ def _entry(reason: str, comparison: Comparison) -> str:
     if len(lines) > _LINES:
         lines = [*lines[:_LINES], f"and {len(lines) - _LINES} more"]
     lines = [f"{paper}: first accepted: {', '.join(exhibits)}" for paper, exhibits in first.items()] + lines
+    unsigned = dict.fromkeys(diff.paper for diff in comparison.unsigned)
+    if unsigned:
+        lines.append(f"checksums of what was accepted before: {', '.join(unsigned)}")
     return f"\n## {_plain(reason)}\n\n" + "".join(f"- {line}\n" for line in lines)
 
 

@@ -4,7 +4,7 @@ In the accepted folder, for each paper: ``<exhibit>.csv`` holds the computed val
 (``row,column,reading,computed,printed,verdict``), of the claims (``row,verdict,computed``), or the curves of
 a figure (``panel,curve,x,y``). Beside it ``<exhibit>.json`` has what is said of a table or of claims, or the axes of a
 figure. A figure also has a picture for people in ``<exhibit>.png``, small and never compared. Numbers have nine
-significant digits.
+significant digits. ``SHA256SUMS`` says how each file was when it was accepted.
 """
 
 from __future__ import annotations
@@ -169,10 +169,13 @@ def _small(png: bytes) -> bytes:
 
 
 def _words(outcome: Outcome, result: Result) -> Words:
-    """Return what the paper's own files say of an exhibit."""
+    """Return what the paper's own files say of an exhibit, and what checking its claims found."""
     (paper,) = (paper for paper in outcome.papers if paper.id == result.paper)
     ledger = outcome.inputs[paper.id].ledger if paper.id in outcome.inputs else Ledger()
-    return words_of(paper.exhibits[result.exhibit], ledger.of(result.exhibit))
+    evidence = None
+    if isinstance(result, ClaimsResult):
+        evidence = {id: finding.evidence for id, finding in result.findings.items()}
+    return words_of(paper.exhibits[result.exhibit], ledger.of(result.exhibit), evidence)
 
 
 def _rows(outcome: Outcome, result: TableResult | ClaimsResult) -> tuple[Sequence[str], list[tuple[str, ...]]]:

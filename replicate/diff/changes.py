@@ -10,7 +10,9 @@ from replicate.figures.differences import Difference, Layer
 
 _DIGITS = (6, 7, 8, 9)
 
-Kind = Literal["value", "verdict", "printed", "words", "curve", "axes", "look", "new", "removed", "failed", "damaged"]
+Kind = Literal[
+    "value", "verdict", "printed", "words", "curve", "axes", "look", "new", "removed", "altered", "failed", "damaged"
+]
 
 
 @dataclass(frozen=True)

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
 
-from replicate.diff.accepted import ENDINGS, FigureState, State, TableState, is_picture, present_state, read_state
+from replicate.diff.accepted import (
+    ENDINGS,
+    FigureState,
+    State,
+    TableState,
+    files_of,
+    is_picture,
+    present_state,
+    read_state,
+)
 from replicate.diff.cells import CellChange, compare_cells
 from replicate.diff.changes import Change
-from replicate.diff.words import compare_words
+from replicate.diff.checksums import altered, read_checksums
+from replicate.diff.words import Words, compare_words
 from replicate.errors import AcceptedStateError
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, errors_of
 from replicate.figures.comparing import compare_records
@@ -42,7 +52,9 @@ class ExhibitDiff:
     cells
         Of a table or of claims: what is not as accepted.
     outdated
-        Whether its accepted state is that of an older version, which knew less of a figure.
+        Whether its accepted state is that of an older version, which knew less of a figure or of claims.
+    unsigned
+        Whether an older version accepted it, without checksums.
     """
 
     paper: str
@@ -55,6 +67,7 @@ class ExhibitDiff:
     pairs: Sequence[Pair] = ()
     cells: Sequence[CellChange] = ()
     outdated: bool = False
+    unsigned: bool = False
 
     @property
     def name(self) -> str:
@@ -113,6 +126,11 @@ class Comparison:
         return [exhibit for exhibit in self.exhibits if exhibit.outdated]
 
     @property
+    def unsigned(self) -> list[ExhibitDiff]:
+        """The exhibits that were accepted without checksums; accepting anything of their paper writes them down."""
+        return [exhibit for exhibit in self.exhibits if exhibit.unsigned]
+
+    @property
     def unchanged(self) -> list[ExhibitDiff]:
         """The exhibits that are as accepted."""
         return [exhibit for exhibit in self.exhibits if not exhibit.changes]
@@ -167,6 +185,7 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
     after = present_state(outcome, result)
     try:
         before = read_state(folder, paper, exhibit, type(result))
+        sums = read_checksums(folder / paper)
     except AcceptedStateError as error:
         damaged = Change(paper, exhibit, "damaged", f"its accepted state is damaged: {error}")
         return ExhibitDiff(paper, exhibit, kind, [damaged], after=after)
@@ -174,28 +193,51 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         missing = Change(paper, exhibit, "new", f"has no accepted state: {paper}/{before} is missing")
         return ExhibitDiff(paper, exhibit, kind, [missing], after=after)
     if isinstance(before, FigureState) and isinstance(after, FigureState):
-        found = compare_records(before.record, after.record)
-        changes = [Change.of_figure(paper, exhibit, difference) for difference in found.differences]
-        picture = f"{paper}/{exhibit}.png"
-        if not (folder / picture).is_file():
-            changes.append(Change(paper, exhibit, "new", f"its picture, {picture}, is missing", "picture"))
-        elif not is_picture(folder / picture):
-            changes.append(Change(paper, exhibit, "new", f"its picture, {picture}, is damaged", "picture"))
-        old = before.version < after.version
-        return ExhibitDiff(paper, exhibit, kind, changes, found.unchanged, before, after, found.pairs, outdated=old)
-    assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
-    assert isinstance(after, TableState)  # noqa: S101
+        diff = _compare_figures(paper, exhibit, before, after, folder / paper / f"{exhibit}.png")
+    else:
+        assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
+        assert isinstance(after, TableState)  # noqa: S101
+        diff = _compare_tables(paper, exhibit, kind, before, after)
+    changes = diff.changes or ([] if sums is None else _altered(paper, exhibit, folder / paper, sums))
+    return replace(diff, changes=changes, unsigned=sums is None)
+
+
+def _compare_figures(paper: str, exhibit: str, before: FigureState, after: FigureState, picture: Path) -> ExhibitDiff:
+    found = compare_records(before.record, after.record)
+    changes = [Change.of_figure(paper, exhibit, difference) for difference in found.differences]
+    shown = f"{paper}/{picture.name}"
+    if not picture.is_file():
+        changes.append(Change(paper, exhibit, "new", f"its picture, {shown}, is missing", "picture"))
+    elif not is_picture(picture):
+        changes.append(Change(paper, exhibit, "new", f"its picture, {shown}, is damaged", "picture"))
+    old = before.version < after.version
+    return ExhibitDiff(paper, exhibit, "figure", changes, found.unchanged, before, after, found.pairs, outdated=old)
+
+
+def _compare_tables(paper: str, exhibit: str, kind: Kind, before: TableState, after: TableState) -> ExhibitDiff:
     cells, unchanged = compare_cells(before.cells, after.cells)
     changes = [cell.change(paper, exhibit) for cell in cells]
-    if before.words is None:
+    accepted, present = before.words, after.words or Words({})
+    if accepted is None:
         text = f"what is said of it has no accepted state: {paper}/{exhibit}.json is missing"
         changes.append(Change(paper, exhibit, "new", text, "words"))
     else:
         changes += [
             Change(paper, exhibit, "words", text, about, old, new)
-            for about, text, old, new in compare_words(before.words, after.words or {})
+            for about, text, old, new in compare_words(accepted, present, {cell.key[0] for cell in cells})
         ]
-    return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells)
+    old = accepted is not None and accepted.evidence is None and present.evidence is not None
+    return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells, outdated=old)
+
+
+def _altered(paper: str, exhibit: str, folder: Path, sums: Mapping[str, str]) -> list[Change]:
+    """Return a change for each accepted file that an edit or a merge altered, which nothing else told."""
+    return [
+        Change(
+            paper, exhibit, "altered", f"{paper}/{name} is not as it was accepted: an edit or a merge altered it", name
+        )
+        for name in altered(files_of(folder, exhibit), sums)
+    ]
 
 
 def _no_longer_computed(outcome: Outcome, folder: Path, known: Collection[str] | None) -> list[ExhibitDiff]:

@@ -1,23 +1,25 @@
 """What is said of an exhibit besides its numbers: titles, notes of readings, explanations, claims. All of it is state.
 
 An explanation that turns from "damage of the scan" into "misprint" accuses somebody, and no number moves. The words are
-those of the paper's own files, with ``{{ value(...) }}`` unfilled: the numbers in them are compared as numbers.
+those of the paper's own files, with ``{{ value(...) }}`` unfilled: the numbers in them are compared as numbers. The
+evidence of claims is what their checks said, numbers included.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
 from replicate.errors import AcceptedStateError
 from replicate.exhibits import Claims, Exhibit, Table
+from replicate.figures.differences import ABSOLUTE
 from replicate.figures.json_text import parse_json
 from replicate.verdicts.ledger import LedgerEntry
-
-#: By what they are about (``title``, ``reading 'x': note``, ``explanation of A x: cause``): the text.
-Words = Mapping[str, str]
 
 FORMAT = "words of an exhibit"
 VERSION = 1
@@ -25,17 +27,37 @@ VERSION = 1
 _SHOWN = 36  # characters around what changed
 _LEDGER = ("cause", "explanation", "reading", "corrected", "evidence", "consequence", "informed", "answer")
 _DEFAULTS = {"reading": "as-written", "consequence": "none"}
+_NUMBER = re.compile(r"(\d+(?:\.\d+)?(?:e[-+]?\d+)?)")
 
 
-def words_of(exhibit: Exhibit, entries: Sequence[LedgerEntry] = ()) -> Words:
+@dataclass(frozen=True)
+class Words:
+    """The words of an exhibit.
+
+    Attributes
+    ----------
+    texts
+        By what they are about: ``title``, ``reading 'x': note``, ``explanation of A x: cause``.
+    evidence
+        Of claims, by their ids; ``None`` of what has none, and of what a version accepted that did not keep it.
+    """
+
+    texts: Mapping[str, str]
+    evidence: Mapping[str, str] | None = None
+
+
+def words_of(exhibit: Exhibit, entries: Sequence[LedgerEntry] = (), evidence: Mapping[str, str] | None = None) -> Words:
     """Return the words of an exhibit.
 
     Parameters
     ----------
     entries
         What the ledger says of its cells.
+    evidence
+        Of its claims.
     """
-    return {about: text for about, text in _words(exhibit, entries) if text}
+    said = None if evidence is None else {id: _plain(text) for id, text in evidence.items()}
+    return Words({about: text for about, text in _words(exhibit, entries) if text}, said)
 
 
 def _words(exhibit: Exhibit, entries: Sequence[LedgerEntry]) -> Iterator[tuple[str, str]]:
@@ -70,7 +92,9 @@ def _plain(text: str) -> str:
 
 def words_text(words: Words) -> str:
     """Return words as JSON, one line for each text."""
-    content = {"format": FORMAT, "version": VERSION, "words": dict(words)}
+    content: dict[str, Any] = {"format": FORMAT, "version": VERSION, "words": dict(words.texts)}
+    if words.evidence is not None:
+        content["evidence"] = dict(words.evidence)
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
@@ -92,21 +116,62 @@ def read_words(path: Path) -> Words:
         line = f":{error.lineno}" if isinstance(error, json.JSONDecodeError) else ""
         msg = f"{where}{line}: is not valid JSON: {error}"
         raise AcceptedStateError(msg) from error
-    words = content.get("words") if isinstance(content, dict) else None
-    fits = isinstance(content, dict) and content.get("format") == FORMAT and content.get("version") == VERSION
-    if not fits or not isinstance(words, dict) or not all(isinstance(text, str) for text in words.values()):
-        msg = f"{where}: needed: an object with 'format' ('{FORMAT}'), 'version' ({VERSION}) and 'words', texts by name"
+    known: dict[str, Any] = content if isinstance(content, dict) else {}
+    words: Any = known.get("words")
+    evidence: Any = known.get("evidence")
+    fits = known.get("format") == FORMAT and known.get("version") == VERSION
+    if not fits or not _are_texts(words) or not (evidence is None or _are_texts(evidence)):
+        msg = (
+            f"{where}: needed: an object with 'format' ('{FORMAT}'), 'version' ({VERSION}) and 'words', texts by name, "
+            "of claims also with 'evidence', texts by id"
+        )
         raise AcceptedStateError(msg)
-    return words
+    return Words(words, evidence)
 
 
-def compare_words(before: Words, after: Words) -> Iterator[tuple[str, str, str, str]]:
-    """Yield what is said differently: what it is about, a sentence, and both texts."""
-    for about in dict.fromkeys((*before, *after)):
-        one, other = before.get(about, ""), after.get(about, "")
+def _are_texts(content: Any) -> bool:
+    return isinstance(content, dict) and all(isinstance(text, str) for text in content.values())
+
+
+def compare_words(before: Words, after: Words, told: Collection[str] = ()) -> Iterator[tuple[str, str, str, str]]:
+    """Yield what is said differently: what it is about, a sentence, and both texts.
+
+    Parameters
+    ----------
+    told
+        Ids of claims that found something else than accepted: their evidence says so in other words.
+    """
+    for about in dict.fromkeys((*before.texts, *after.texts)):
+        one, other = before.texts.get(about, ""), after.texts.get(about, "")
         if one != other:
-            old, new = _around(one, other)
-            yield about, f"{about} {old} -> {new}", one, other
+            yield _change(about, one, other)
+    if before.evidence is None or after.evidence is None:
+        return
+    for id, other in after.evidence.items():
+        one = before.evidence.get(id, "")
+        if id not in told and not same_evidence(one, other):
+            yield _change(f"claim '{id}': evidence", one, other)
+
+
+def _change(about: str, one: str, other: str) -> tuple[str, str, str, str]:
+    old, new = _around(one, other)
+    return about, f"{about} {old} -> {new}", one, other
+
+
+def same_evidence(one: str, other: str) -> bool:
+    """Whether two sentences are the same, but for numbers that are zero but for rounding.
+
+    Examples
+    --------
+    >>> same_evidence("by 3.1e-15 of 2.5", "by 8e-16 of 2.5"), same_evidence("at most 2.5", "at most 2.6")
+    (True, False)
+    """
+    pairs = zip_longest(_NUMBER.split(one), _NUMBER.split(other), fillvalue="")
+    return all(a == b or (_is_rounding(a) and _is_rounding(b)) for a, b in pairs)
+
+
+def _is_rounding(text: str) -> bool:
+    return _NUMBER.fullmatch(text) is not None and abs(float(text)) < ABSOLUTE
 
 
 def _around(one: str, other: str) -> tuple[str, str]:

@@ -18,7 +18,7 @@ _MOST_LINES = 20
 _MOST_NAMES = 6
 
 # What is said of a change whatever its size comes first, and of this the worst.
-_WEIGHTS = {"damaged": 6, "failed": 5, "removed": 4, "new": 3, "verdict": 2, "printed": 1, "axes": 1}
+_WEIGHTS = {"damaged": 6, "failed": 5, "removed": 4, "new": 3, "altered": 3, "verdict": 2, "printed": 1, "axes": 1}
 
 
 def print_comparison(comparison: Comparison, console: Console) -> None:
