@@ -50,7 +50,7 @@ def test_the_ledger_declares_a_consequence_and_what_the_authors_said() -> None:
         informed="2001",
         answer="Yes.",
     )
-    judgement = judge(synthetic.paper(), results(), Inputs(printed(ax="9.2"), Ledger("l", (entry,))))
+    judgement = judge(synthetic.paper(), results(), Inputs(printed(ax="9.2"), Ledger((entry,))))
     (found,) = [row for row in judgement.verdicts if row.row == "A" and row.column == "x"]
     assert (found.consequence, found.informed, found.answer) == ("formula", "2001", "Yes.")
     assert {row.consequence for row in judgement.verdicts if row.verdict == "reproduced"} == {""}
@@ -105,14 +105,14 @@ def test_a_correction_is_measured_by_cells_of_its_own_quantity() -> None:
     table.cases = "columns"
     entry = LedgerEntry("table-1", ("A",), ("x",), "scan", "Why.")
     run = results(frame(ax=1.26, ay=2.0, bx=9.0, by=4.0), frame(ax=1.26, ay=2.0, bx=9.0, by=4.0))
-    judgement = judge(paper, run, Inputs(printed(ax="9.26"), Ledger("l", (entry,))))
+    judgement = judge(paper, run, Inputs(printed(ax="9.26"), Ledger((entry,))))
     assert judgement.verdicts[0].corrected == "1.26"
 
 
 def test_one_other_cell_does_not_limit_a_correction() -> None:
     entry = LedgerEntry("table-1", ("A",), ("x",), "scan", "Why.")
     run = results(frame(ax=1.26, bx=9.0), frame(ax=1.26, bx=9.0))
-    judgement = judge(synthetic.paper(), run, Inputs(printed(ax="9.2"), Ledger("l", (entry,))))
+    judgement = judge(synthetic.paper(), run, Inputs(printed(ax="9.2"), Ledger((entry,))))
     assert (judgement.verdicts[0].verdict, judgement.verdicts[0].corrected) == ("damaged", "1.3")
 
 
@@ -137,7 +137,7 @@ def ranked(ax: str, entry: LedgerEntry, *, computed: float) -> VerdictRow:
     rank(table, "x", ("A", "B"), "A has the smaller x")
     bound(table, "x", ("A",), "A is stable", below=3.5)
     run = results(frame(ax=computed), frame(ax=computed))
-    return judge(paper, run, Inputs(printed(ax=ax), Ledger("l", (entry,)))).verdicts[0]
+    return judge(paper, run, Inputs(printed(ax=ax), Ledger((entry,)))).verdicts[0]
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,7 @@ def make(tmp_path: Path) -> Make:
         (tmp_path / "toy" / "handout.md").write_text(text, encoding="utf-8")
         paper = synthetic.paper(tmp_path / "toy")
         results = run(**cells)
-        judged = judge(paper, results, Inputs(synthetic.printed(), Ledger("toy/ledger.toml", ())))
+        judged = judge(paper, results, Inputs(synthetic.printed(), Ledger()))
         return edition(paper, results, judged.verdicts, solutions=solutions)
 
     return document

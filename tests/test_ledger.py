@@ -44,7 +44,7 @@ answer = "They agree."
 """
     ledger = load(tmp_path, text)
     assert ledger.entries == (
-        LedgerEntry("table-1", ("A",), ("x",), "misprint", "A digit is wrong.", line=3),
+        LedgerEntry("table-1", ("A",), ("x",), "misprint", "A digit is wrong.", file="toy/ledger.toml", line=3),
         LedgerEntry(
             "table-1",
             ("*",),
@@ -56,10 +56,11 @@ answer = "They agree."
             consequence="comparison",
             informed="Letter of 2 May 2001",
             answer="They agree.",
+            file="toy/ledger.toml",
             line=10,
         ),
     )
-    assert ledger.place(ledger.entries[1]) == "toy/ledger.toml:10"
+    assert ledger.entries[1].place == "toy/ledger.toml:10"
     assert ledger.entries[1].covers("B", "y")
     assert not ledger.entries[1].covers("B", "x")
 
@@ -142,3 +143,11 @@ def test_two_entries_for_one_cell_are_refused(tmp_path: Path) -> None:
     message = r"^toy/ledger\.toml:9: table-1 row 'A', column 'x' is already named by the entry in line 2$"
     with pytest.raises(LedgerError, match=message):
         load(tmp_path, ENTRY + second)
+
+
+def test_two_files_that_name_one_cell_are_refused_with_both_places(tmp_path: Path) -> None:
+    load(tmp_path, ENTRY)
+    (tmp_path / "toy" / "ledger-II.toml").write_text(f"\n{ENTRY}", encoding="utf-8")
+    message = r"^toy/ledger-II\.toml:3: .* is already named by the entry in toy/ledger\.toml:2$"
+    with pytest.raises(LedgerError, match=message):
+        Ledger.load_all(tmp_path / "toy", synthetic.paper())

@@ -26,7 +26,7 @@ def prose(functions: dict[str, Callable[..., object]] | None = None, **errors: s
         authors=synthetic.frame(ay=1234567.891),
         errors={key.replace("_", "-"): text for key, text in errors.items()},
     )
-    ledger = Ledger("toy/ledger.toml", (LedgerEntry("table-1", ("A",), ("y",), "misprint", "Why."),))
+    ledger = Ledger((LedgerEntry("table-1", ("A",), ("y",), "misprint", "Why."),))
     judgement = judge(paper, run, Inputs(synthetic.printed(ay="6.67"), ledger))
     return Prose(paper, run, judgement.verdicts, functions)
 

@@ -39,7 +39,7 @@ def make(tmp_path: Path) -> Make:
         figure = results["toy", "fig-1"]
         assert isinstance(figure, FigureResult)
         results["toy", "fig-1"] = replace(figure, svg=toy_class.SVG, axes=[AXES])
-        judged = judge(paper, results, Inputs(synthetic.printed(), Ledger("toy/ledger.toml", ())))
+        judged = judge(paper, results, Inputs(synthetic.printed(), Ledger()))
         return edition(paper, results, judged.verdicts, solutions=False, kind="slides", only_read=only_read)
 
     return document

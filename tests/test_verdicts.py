@@ -42,6 +42,7 @@ def entry(
         reading,
         corrected,
         evidence,
+        file="toy/ledger.toml",
         line=7,
     )
 
@@ -51,7 +52,7 @@ def judged(*entries: LedgerEntry, run: Results | None = None, **texts: str) -> J
     return judge(
         synthetic.paper(),
         results() if run is None else run,
-        Inputs(printed(significant_digits=None, **texts), Ledger("toy/ledger.toml", entries)),
+        Inputs(printed(significant_digits=None, **texts), Ledger(entries)),
     )
 
 

@@ -28,7 +28,7 @@ def outcome(
     folder.mkdir(exist_ok=True)
     toy = synthetic.paper(folder)
     change(toy)
-    inputs = Inputs(synthetic.printed(by="4.6"), Ledger(entries=(entry,) if entry else ()))
+    inputs = Inputs(synthetic.printed(by="4.6"), Ledger((entry,) if entry else ()))
     results = synthetic.results()
     del results["toy", "fig-1"]
     return Outcome([toy], results, {"toy": judge(toy, results, inputs)}, inputs={"toy": inputs})

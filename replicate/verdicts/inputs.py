@@ -68,7 +68,7 @@ def read_inputs(paper: Paper) -> Inputs:
     ledger = Ledger.load_all(folder, paper)
     for entry in ledger.entries:
         for text in (entry.explanation, entry.evidence):
-            check_syntax(text, entry.file or ledger.name, entry.line)
+            check_syntax(text, entry.file, entry.line)
     for file in sorted(folder.iterdir(), key=lambda file: file.name):
         if file.name.endswith(".md") and file.name.startswith(_TEXTS):
             check_syntax(read_text(file, display_name(file), TemplateError), display_name(file))

@@ -16,7 +16,7 @@ from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Table
 from replicate.verdicts.claims import judge_claims
 from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.inventory import NOT_COMPUTED, inventory_row
-from replicate.verdicts.ledger import Ledger, LedgerEntry
+from replicate.verdicts.ledger import LedgerEntry
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import Judgement
 from replicate.verdicts.tables import TableJudge
@@ -76,7 +76,7 @@ def judge(
             part.problems.append(f"{paper.id} {id}: {NOT_COMPUTED}")
         part.exhibits.append(inventory_row(paper.id, exhibit, result, part.verdicts))
         judgement.extend(part)
-    _explain(paper, results, judgement, inputs.ledger, explained)
+    _explain(paper, results, judgement, explained)
     return judgement
 
 
@@ -84,7 +84,6 @@ def _explain(
     paper: Paper,
     results: Mapping[tuple[str, str], Result],
     judgement: Judgement,
-    ledger: Ledger,
     explained: list[tuple[int, LedgerEntry]],
 ) -> None:
     """Fill the results into the explanations; they may speak of any verdict, so all must be known by now."""
@@ -92,9 +91,7 @@ def _explain(
     for index, entry in explained:
         verdict = judgement.verdicts[index]
         try:
-            text = prose.render(
-                verdict.explanation, entry.file or ledger.name, entry.line, row=verdict.row, column=verdict.column
-            )
+            text = prose.render(verdict.explanation, entry.file, entry.line, row=verdict.row, column=verdict.column)
         except TemplateError as error:
             text = f"(This text cannot be shown: {error})"
             if str(error) not in judgement.problems:

@@ -26,7 +26,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Literal, get_args
@@ -55,6 +55,7 @@ CORRECTING_CAUSES: frozenset[Cause] = frozenset({"misprint", "print-or-copy", "s
 _CONSEQUENCES: tuple[Consequence, ...] = get_args(Consequence)
 
 ANY = "*"
+LEDGER = "ledger.toml"
 
 _REQUIRED = ("exhibit", "rows", "columns", "cause", "explanation")
 _OPTIONAL = ("reading", "corrected", "evidence", "consequence", "informed", "answer")
@@ -76,8 +77,8 @@ class LedgerEntry:
         What follows from the error; more than ``none`` needs evidence.
     informed, answer
         When and how the authors heard of it, and what they said; empty texts if nobody wrote to them.
-    line, file
-        Line of the entry in its file, from 1, and what messages call that file.
+    file, line
+        What messages call the entry's file, and its line there, from 1.
     """
 
     exhibit: str
@@ -91,8 +92,13 @@ class LedgerEntry:
     consequence: Consequence = "none"
     informed: str = ""
     answer: str = ""
+    file: str = LEDGER
     line: int = 0
-    file: str = ""
+
+    @property
+    def place(self) -> str:
+        """File and line, as messages name them."""
+        return f"{self.file}:{self.line}"
 
     @property
     def explicit(self) -> bool:
@@ -106,9 +112,8 @@ class LedgerEntry:
 
 @dataclass(frozen=True)
 class Ledger:
-    """The entries of one paper in the order of its file; ``name`` is what messages call that file."""
+    """The entries of one paper, in the order of its file or files."""
 
-    name: str = "ledger.toml"
     entries: tuple[LedgerEntry, ...] = ()
 
     @classmethod
@@ -130,7 +135,7 @@ class Ledger:
         """
         name = display_name(path)
         if not (os.path.lexists(path) if isinstance(path, Path) else path.is_file()):
-            return cls(name)
+            return cls()
         text = read_text(path, name, LedgerError)
         data = parse_toml(text, name, LedgerError)
         raw = data.pop("entry", [])
@@ -141,9 +146,9 @@ class Ledger:
         lines = [number for number, line in enumerate(text.splitlines(), 1) if _ENTRY_HEADER.match(line)]
         if len(lines) != len(raw):  # an inline list of tables, or the header inside a multi-line text
             lines = [1] * len(raw)
-        entries = tuple(_entry(f"{name}:{line}", line, item, paper) for line, item in zip(lines, raw, strict=True))
-        _check_named_once(name, entries)
-        return cls(name, entries)
+        entries = tuple(_entry(name, line, item, paper) for line, item in zip(lines, raw, strict=True))
+        _check_named_once(entries)
+        return cls(entries)
 
     @classmethod
     def load_all(cls, folder: Traversable | Path, paper: Paper) -> Ledger:
@@ -159,10 +164,9 @@ class Ledger:
             for entry in folder.iterdir()
             if entry.name.startswith("ledger-") and entry.name.endswith(".toml")
         )
-        ledgers = [cls.load(folder / name, paper) for name in ("ledger.toml", *parts)]
-        entries = tuple(replace(entry, file=ledger.name) for ledger in ledgers for entry in ledger.entries)
-        _check_named_once(ledgers[0].name, entries)
-        return cls(ledgers[0].name, entries)
+        entries = tuple(entry for name in (LEDGER, *parts) for entry in cls.load(folder / name, paper).entries)
+        _check_named_once(entries)
+        return cls(entries)
 
     def of(self, exhibit: str) -> list[LedgerEntry]:
         """Return the entries of one exhibit, those that name their cells explicitly first."""
@@ -171,12 +175,9 @@ class Ledger:
             key=lambda entry: not entry.explicit,
         )
 
-    def place(self, entry: LedgerEntry) -> str:
-        """Return file and line of an entry, as messages name it."""
-        return f"{entry.file or self.name}:{entry.line}"
 
-
-def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> LedgerEntry:
+def _entry(file: str, line: int, raw: dict[str, object], paper: Paper) -> LedgerEntry:
+    place = f"{file}:{line}"
     missing = [key for key in _REQUIRED if key not in raw]
     unknown = [key for key in raw if key not in _REQUIRED + _OPTIONAL]
     if missing or unknown:
@@ -210,6 +211,7 @@ def _entry(place: str, line: int, raw: dict[str, object], paper: Paper) -> Ledge
         consequence=consequence,
         informed=_text(place, raw, "informed", ""),
         answer=_text(place, raw, "answer", ""),
+        file=file,
         line=line,
     )
     if entry.reading not in exhibit.readings:
@@ -271,7 +273,7 @@ def _keys(place: str, raw: dict[str, object], field: str, allowed: Sequence[str]
     return tuple(value)
 
 
-def _check_named_once(name: str, entries: Iterable[LedgerEntry]) -> None:
+def _check_named_once(entries: Iterable[LedgerEntry]) -> None:
     seen: dict[tuple[str, str, str], LedgerEntry] = {}
     for entry in entries:
         if not entry.explicit:
@@ -281,7 +283,8 @@ def _check_named_once(name: str, entries: Iterable[LedgerEntry]) -> None:
                 first = seen.setdefault((entry.exhibit, row, column), entry)
                 if first is not entry:
                     where = f"{entry.exhibit} row '{row}', column '{column}'"
-                    msg = f"{name}:{entry.line}: {where} is already named by the entry in line {first.line}"
+                    other = f"line {first.line}" if first.file == entry.file else first.place
+                    msg = f"{entry.place}: {where} is already named by the entry in {other}"
                     raise LedgerError(msg)
 
 

@@ -145,11 +145,10 @@ class TableJudge:
         """Give each value that does not hold its ledger entry, and report entries that do not apply."""
         taken: set[Key] = set()
         for entry in self.ledger.of(self.table.id):
-            place = self.ledger.place(entry)
             if entry.explicit:
                 named = [(row, column) for row in entry.rows for column in entry.columns]
                 self._unused(
-                    f"{place}: {self.table.id} {_cell(key)} "
+                    f"{entry.place}: {self.table.id} {_cell(key)} "
                     + ("no longer differs" if key in self.printed else "is blank in the paper")
                     for key in named
                     if key not in open_keys
@@ -162,7 +161,7 @@ class TableJudge:
                     if key in open_keys - taken and entry.covers(*key) and not self._by_other_convention(key)
                 ]
                 if not found:
-                    self._unused([f"{place}: {self.table.id}: explains no printed value that differs"])
+                    self._unused([f"{entry.place}: {self.table.id}: explains no printed value that differs"])
             right = [key for key in found if self._correction_holds(key, entry)]
             taken.update(right)
             yield from ((key, entry) for key in right)
@@ -176,8 +175,7 @@ class TableJudge:
             return True
         problem = self._correction(key, entry).problem
         if problem:
-            place = f"{self.ledger.place(entry)}: {self.table.id} {_cell(key)}"
-            self.judgement.problems.append(f"{place}: {problem}")
+            self.judgement.problems.append(f"{entry.place}: {self.table.id} {_cell(key)}: {problem}")
         return not problem
 
     def _correction(self, key: Key, entry: LedgerEntry) -> Correction:
