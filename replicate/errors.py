@@ -1,4 +1,4 @@
-"""All exceptions of the package outside the numerical core.
+"""All exceptions of the package outside the numerical core, and how their messages list names.
 
 ReplicateError                 shown to the user as one line, exit status 2
 ├── PaperDefinitionError       a paper's package contradicts itself
@@ -19,6 +19,8 @@ ReplicateError                 shown to the user as one line, exit status 2
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 #: Exit status of a run that was told to end (SIGTERM), as shells have it.
 TERMINATED = 143
@@ -110,3 +112,16 @@ class UnreadableTextError(TemplateError):
 
 class OutputError(ReplicateError):
     """A result cannot be written where it should go."""
+
+
+def listed(names: Iterable[str], most: int | None = None) -> str:
+    """Return names as a message lists them: in quotes, at the most so many.
+
+    Examples
+    --------
+    >>> listed(["mean", "sd"]), listed([]), listed("abc", most=2)
+    ("'mean', 'sd'", 'none', "'a', 'b', ...")
+    """
+    quoted = [f"'{name}'" for name in names]
+    more = ["..."] if most is not None and len(quoted) > most else []
+    return ", ".join(quoted[:most] + more) or "none"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from replicate.errors import ReplicateError
+from replicate.errors import ReplicateError, listed
 from replicate.plain_text import parse_toml, read_text
 from replicate.resources import templates_dir
 
@@ -79,8 +79,7 @@ def language(tag: str = "en", what: str = "--language") -> Language:
     needed = set(words if path == english else language().words)
     for names, wrong in ((needed - set(words), "lacks"), (set(words) - needed, "has an unknown")):
         if names:
-            listed = ", ".join(f"'{name}'" for name in sorted(names))
-            msg = f"{path.name}: [words] {wrong} {listed}"
+            msg = f"{path.name}: [words] {wrong} {listed(sorted(names))}"
             raise ReplicateError(msg)
     for name, word in words.items():
         if not isinstance(word, str) or not word.strip():

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from replicate.errors import PaperDefinitionError
+from replicate.errors import PaperDefinitionError, listed
 from replicate.exhibits.frames import FrameCells, read_frame
 from replicate.exhibits.notation import Notation, Statement, is_date
 from replicate.exhibits.printed import Key, PrintedValue
@@ -58,7 +58,7 @@ def checked_frame(table: Table, made: object, printed: Mapping[Key, PrintedValue
 
 
 def _check_keys(kind: str, found: Sequence[str], declared: Sequence[str]) -> None:
-    allowed = _listed(declared)
+    allowed = listed(declared, _SHOWN)
     seen = set[str]()
     for key in found:
         if declared and key not in declared:
@@ -70,7 +70,7 @@ def _check_keys(kind: str, found: Sequence[str], declared: Sequence[str]) -> Non
         seen.add(key)
     for key in declared:
         if key not in seen:
-            msg = f"the reading does not return the {kind} '{key}'; it returns: {_listed(found)}"
+            msg = f"the reading does not return the {kind} '{key}'; it returns: {listed(found, _SHOWN)}"
             raise PaperDefinitionError(msg)
 
 
@@ -111,8 +111,3 @@ def _expected(notation: Notation, statement: Statement) -> str:
     kind = "a date" if notation.date else "a pair of ends" if statement.kind == "interval" else "a number"
     kinds = [kind, "a pair of value and uncertainty"] if statement.uncertainty else [kind]
     return " or ".join([*kinds, *(f"'{word}'" for word in notation.words)])
-
-
-def _listed(keys: Sequence[str]) -> str:
-    shown = ", ".join(f"'{key}'" for key in keys[:_SHOWN])
-    return f"{shown}, ..." if len(keys) > _SHOWN else shown or "none"

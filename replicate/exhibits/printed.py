@@ -19,7 +19,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from replicate.errors import PrintedFileError
+from replicate.errors import PrintedFileError, listed
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.near import USUAL, Near
 from replicate.exhibits.notation import PLAIN, Notation, Statement
@@ -223,7 +223,7 @@ def _grid(
     """Return line and column keys of the header, then line, row key and cells of every row."""
     records = _records(path, name)
     if not records:
-        msg = f"{name}:1: the file is empty; expected: a header with the columns {_listed(needed)}"
+        msg = f"{name}:1: the file is empty; expected: a header with the columns {listed(needed)}"
         raise PrintedFileError(msg)
     (header_line, header), *body = records
     for sign, called in ((";", "semicolons"), ("\t", "tabs")):
@@ -290,18 +290,18 @@ def _check_keys(place: str, kind: str, found: Sequence[tuple[int, str]], expecte
     for line, key in found:
         if key not in expected:
             where = place if kind == "column" else f"{place}:{line}"
-            msg = f"{where}: {kind} '{key}' is not one of the exhibit's; allowed: {_listed(expected)}"
+            msg = f"{where}: {kind} '{key}' is not one of the exhibit's; allowed: {listed(expected)}"
             raise PrintedFileError(msg)
     keys = {key for _, key in found}
     missing = [key for key in expected if key not in keys]
     if missing:
         last = f":{found[-1][0]}" if kind == "row" and found else ""
-        msg = f"{place}{last}: {kind} {_listed(missing)} is missing"
+        msg = f"{place}{last}: {kind} {listed(missing)} is missing"
         raise PrintedFileError(msg)
     for (line, key), wanted in zip(found, expected, strict=True):
         if key != wanted:
             where = place if kind == "column" else f"{place}:{line}"
-            order = _listed(expected)
+            order = listed(expected)
             msg = f"{where}: {kind} '{key}' is out of order, '{wanted}' comes first; expected order: {order}"
             raise PrintedFileError(msg)
 
@@ -322,7 +322,3 @@ def _value(place: str, value: tuple[str, str, str, int], table: Table) -> Printe
         msg = f"{where}: '{text}' has more than the {digits} significant digits that this table prints"
         raise PrintedFileError(msg)
     return printed
-
-
-def _listed(keys: Iterable[str]) -> str:
-    return ", ".join(f"'{key}'" for key in keys)

@@ -23,7 +23,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from replicate.errors import PaperDefinitionError, PrintedFileError
+from replicate.errors import PaperDefinitionError, PrintedFileError, listed
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import parse_number
 from replicate.plain_text import read_text
@@ -208,7 +208,7 @@ def _curve_of(fig: Figure, point: Point) -> tuple[Axes, Line2D]:
         msg = f"{place}: {len(lines)} curves are '{point.curve}'; name the panel in a column 'panel': {titles}"
         raise PaperDefinitionError(msg)
     known = sorted({str(line.get_label()) for axes in panels for line in axes.lines} - {LABEL})
-    curves = ", ".join(f"'{label}'" for label in known if not label.startswith("_")) or "none"
+    curves = listed(label for label in known if not label.startswith("_"))
     where = f" in the panel '{point.panel}'" if point.panel else ""
     msg = f"{place}: there is no curve '{point.curve}'{where}; curves: {curves}"
     raise PaperDefinitionError(msg)

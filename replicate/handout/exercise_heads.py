@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from replicate.errors import ReplicateError, TemplateError
+from replicate.errors import ReplicateError, TemplateError, listed
 from replicate.exhibits import Paper
 from replicate.exhibits.exercises import Exercises
 from replicate.handout.sheet import Sheet
@@ -40,7 +40,7 @@ def with_heads(blocks: Blocks, source: str, exercises: Exercises, sheet: Sheet) 
         given = dict(heading["c"][1][2])
         name = given.get("vary", "")
         if name and name not in exercises.variations:
-            known = ", ".join(f"'{one}'" for one in exercises.variations) or "none"
+            known = listed(exercises.variations)
             msg = f'{source}: exercise {number} has vary="{name}", no exercise varies under this name; allowed: {known}'
             raise TemplateError(msg)
         points = sheet.points_of(selected.index(number), len(selected)) if number in selected else None

@@ -38,7 +38,7 @@ from typing import Any
 from replicate.display.addresses import TRIALS, trial_address, trial_label
 from replicate.display.inline_svg import description
 from replicate.display.tables import TableView, table_view
-from replicate.errors import PaperDefinitionError, TemplateError
+from replicate.errors import PaperDefinitionError, TemplateError, listed
 from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult, errors_of
@@ -133,7 +133,7 @@ class Placing:
         variation = self.exercises.variations.get(name)
         if variation is None and name not in self.exercises.answers:
             known = [*self.exercises.answers, *self.exercises.variations]
-            msg = f"answer('{name}'): no such answer; allowed: {_listed(known)}"
+            msg = f"answer('{name}'): no such answer; allowed: {listed(known)}"
             raise TemplateError(msg)
         kept = self.shared if variation is None else self._answers
         if name not in kept:
@@ -169,12 +169,12 @@ class Placing:
             "', '".join(filter(None, names)) for names in ((table, row, case), *(one[:2] for one in trials))
         )
         failed = "; ".join(errors_of(result).values()) if isinstance(result, TableResult) else ""
-        msg = f"try_it('{asked}'): {failed or f'no loop to try out; allowed: {_listed(allowed)}'}"
+        msg = f"try_it('{asked}'): {failed or f'no loop to try out; allowed: {listed(allowed)}'}"
         raise TemplateError(msg)
 
     def _variation(self, function: str, name: str) -> Variation:
         if name not in self.exercises.variations:
-            msg = f"{function}('{name}'): no such exercise; allowed: {_listed(self.exercises.variations)}"
+            msg = f"{function}('{name}'): no such exercise; allowed: {listed(self.exercises.variations)}"
             raise TemplateError(msg)
         return self.exercises.variations[name]
 
@@ -233,7 +233,7 @@ class Placing:
         found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
         if not isinstance(found, Table) or not isinstance(result, TableResult):
             known = [id for id, other in self.paper.exhibits.items() if isinstance(other, Table)]
-            msg = f"{function}('{exhibit}'): no such table was computed; the paper has: {_listed(known)}"
+            msg = f"{function}('{exhibit}'): no such table was computed; the paper has: {listed(known)}"
             raise TemplateError(msg)
         if result.errors:
             reading, why = next(iter(result.errors.items()))
@@ -264,7 +264,7 @@ class Placing:
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
             figures = [id for id, other in self.paper.exhibits.items() if isinstance(other, Figure)]
             varied_names = [one for variation in self.exercises.variations.values() for one in variation.figures]
-            known_names = _listed([*self.exercises.figures, *varied_names, *figures])
+            known_names = listed([*self.exercises.figures, *varied_names, *figures])
             msg = f"figure('{name}'): no such figure; allowed: {known_names}"
             raise TemplateError(msg)
         if known.error:
@@ -325,7 +325,3 @@ def _refused_by(call: str) -> Iterator[None]:
     except TemplateError as error:
         msg = f"{call}: {error}"
         raise TemplateError(msg) from error
-
-
-def _listed(names: Sequence[str] | Mapping[str, object]) -> str:
-    return ", ".join(f"'{name}'" for name in names) or "none"

@@ -31,7 +31,7 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Literal, get_args
 
-from replicate.errors import LedgerError
+from replicate.errors import LedgerError, listed
 from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import ALLOWED, parse_number
@@ -189,7 +189,7 @@ def _entry(file: str, line: int, raw: dict[str, object], paper: Paper) -> Ledger
     tables = [key for key, item in paper.exhibits.items() if isinstance(item, Table) and item.printed]
     if not isinstance(exhibit, Table) or not exhibit.printed:
         what = "is not an exhibit of the paper" if exhibit is None else "has no printed values to explain"
-        msg = f"{place}: exhibit '{exhibit_id}' {what}; allowed: {_listed(tables)}"
+        msg = f"{place}: exhibit '{exhibit_id}' {what}; allowed: {listed(tables)}"
         raise LedgerError(msg)
     cause = next((known for known in CAUSES if known == raw["cause"]), None)
     if cause is None:
@@ -215,7 +215,7 @@ def _entry(file: str, line: int, raw: dict[str, object], paper: Paper) -> Ledger
         line=line,
     )
     if entry.reading not in exhibit.readings:
-        known = _listed(exhibit.readings)
+        known = listed(exhibit.readings)
         msg = f"{place}: '{entry.reading}' is not a reading of {exhibit_id}; allowed: {known}"
         raise LedgerError(msg)
     if consequence != "none" and not entry.evidence:
@@ -232,7 +232,7 @@ def _check_corrected(place: str, entry: LedgerEntry) -> None:
     if not entry.corrected:
         return
     if entry.cause not in CORRECTING_CAUSES:
-        causes = _listed(cause for cause in CAUSES if cause in CORRECTING_CAUSES)
+        causes = listed(cause for cause in CAUSES if cause in CORRECTING_CAUSES)
         msg = f"{place}: 'corrected' is allowed with the causes {causes} only"
         raise LedgerError(msg)
     if not entry.explicit or len(entry.rows) * len(entry.columns) != 1:
@@ -265,7 +265,7 @@ def _keys(place: str, raw: dict[str, object], field: str, allowed: Sequence[str]
         raise LedgerError(msg)
     for key in value:
         if key not in allowed:
-            msg = f"{place}: {field}: {key!r} is not in the exhibit; allowed: {_listed(allowed)}"
+            msg = f"{place}: {field}: {key!r} is not in the exhibit; allowed: {listed(allowed)}"
             raise LedgerError(msg)
         if value.count(key) > 1:
             msg = f"{place}: {field}: {key!r} appears twice"
@@ -286,7 +286,3 @@ def _check_named_once(entries: Iterable[LedgerEntry]) -> None:
                     other = f"line {first.line}" if first.file == entry.file else first.place
                     msg = f"{entry.place}: {where} is already named by the entry in {other}"
                     raise LedgerError(msg)
-
-
-def _listed(keys: Iterable[str]) -> str:
-    return ", ".join(f"'{key}'" for key in keys) or "none"

@@ -29,7 +29,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING
 
-from replicate.errors import TemplateError
+from replicate.errors import TemplateError, listed
 from replicate.exhibits import AS_WRITTEN, Finding, Paper
 from replicate.exhibits.frames import CellError
 from replicate.exhibits.results import ClaimsResult, Result, TableResult
@@ -38,7 +38,7 @@ from replicate.verdicts.rows import CLAIM_COLUMN, CLAIM_VERDICTS, VALUE_VERDICTS
 if TYPE_CHECKING:
     from replicate.verdicts.sandbox import SafeEnvironment
 
-_SHOWN_KEYS = 12
+_listed = partial(listed, most=12)
 _MOST_DIGITS = 17  # a floating-point number has no more
 _LINE_MARK = re.compile("\ue010(\\d+)\ue011")
 
@@ -331,9 +331,3 @@ def _template_line(error: BaseException) -> int:
     """Return the line of the template in which an error arose; 1 if it left no trace there."""
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == "<template>"]
     return next((line for line in reversed(lines) if line is not None), 1)
-
-
-def _listed(keys: object) -> str:
-    names = [f"'{key}'" for key in keys] if hasattr(keys, "__iter__") else []
-    shown = ", ".join(names[:_SHOWN_KEYS])
-    return (f"{shown}, ..." if len(names) > _SHOWN_KEYS else shown) or "none"
