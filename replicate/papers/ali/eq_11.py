@@ -102,7 +102,6 @@ eq_11_error = paper.table(
 
 
 def _errors(data: dict[str, float], coefficients: tuple[float, float, float, float]) -> pd.DataFrame:
-
     rows = {row: [data[row], value := cubic(float(row), coefficients), value / data[row] - 1.0] for row in ROWS}
     return eq_11_error.frame(rows)
 

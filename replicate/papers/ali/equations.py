@@ -185,7 +185,6 @@ equations = paper.table(
 
 
 def _count(restored: bool) -> pd.DataFrame:
-
     checks: dict[str, Callable[[Point], bool]] = {
         "3": _holds_3,
         "4": _holds_4,

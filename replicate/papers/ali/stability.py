@@ -80,7 +80,6 @@ def robustness(x: Fraction, settings: Settings, structure: Structure) -> dict[st
 
 
 def _compute(structure: Structure) -> pd.DataFrame:
-
     rows = {id: robustness(x, settings, structure) for id, (x, settings) in DESIGNS.items()}
     return stability.frame(rows)
 

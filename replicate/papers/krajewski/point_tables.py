@@ -71,7 +71,6 @@ def point_table(exhibit: str, title: str, *, responses: bool = True, caption: st
     table.trials = partial(trials, exhibit)
 
     def frame(loop_at: Callable[[NamedPoint], tuple[float, float]]) -> pd.DataFrame:
-
         rows = {}
         for row, named in points.items():
             at = loop_at(named)

@@ -98,7 +98,6 @@ def r_squared(margin: str, coefficients: tuple[float, float]) -> float:
 
 
 def _table(coefficients: Callable[[str], tuple[float, float]]) -> pd.DataFrame:
-
     rows = {}
     for margin in MARGINS:
         pair = coefficients(margin)

@@ -77,7 +77,6 @@ def spare(outer: Circle, inner: Circle) -> Fraction:
 
 
 def _table(circle: Callable[[Fraction, Fraction], Circle]) -> pd.DataFrame:
-
     rows = {}
     for row, (ms, mp) in PAIRS.items():
         center, radius = circle(ms, mp)

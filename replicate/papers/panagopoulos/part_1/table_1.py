@@ -63,7 +63,6 @@ for _plant in SIX:
 
 
 def _rows(w0: dict[str, float], b: dict[str, float], ts: dict[str, float]) -> pd.DataFrame:
-
     rows = {}
     for row, (plant, ms) in ROWS.items():
         found = design(plant, ms)

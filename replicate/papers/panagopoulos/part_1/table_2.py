@@ -35,7 +35,6 @@ table_2.trials = lambda: trials(
 
 
 def _table(rule: WeightRule) -> pd.DataFrame:
-
     rows = {}
     for row, key in ROWS.items():
         found = design(*key)

@@ -97,7 +97,6 @@ for _column in ("IE", "sigma"):
 
 
 def _table(filter_of_ratio: Literal["first", "new"]) -> pd.DataFrame:
-
     rows = {}
     for row, m in FACTORS.items():
         case = filtered(m)

@@ -91,7 +91,6 @@ def _table(
     overshoot: Callable[[Signal], float],
     settling: Callable[[Signal, str], float],
 ) -> pd.DataFrame:
-
     rows = {}
     for row, (plant, method) in ROWS.items():
         pi = controller(plant, method)

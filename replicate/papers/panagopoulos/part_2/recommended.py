@@ -59,7 +59,6 @@ def load_numbers(row: str, controller: PID) -> dict[str, float]:
 
 def _reading(of: Callable[[str], PID]) -> Callable[[], pd.DataFrame]:
     def compute() -> pd.DataFrame:
-
         return table.frame({row: load_numbers(row, of(row)) for row in ROWS})
 
     return compute

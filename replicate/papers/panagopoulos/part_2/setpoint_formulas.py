@@ -91,7 +91,6 @@ def _frame(
     filter_time: Callable[[PID, Resonance], float],
     full_filter: Callable[[PID, Resonance], float],
 ) -> pd.DataFrame:
-
     nan = float("nan")
     rows = {}
     for row in ROWS:

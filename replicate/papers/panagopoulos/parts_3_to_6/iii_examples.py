@@ -160,7 +160,6 @@ example_2 = paper.table(
 
 
 def _second_example(weighting: str) -> pd.DataFrame:
-
     found = robustness(weighting)
     winding = winding_count(PROCESS, TRUE_PROCESS)
     loop = Loop(TRUE_PROCESS, PRINTED)

@@ -97,7 +97,6 @@ def evaluation() -> dict[str, float]:
 
 
 def _frame(setpoint_filter: float) -> pd.DataFrame:
-
     values = {**settings(drying_design()), "Tf": setpoint_filter, **evaluation()}
     return drying.frame(values)
 
