@@ -105,5 +105,4 @@ def margins() -> dict[str, float]:
 
 def rightmost_pole() -> float:
     """Return the rightmost zero of s (s + 1) + (k s + ki) e^{-s}, which is real here."""
-    f = lambda s: s * (s + 1) + (mp.mpf(K) * s + mp.mpf(KI)) * mp.exp(-s)  # noqa: E731
-    return float(mp.findroot(f, (-0.6, -0.65)))
+    return float(mp.findroot(lambda s: s * (s + 1) + (mp.mpf(K) * s + mp.mpf(KI)) * mp.exp(-s), (-0.6, -0.65)))

@@ -60,14 +60,14 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
-def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001  -- mkdocs names them
     """Turn links to files of the repository into links to pages, or into their text."""
     here = page.file.src_uri
     source = posixpath.dirname(DOCUMENTS.get(here, f"docs/{here}"))
     return _LINK.sub(lambda link: _relinked(link, source, posixpath.dirname(here)), markdown)
 
 
-def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001
+def on_page_content(html: str, page: Page, config: MkDocsConfig, files: Files) -> str:  # noqa: ARG001  -- mkdocs names them
     """Leave the formulas of docstrings as they are typed: what typesets them would have to be fetched."""
     return html.replace(":math:<code>", "<code>")
 

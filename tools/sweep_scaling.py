@@ -45,20 +45,20 @@ def seconds(address: str, loops: int, folder: Path, block: int = BLOCK) -> float
 def main(most: int) -> None:
     """Print the table."""
     sizes = [size for size in (10_000, 100_000, 1_000_000) if size <= most]
-    print("| loops | workers | s | µs per loop and worker |\n|---|---|---|---|")  # noqa: T201
+    print("| loops | workers | s | µs per loop and worker |\n|---|---|---|---|")
     for workers in (1, 2):
         with tempfile.TemporaryDirectory() as name, cluster(Path(name), workers) as running:
             seconds(running.address, 10_000 * workers, Path(name))  # the workers import what they need
             for size in sizes:
                 took = seconds(running.address, size, Path(name))
-                print(f"| {size:,} | {workers} | {took:.1f} | {took / size * workers * 1e6:.0f} |")  # noqa: T201
+                print(f"| {size:,} | {workers} | {took:.1f} | {took / size * workers * 1e6:.0f} |")
             if workers == 1:
                 large = seconds(running.address, 100_000, Path(name))
                 small = seconds(running.address, 100_000, Path(name), BLOCK // 10)
     blocks = 100_000 / BLOCK
     overhead = (small - large) / (9 * blocks)
     each = (large - blocks * overhead) / 100_000
-    print(  # noqa: T201
+    print(
         f"\n{each * 1e6:.0f} µs for a loop, {overhead * 1e3:.0f} ms for a block of any size: 10^9 loops in blocks of "
         f"{BLOCK:,} take {(each + overhead / BLOCK) * 1e9 / 3600:.0f} hours of one such core"
     )

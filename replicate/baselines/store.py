@@ -206,6 +206,8 @@ def _reading(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        raise FigureRecordError(f"{path}: cannot be read: {error.strerror or error}") from None  # noqa: EM102
+        msg = f"{path}: cannot be read: {error.strerror or error}"
+        raise FigureRecordError(msg) from None
     except UnicodeDecodeError:
-        raise FigureRecordError(f"{path}: is not UTF-8 text") from None  # noqa: EM102
+        msg = f"{path}: is not UTF-8 text"
+        raise FigureRecordError(msg) from None

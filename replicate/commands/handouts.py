@@ -22,7 +22,7 @@ def handout(
     solutions: Annotated[
         bool | None, typer.Option("--solutions/--no-solutions", help="Build one edition only; default: both.")
     ] = None,
-    format: Annotated[  # noqa: A002
+    file_format: Annotated[
         str,
         typer.Option(
             "--format", help="pdf, html, docx, tex, typ, ipynb, slides; for learning platforms moodle or qti."
@@ -106,7 +106,7 @@ def handout(
     words = language_of(language) if language else project.language if project else language_of()
     sheet = Sheet(title, date, read_points(points) if points else (), selected, words)
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
-    file_format = checked_format(format)
+    file_format = checked_format(file_format)
     chosen = with_handout(run.within.papers(given), all_needed=bool(given), file_format=file_format)
     class_options = {"--variants": variants, "--roster": roster, "--form": form, "--stress": stress}
     kinds = [name for name, value in class_options.items() if value is not None]

@@ -100,16 +100,16 @@ class RecordingRenderer(RendererBase):
             self.artists.pop()
             self._groups.pop()
 
-    def open_group(self, s: str, gid: str | None = None) -> None:  # noqa: ARG002, D102  -- matplotlib's own
+    def open_group(self, s: str, gid: str | None = None) -> None:
         self._groups[-1].append(s)
 
-    def close_group(self, s: str) -> None:  # noqa: ARG002, D102
+    def close_group(self, s: str) -> None:
         if self._groups[-1]:
             self._groups[-1].pop()
 
     # ------------------------------------------------------------------------------------- what is drawn
 
-    def draw_path(self, gc: Any, path: Any, transform: Any, rgbFace: Any = None) -> None:  # noqa: D102
+    def draw_path(self, gc: Any, path: Any, transform: Any, rgbFace: Any = None) -> None:
         if not self.recording:
             return
         artist = self.artists[-1] if self.artists else None
@@ -123,7 +123,7 @@ class RecordingRenderer(RendererBase):
             return
         self._add("path", gc, paths=[_moved(path, transform)], faces=_face(gc, rgbFace))
 
-    def draw_markers(  # noqa: D102
+    def draw_markers(
         self, gc: Any, marker_path: Any, marker_trans: Any, path: Any, trans: Any, rgbFace: Any = None
     ) -> None:
         if self.recording:
@@ -131,7 +131,7 @@ class RecordingRenderer(RendererBase):
             shape = [_moved(marker_path, marker_trans)]
             self._add("markers", gc, paths=shape, offsets=offsets, faces=_face(gc, rgbFace))
 
-    def draw_path_collection(  # noqa: D102
+    def draw_path_collection(
         self,
         gc: Any,
         master_transform: Any,
@@ -174,17 +174,17 @@ class RecordingRenderer(RendererBase):
             hatch_colours=() if hatchcolors is None else hatchcolors,
         )
 
-    def draw_quad_mesh(  # noqa: D102
+    def draw_quad_mesh(
         self,
         gc: Any,
         master_transform: Any,
         meshWidth: int,
         meshHeight: int,
         coordinates: Any,
-        offsets: Any,  # noqa: ARG002
-        offsetTrans: Any,  # noqa: ARG002
+        offsets: Any,
+        offsetTrans: Any,
         facecolors: Any,
-        antialiased: Any,  # noqa: ARG002
+        antialiased: Any,
         edgecolors: Any,
     ) -> None:
         if not self.recording:
@@ -194,13 +194,13 @@ class RecordingRenderer(RendererBase):
         colours = _colours(np.asarray(facecolors, dtype=float).reshape(-1, 4))
         self._add("mesh", gc, paths=shape, faces=colours, edges=_colours(edgecolors), size=(meshHeight, meshWidth))
 
-    def draw_gouraud_triangles(self, gc: Any, triangles_array: Any, colors_array: Any, transform: Any) -> None:  # noqa: D102
+    def draw_gouraud_triangles(self, gc: Any, triangles_array: Any, colors_array: Any, transform: Any) -> None:
         if self.recording:
             corners = np.asarray(triangles_array, dtype=float).reshape(-1, 2)
             colours = _colours(np.asarray(colors_array, dtype=float).reshape(-1, 4))
             self._add("triangles", gc, paths=[Path(_vertices(transform.transform(corners)))], faces=colours)
 
-    def draw_image(self, gc: Any, x: float, y: float, im: Any, transform: Any = None) -> None:  # noqa: D102
+    def draw_image(self, gc: Any, x: float, y: float, im: Any, transform: Any = None) -> None:
         if self.recording:
             height, width = im.shape[:2]
             corners: Array = np.array([[x, y], [x + width, y + height]], dtype=float)
@@ -208,7 +208,7 @@ class RecordingRenderer(RendererBase):
                 corners = np.asarray(transform.transform([[0.0, 0.0], [1.0, 1.0]])) + np.array([x, y])
             self._add("image", gc, corners=corners, image=np.asarray(im), edges=np.empty((0, 4)))
 
-    def draw_text(  # noqa: D102
+    def draw_text(
         self,
         gc: Any,
         x: float,
@@ -216,8 +216,8 @@ class RecordingRenderer(RendererBase):
         s: str,
         prop: Any,
         angle: float,
-        ismath: Any = False,  # noqa: ARG002
-        mtext: Any = None,  # noqa: ARG002
+        ismath: Any = False,
+        mtext: Any = None,
     ) -> None:
         if not self.recording or not s.strip():
             return
@@ -231,7 +231,7 @@ class RecordingRenderer(RendererBase):
                 return  # the next line of the same text
         self._add("text", gc, **found)
 
-    def draw_tex(self, gc: Any, x: float, y: float, s: str, prop: Any, angle: float, *, mtext: Any = None) -> None:  # noqa: D102
+    def draw_tex(self, gc: Any, x: float, y: float, s: str, prop: Any, angle: float, *, mtext: Any = None) -> None:
         self.draw_text(gc, x, y, s, prop, angle, mtext=mtext)
 
     def _add(self, kind: str, gc: GraphicsContextBase, **parts: Any) -> None:
@@ -259,19 +259,19 @@ class RecordingRenderer(RendererBase):
 
     # --------------------------------------------------------------------- what artists ask of a renderer
 
-    def get_canvas_width_height(self) -> tuple[float, float]:  # noqa: D102
+    def get_canvas_width_height(self) -> tuple[float, float]:
         return self.width, self.height
 
-    def points_to_pixels(self, points: Any) -> Any:  # noqa: D102
+    def points_to_pixels(self, points: Any) -> Any:
         return points * DPI / 72.0
 
-    def flipy(self) -> bool:  # noqa: D102
+    def flipy(self) -> bool:
         return False
 
-    def option_image_nocomposite(self) -> bool:  # noqa: D102
+    def option_image_nocomposite(self) -> bool:
         return True
 
-    def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> tuple[float, float, float]:  # noqa: ARG002, D102
+    def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> tuple[float, float, float]:
         size = self.points_to_pixels(prop.get_size_in_points())
         return _WIDTH * size * len(s), (_ASCENT + _DESCENT) * size, _DESCENT * size
 

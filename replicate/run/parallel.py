@@ -17,14 +17,14 @@ from typing import Protocol
 for _variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
-from replicate.errors import ReplicateError  # noqa: E402  -- after the environment is set, like the rest
-from replicate.exhibits import Exhibit, Paper  # noqa: E402
-from replicate.exhibits.results import Result, Results, TableResult, errors_of  # noqa: E402
-from replicate.run.cache import Cache  # noqa: E402
-from replicate.run.costs import Costs, user_folder  # noqa: E402
-from replicate.run.limits import UNIT_TIMEOUT  # noqa: E402
-from replicate.run.performance import Performance  # noqa: E402
-from replicate.run.units import Unit, units_of  # noqa: E402
+from replicate.errors import ReplicateError
+from replicate.exhibits import Exhibit, Paper
+from replicate.exhibits.results import Result, Results, TableResult, errors_of
+from replicate.run.cache import Cache
+from replicate.run.costs import Costs, user_folder
+from replicate.run.limits import UNIT_TIMEOUT
+from replicate.run.performance import Performance
+from replicate.run.units import Unit, units_of
 
 CACHE_DIR = Path("build/cache")
 

@@ -6,8 +6,8 @@ from replicate.run.isolation import isolate_matplotlib
 
 isolate_matplotlib()
 
-from replicate.run import performance  # noqa: E402  -- which may import matplotlib
-from replicate.run.modules import installed  # noqa: E402
+from replicate.run import performance  # which may import matplotlib
+from replicate.run.modules import installed
 
 __all__ = ["performance"]
 

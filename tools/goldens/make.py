@@ -18,11 +18,11 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests"))  # the reference formulas of the tests
 
-import mpmath as mp  # noqa: E402
-from case import DIGITS, Case, load  # noqa: E402
-from frequency import feedthrough, quantities  # noqa: E402
-from poles import Pole, poles  # noqa: E402
-from responses import Output, metrics  # noqa: E402
+import mpmath as mp
+from case import DIGITS, Case, load
+from frequency import feedthrough, quantities
+from poles import Pole, poles
+from responses import Output, metrics
 
 GOLDENS = ROOT / "replicate" / "loops" / "goldens.json"
 SIGNIFICANT = 16

@@ -40,7 +40,7 @@ def noise_response(controller: PID, t: Array, *, to: str) -> Array:
 def filtered(column: str) -> PID:
     """Return the controller of a column as the text describes it, with its filter."""
     filter_, controller = filters.by_the_text(column)
-    assert filter_ is not None  # noqa: S101  -- called for filtered columns only
+    assert filter_ is not None  # noqa: S101  -- only the design without a filter has none
     return filter_.on(controller)
 
 
@@ -109,7 +109,7 @@ def amplitudes(fig: Figure) -> None:
         axes.loglog(w, np.abs(c / (1.0 + c * G4(s))), color=color, linestyle=line, label=f"$N = {n}$")
         if n == 2:
             filter_, gains = filters.reconstructed(column)
-            assert filter_ is not None  # noqa: S101
+            assert filter_ is not None  # noqa: S101  -- only the design without a filter has none
             c = filter_.on(gains).feedback(s)
             axes.loglog(w, np.abs(c / (1.0 + c * G4(s))), color="C6", linestyle=":", linewidth=1.2, label="$N = 1$")
     for order, axes in enumerate(panels, start=1):

@@ -98,11 +98,11 @@ def _frame(
         peak = Resonance.of(loop_of(split(row)[0], c))
         wanted, bound = setpoint.weight_from_peak(c, peak), limit(c)
         time, full = filter_time(c, peak), full_filter(c, peak)
-        b = min(wanted, bound) if bound == bound else 0.0  # noqa: PLR0124  -- NaN
+        b = 0.0 if np.isnan(bound) else min(wanted, bound)
         rows[row] = {
             "b13": nan if np.isinf(wanted) else wanted,
             "b_limit": bound,
-            "peak14": weight_peak(c, bound) if bound == bound else weight_peak(c, 0.0),  # noqa: PLR0124
+            "peak14": weight_peak(c, 0.0 if np.isnan(bound) else bound),
             "Tsp": time,
             "gain16": nan if wanted > 0.0 else setpoint.setpoint_gain(c, peak, 0.0, time),
             "Tsp_b1": full,
