@@ -6,10 +6,12 @@ import csv
 import io
 import math
 import re
+from collections.abc import Iterable
 from importlib import import_module
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from scipy import integrate
 
 from replicate.exhibits.exercises import Exercises
@@ -148,6 +150,25 @@ def test_a_bode_plot_on_a_dense_grid_of_frequencies() -> None:
         assert found["phase margin"].value == pytest.approx(180.0 + np.interp(0.0, -decibels, phase), abs=0.01)
         assert found["Ms"].value == pytest.approx(1 / np.min(np.abs(1 + curve)), rel=1e-5)
         assert found["Ms"].accepts(10 ** ((20 * math.log10(found["Ms"].value) + 0.45) / 20))  # read off by 0.45 dB
+
+
+@pytest.mark.parametrize("form", range(4))
+def test_frequencies_of_a_bode_plot_are_named_at_one_two_and_five(form: int) -> None:
+    bode = variation("khan", "bode")
+    canvas = Figure()
+    bode.figures["bode"].draw(canvas, inputs=bode.drawn(f"{form}"))
+    axis = canvas.axes[1].xaxis
+    first, last = axis.get_view_interval()
+
+    def in_sight(places: Iterable[float]) -> list[float]:
+        return sorted(at for at in places if first <= at <= last)
+
+    labels = zip(axis.get_ticklocs(minor=True), axis.get_ticklabels(minor=True), strict=True)
+    named = {*axis.get_majorticklocs(), *(place for place, label in labels if label.get_text())}
+    expected = [mantissa * 10.0**power for power in range(-4, 4) for mantissa in (1, 2, 5)]
+    assert sorted(at for at in named if first <= at <= last) == pytest.approx(
+        [at for at in expected if first <= at <= last]
+    )
 
 
 @pytest.mark.parametrize("paper", ["khan", "panagopoulos"])

@@ -6,7 +6,8 @@ import hashlib
 import html
 import io
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
 
 import pandas as pd
 
@@ -17,6 +18,7 @@ from replicate.figures.record import Record
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
 
+Kind = Literal["svg", "png"]
 
 _HREF = re.compile(r"""\s(?:xlink:)?href\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _ADDRESS = re.compile(r"#|https?://|mailto:|data:image/(png|jpeg);base64,", re.IGNORECASE)
@@ -35,16 +37,10 @@ def svg_text(canvas: Canvas, title: str) -> str:
         return _svg(canvas, title)
 
 
-def png_bytes(canvas: Canvas) -> bytes:
-    """Return a drawn figure as a PNG on white, without versions."""
+def pictures(canvas: Canvas, title: str, kinds: Sequence[Kind]) -> tuple[bytes, ...]:
+    """Return a drawn figure as an SVG like `svg_text`'s, a PNG on white, or both for little more than one of them."""
     with laid_out(canvas):
-        return _png(canvas)
-
-
-def svg_and_png(canvas: Canvas, title: str) -> tuple[str, bytes]:
-    """Return what `svg_text` and `png_bytes` return, at the cost of little more than one of them."""
-    with laid_out(canvas):
-        return _svg(canvas, title), _png(canvas)
+        return tuple(_svg(canvas, title).encode() if kind == "svg" else _png(canvas) for kind in kinds)
 
 
 def _svg(canvas: Canvas, title: str) -> str:

@@ -41,19 +41,19 @@ class Artist:
         self._process.__exit__(kind, error, trace)
         self._thread.shutdown()
 
-    def order(self, wanted: Sequence[Wanted]) -> Callable[[Wanted], bytes]:
-        """Have pictures drawn, and return at once what gives one of them when it is done.
+    def order(self, wanted: Sequence[Wanted]) -> Callable[[Wanted], tuple[bytes, ...]]:
+        """Have pictures drawn, and return at once what gives those of one figure when they are done.
 
         The function returned raises `ReplicateError` if a picture cannot be drawn.
         """
         under_way = self._thread.submit(self._drawn, list(dict.fromkeys(wanted)))
         return lambda one: under_way.result()[one]
 
-    def _drawn(self, wanted: Sequence[Wanted]) -> dict[Wanted, bytes]:
+    def _drawn(self, wanted: Sequence[Wanted]) -> dict[Wanted, tuple[bytes, ...]]:
         return dict(zip(wanted, self._process.stream(pictures, *self._from, wanted), strict=True))
 
 
-def pictures(package: str, folders: tuple[Path, ...], wanted: Sequence[Wanted]) -> Iterator[bytes]:
+def pictures(package: str, folders: tuple[Path, ...], wanted: Sequence[Wanted]) -> Iterator[tuple[bytes, ...]]:
     """Yield pictures of the exercises of a paper and of folders."""
     variations = _variations(package, folders)
     return (one.drawn(variations) for one in wanted)

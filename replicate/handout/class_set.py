@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import islice
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from replicate.errors import PaperDefinitionError, TemplateError
 from replicate.exhibits import Paper
@@ -13,7 +13,7 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import Results
 from replicate.exhibits.variants import Variation
 from replicate.handout.artist import Artist
-from replicate.handout.drawings import Drawing, Kind, have_drawn
+from replicate.handout.drawings import Drawing, have_drawn
 from replicate.handout.edition import AT_ONCE, Document, editions, without_solutions
 from replicate.handout.form import Form
 from replicate.handout.formats import BANKS, EDITIONS, PICTURES, named
@@ -25,6 +25,9 @@ from replicate.handout.questions import Question, drawings_in, questions_of
 from replicate.handout.roster import file_stem
 from replicate.handout.sheet import Sheet
 from replicate.verdicts.rows import VerdictRow
+
+if TYPE_CHECKING:
+    from replicate.figures.off_screen import Kind
 
 
 @dataclass(frozen=True)

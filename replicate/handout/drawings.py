@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import partial
 from types import ModuleType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Figure
@@ -15,9 +15,8 @@ from replicate.exhibits.results import FigureResult
 from replicate.exhibits.variants import Variation
 
 if TYPE_CHECKING:
+    from replicate.figures.off_screen import Kind
     from replicate.handout.artist import Artist
-
-Kind = Literal["svg", "png"]
 
 
 @dataclass(frozen=True)
@@ -33,7 +32,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Wanted:
-    """A picture of the numbers of one form, in values that can be sent to a process.
+    """Pictures of the numbers of one form, in values that can be sent to a process.
 
     Attributes
     ----------
@@ -47,6 +46,8 @@ class Wanted:
         Inside an SVG.
     size
         In inches.
+    kinds
+        Of pictures; both together cost little more than one.
     """
 
     owner: str
@@ -56,17 +57,17 @@ class Wanted:
     draw: str
     title: str
     size: tuple[float, float]
-    kind: Kind
+    kinds: tuple[Kind, ...] = ()
 
-    def drawn(self, variations: Mapping[str, Variation]) -> bytes:
-        """Return the picture."""
+    def drawn(self, variations: Mapping[str, Variation]) -> tuple[bytes, ...]:
+        """Return the pictures, in the order of their kinds."""
         variation = variations[self.exercise]
         found = variation.figures[self.figure]
         inputs = variation.drawn(self.draw) if self.draw else variation.original
         draw = partial(found.draw, inputs=inputs)
         with said_by(f"figure('{self.figure}')"):
             figure = Figure(self.id, "figure", self.title, draw, alt=found.alt, size=self.size)
-            made: bytes = _drawing().picture(self.owner, figure, self.kind)
+            made: tuple[bytes, ...] = _drawing().drawn_as(self.owner, figure, self.kinds)
             return made
 
 
@@ -85,41 +86,48 @@ class DrawnLater(Drawing):
     """
 
     def __init__(self, wanted: Wanted, alt: str, width: float, variations: Mapping[str, Variation]) -> None:
-        draw: Callable[[Wanted], bytes] = lambda one: one.drawn(variations)  # noqa: E731
-        self.__dict__.update(name=wanted.figure, alt=alt, width=width, _wanted=wanted, _draw=draw)
+        self.__dict__.update(name=wanted.figure, alt=alt, width=width)  # the fields of a frozen class
+        self.wanted = wanted
+        self._draw: Callable[[Wanted], tuple[bytes, ...]] = lambda one: one.drawn(variations)
+        self._made: dict[Kind, bytes] = {}
 
-    @cached_property
+    @property
     def svg(self) -> str:
         """The vector drawing."""
-        return self._drawn("svg").decode()
+        return self.picture("svg").decode()
 
-    @cached_property
+    @property
     def png(self) -> bytes:
         """The picture."""
-        return self._drawn("png")
+        return self.picture("png")
 
-    def wanted(self, kind: Kind) -> Wanted:
-        """Return which picture it is."""
-        wanted: Wanted = self.__dict__["_wanted"]
-        return replace(wanted, kind=kind)
+    def want(self, kind: Kind) -> None:
+        """Have a kind of picture drawn together with the others that are wanted."""
+        if kind not in self.wanted.kinds:
+            self.wanted = replace(self.wanted, kinds=(*self.wanted.kinds, kind))
 
-    def drawn_by(self, draw: Callable[[Wanted], bytes]) -> None:
-        """Have what is not drawn yet drawn otherwise."""
-        self.__dict__["_draw"] = draw
+    def drawn_by(self, draw: Callable[[Wanted], tuple[bytes, ...]]) -> None:
+        """Have what is wanted drawn otherwise."""
+        self._draw = draw
 
-    def _drawn(self, kind: Kind) -> bytes:
-        made: bytes = self.__dict__["_draw"](self.wanted(kind))
-        return made
+    def picture(self, kind: Kind) -> bytes:
+        """Return what is wanted of a kind; it is drawn once."""
+        self.want(kind)
+        if kind not in self._made:
+            self._made.update(zip(self.wanted.kinds, self._draw(self.wanted), strict=True))
+        return self._made[kind]
 
 
 def have_drawn(pictures: Iterable[tuple[Drawing, Kind]], artist: Artist | None) -> None:
     """Have pictures drawn that vary: by an artist meanwhile, or now, while no other thread draws."""
     later = [(drawing, kind) for drawing, kind in pictures if isinstance(drawing, DrawnLater)]
+    for drawing, kind in later:
+        drawing.want(kind)
     if artist is None:
         for drawing, kind in later:
-            getattr(drawing, kind)  # it is kept
+            drawing.picture(kind)
         return
-    draw = artist.order([drawing.wanted(kind) for drawing, kind in later])
+    draw = artist.order([drawing.wanted for drawing, _ in later])
     for drawing, _ in later:
         drawing.drawn_by(draw)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from replicate.errors import ReplicateError
 
 if TYPE_CHECKING:
-    from replicate.handout.drawings import Kind
+    from replicate.figures.off_screen import Kind
     from replicate.handout.edition import Document
     from replicate.handout.questions import Question
 

@@ -43,5 +43,5 @@ def key_figures(variations: Mapping[str, Variation], forms: Mapping[str, Form], 
             heading = f"{variation.name}: {figure.title}"
             for student, form in forms.items():
                 id = f"{name}-{form.key}"
-                wanted = Wanted(f"{paper}-key", id, name, key, form.draw, heading, _SIZE, "svg")
+                wanted = Wanted(f"{paper}-key", id, name, key, form.draw, heading, _SIZE)
                 yield KeyFigure(heading, student, form, DrawnLater(wanted, figure.alt, 1.0, variations))

@@ -278,7 +278,7 @@ class Placing:
             figure = variation.figures.get(name)
             if figure is not None:
                 owner = f"{self.paper.id}-handout"
-                wanted = Wanted(owner, name, variation.name, name, self.form, figure.title, size or figure.size, "svg")
+                wanted = Wanted(owner, name, variation.name, name, self.form, figure.title, size or figure.size)
                 return DrawnLater(wanted, figure.alt, width, self.exercises.variations)
         return None
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import inspect
 import sys
-from collections.abc import Callable
-from typing import Any, Literal
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -18,7 +18,7 @@ from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
 from replicate.figures import capture as record_of
 from replicate.figures.limits import within_limits
-from replicate.figures.off_screen import curves_frame, png_bytes, svg_and_png, svg_text
+from replicate.figures.off_screen import Kind, curves_frame, pictures
 from replicate.figures.style import style
 
 
@@ -46,11 +46,11 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
         canvas = _drawn(exhibit)
         _check_drawn(canvas)
         record = record_of(canvas)
-        svg, png = svg_and_png(canvas, exhibit.title)
+        svg, png = pictures(canvas, exhibit.title, ("svg", "png"))
         return FigureResult(
             paper=paper,
             exhibit=exhibit.id,
-            svg=svg,
+            svg=svg.decode(),
             png=png,
             curves=curves_frame(record),
             axes=[dict(panel) for panel in record.panels],
@@ -94,8 +94,8 @@ def _bare(axes: Axes) -> bool:
     return all(artist in own or (isinstance(artist, Text) and not artist.get_text()) for artist in axes.get_children())
 
 
-def picture(paper: str, exhibit: Figure, kind: Literal["svg", "png"]) -> bytes:
-    """Draw a figure in one format only, without reading back what it shows; otherwise as `capture`.
+def drawn_as(paper: str, exhibit: Figure, kinds: Sequence[Kind]) -> tuple[bytes, ...]:
+    """Draw a figure without reading back what it shows; otherwise as `capture`.
 
     Raises
     ------
@@ -103,8 +103,7 @@ def picture(paper: str, exhibit: Figure, kind: Literal["svg", "png"]) -> bytes:
         Whatever the exhibit's own function raises.
     """
     with style(hashsalt=f"{paper}/{exhibit.id}"):
-        canvas = _drawn(exhibit)
-        return svg_text(canvas, exhibit.title).encode() if kind == "svg" else png_bytes(canvas)
+        return pictures(_drawn(exhibit), exhibit.title, kinds)
 
 
 def no_figure(paper: str, exhibit: str, error: str) -> FigureResult:

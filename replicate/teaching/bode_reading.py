@@ -123,8 +123,16 @@ def _draw(fig: Figure, inputs: Inputs) -> None:
     lower.semilogx(omega, np.degrees(np.unwrap(np.angle(curve))))
     lower.set(xlabel="frequency (rad per unit of time)", ylabel="phase (degrees)", ylim=(-240.0, -90.0))
     lower.set(xlim=(omega[0], omega[-1]), yticks=np.arange(-240, -89, 30))
+    lower.xaxis.set_major_formatter("{x:g}")
+    lower.xaxis.set_minor_formatter(_at_two_and_five)
     for axes, step in ((upper, 2), (lower, 10)):
         low, high = axes.get_ylim()
         axes.set_yticks(np.arange(low, high + 1, step), minor=True)
         axes.grid(visible=True, which="minor", linewidth=0.4)
         axes.grid(visible=True, linewidth=0.9)
+
+
+def _at_two_and_five(frequency: float, _: int | None) -> str:
+    """Return the label of a line between powers of ten; a label at each of them would touch the next."""
+    text = f"{frequency:g}"
+    return text if text.strip("0.") in {"2", "5"} else ""
