@@ -2,8 +2,8 @@
 
 The search asks of single points only: is the loop stable (winding of the characteristic function along the imaginary
 axis, Mikhailov's criterion), and do |S| and |T|, evaluated from their definitions on dense frequencies, keep their
-bounds? It scans a grid of (k, ki), then maximises over k by golden section the largest ki found by bisection. Nothing
-of the package is used but the design that is tested.
+bounds? It scans a grid of (k, ki), then maximises over k the largest ki, a root of the smallest margin over all
+frequencies. Nothing of the package is used but the design that is tested.
 
 Plants: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on non-convex optimization", Automatica 34
 (1998) 585-601, all of them, and some that are none of the paper's.
@@ -11,16 +11,19 @@ Plants: Astrom, Panagopoulos and Hagglund, "Design of PI controllers based on no
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq, minimize_scalar
 
 from replicate.loops import LoopError, Plant, design_pi, setpoint_weight
 
 TOLERANCE = 1e-8
+
+ZOOM = np.linspace(0.0, 1.0, 17)
 
 
 def poly(*factors: Sequence[float]) -> tuple[float, ...]:
@@ -110,6 +113,8 @@ class Bounds:
             center, radius = self.circle
             return np.abs(center + value) - radius
         to_point = np.abs(1.0 + value)
+        if np.isinf(self.mp):
+            return to_point - 1.0 / self.ms
         return np.asarray(np.minimum(to_point - 1.0 / self.ms, to_point - np.abs(value) / self.mp))
 
 
@@ -141,7 +146,7 @@ class Search:
     def keeps(self, k: float, ki: np.ndarray) -> np.ndarray:
         """Whether the bounds hold on all the frequencies, for one k and many ki: most fail on a few of them."""
         kept = np.ones(ki.size, dtype=bool)
-        for part in (slice(None, None, 16), slice(None)):
+        for part in (slice(None, None, 32), slice(None, None, 4), slice(None)):
             value = (k - 1j * ki[kept, None] / self.w[part]) * self.gain[part]
             kept[kept] = (self.bounds.margin(value) > 0.0).all(axis=1)
         return kept
@@ -155,64 +160,47 @@ class Search:
         turns = np.angle(np.concatenate([[function[0] / start], function[1:] / function[:-1]]))
         return start > 0.0 and abs(turns.sum()) < 0.5 * np.pi
 
-    def keeps_exactly(self, k: float, ki: float) -> bool:
-        """Whether the bounds hold between the frequencies too: every local minimum of the margin is zoomed into."""
+    def smallest_margin(self, k: float, ki: float) -> float:
+        """Return a margin that is positive only if it is between the frequencies too: local minima are zoomed into."""
         margin = self.bounds.margin((k - 1j * ki / self.w) * self.gain)
-        if margin.min() <= 0.0:
-            return False
+        smallest = float(margin.min())
+        if smallest <= 0.0:
+            return smallest
         low = np.nonzero((margin[1:-1] <= margin[:-2]) & (margin[1:-1] <= margin[2:]) & (margin[1:-1] < 0.02))[0] + 1
         for i in low:
-            left, right, inner = self.w[i - 1], self.w[i + 1], margin
+            left, right = self.w[i - 1], self.w[i + 1]
             for _ in range(4):
-                w = np.linspace(left, right, 33)
+                w = left + (right - left) * ZOOM
                 num, den = self.case.parts(1j * w)
                 inner = self.bounds.margin((k - 1j * ki / w) * num / den)
-                j = int(np.clip(np.argmin(inner), 1, 31))
+                j = min(max(int(inner.argmin()), 1), ZOOM.size - 2)
                 left, right = w[j - 1], w[j + 1]
-            if inner.min() <= 0.0:
-                return False
-        return True
+                smallest = min(smallest, float(inner[j]))
+        return smallest
 
 
 def scan(search: Search, gains: np.ndarray, integral: np.ndarray) -> dict[float, float]:
-    """Return for every k the largest ki of a grid that is stable and keeps the bounds, where there is one."""
+    """Return for every k the largest ki of a grid that is stable and keeps the bounds, where there is one.
+
+    No pole crosses the axis where the bounds are kept: among neighbours on the grid the largest speaks for all.
+    """
     found = {}
     for k in gains:
-        for ki in integral[search.keeps(k, integral)][::-1]:
-            if search.stable(k, ki):
-                found[float(k)] = float(ki)
-                break
+        kept = search.keeps(k, integral)
+        tops = integral[kept & ~np.append(kept[1:], False)]
+        top = next((float(ki) for ki in tops[::-1] if search.stable(k, ki)), None)
+        if top is not None:
+            found[float(k)] = top
     return found
 
 
 def highest(search: Search, k: float, around: float) -> float:
     """Return the largest stable ki that keeps the bounds at one k, to rounding, near a value known from the scan."""
     grid = around * np.linspace(0.6, 1.3, 57)
-    low = next((ki for ki in grid[::-1] if search.keeps_exactly(k, ki) and search.stable(k, ki)), 0.0)
-    high = low + (grid[1] - grid[0]) if low else 0.0
-    while high - low > 1e-12 * high:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if search.keeps_exactly(k, middle) else (low, middle)
-    return float(low)
-
-
-def golden_section(
-    function: Callable[[float], float], left: float, right: float, steps: int = 40
-) -> tuple[float, float]:
-    """Return (argument, value) of the maximum of a function with one maximum."""
-    ratio = 0.5 * (np.sqrt(5.0) - 1.0)
-    a, b = right - ratio * (right - left), left + ratio * (right - left)
-    fa, fb = function(a), function(b)
-    for _ in range(steps):
-        if fa > fb:
-            right, b, fb = b, a, fa
-            a = right - ratio * (right - left)
-            fa = function(a)
-        else:
-            left, a, fa = a, b, fb
-            b = left + ratio * (right - left)
-            fb = function(b)
-    return (a, fa) if fa > fb else (b, fb)
+    for low, high in zip(grid[::-1], [grid[-1] + (grid[1] - grid[0]), *grid[:0:-1]], strict=True):
+        if search.smallest_margin(k, low) > 0.0 and search.stable(k, low):
+            return float(brentq(lambda ki: search.smallest_margin(k, ki), low, high, xtol=1e-13 * low, rtol=1e-13))
+    return 0.0
 
 
 def brute_force(case: Case, bounds: Bounds, limits: tuple[float, float] = (-np.inf, np.inf)) -> tuple[float, float]:
@@ -231,7 +219,13 @@ def brute_force(case: Case, bounds: Bounds, limits: tuple[float, float] = (-np.i
     i = int(np.argmin(np.abs(gains - best)))
     left, right = gains[max(i - 1, 0)], gains[min(i + 1, gains.size - 1)]
     fine = Search(case, bounds, per_decade=250)
-    return golden_section(lambda k: highest(fine, k, tops[best]), left, right)
+    found = minimize_scalar(
+        lambda k: -highest(fine, k, tops[best]),
+        bounds=(left, right),
+        method="bounded",
+        options={"xatol": 1e-9 * (right - left)},
+    )
+    return float(found.x), -float(found.fun)
 
 
 @cache

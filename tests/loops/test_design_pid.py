@@ -69,6 +69,11 @@ class Search:
     def __post_init__(self) -> None:
         num, den, self.dead_time = PLANTS[self.name]
         self.num, self.den = np.asarray(num), np.asarray(den)
+        # s den + (kd s^2 + k s + ki) num is the characteristic polynomial
+        self.open_loop = np.append(self.den, 0.0)
+        self.fed_back = np.zeros((3, self.open_loop.size))
+        for row, end in zip(self.fed_back, (-2, -1, None), strict=True):
+            row[:end][-self.num.size :] = self.num
         corner = self.ultimate()[1]
         self.w = np.geomspace(0.02 * corner, 8.0 * corner, self.points)
         low, high = self.span
@@ -155,8 +160,7 @@ class Search:
     def stable(self, k: float, ki: float, kd: float) -> bool:
         if self.dead_time:
             return self.winds_once(k, ki, kd)
-        characteristic = np.polyadd(np.polymul([1.0, 0.0], self.den), np.polymul([kd, k, ki], self.num))
-        return bool(np.roots(characteristic).real.max() < 0.0)
+        return bool(np.roots(self.open_loop + np.array([kd, k, ki]) @ self.fed_back).real.max() < 0.0)
 
     def winds_once(self, k: float, ki: float, kd: float) -> bool:
         """Whether 1 + L turns by +90 degrees from rest to infinity, as for a stable loop with one integrator."""
@@ -186,7 +190,7 @@ class Search:
             mutation=(0.4, 1.0),
             popsize=popsize,
             maxiter=80,
-            tol=1e-9,
+            tol=1e-4,
             polish=False,
         )
         k, kd = (float(v) for v in found.x)
