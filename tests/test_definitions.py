@@ -9,12 +9,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import pandas as pd
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from replicate.errors import PaperDefinitionError
-from replicate.exhibits import Near, Paper
+from replicate.exhibits import Near, Paper, Table
+from replicate.exhibits.comparisons import bound, rank
 from replicate.exhibits.definitions import check_id
 
 Run = Callable[..., tuple[int, str, str]]
@@ -64,6 +67,14 @@ def with_reading(id: Any, **changes: Any) -> None:
     table = with_table().exhibits["table-1"]
     table.reading("as-written", "As written")(dict)  # type: ignore[union-attr]
     table.reading(id, **({"title": "R"} | changes))(dict)  # type: ignore[union-attr]
+
+
+def two_rows() -> Table:
+    return paper().table("table-1", "T", rows=("a", "b"), columns=("x", "y"))
+
+
+def with_ranking(**changes: Any) -> None:
+    rank(two_rows(), **({"quantity": "x", "cases": ("a", "b"), "says": "S"} | changes))
 
 
 def with_claim(id: Any, **changes: Any) -> None:
@@ -140,6 +151,29 @@ WRONG: list[tuple[Callable[[], object], str]] = [
     (lambda: paper(title=b"T"), "title is b'T' (bytes)"),
     (lambda: paper(year="2000"), "year is '2000'; expected: a whole number"),
     (lambda: paper(year=True), "year is True"),
+    (lambda: paper(year=-1), "year is -1; expected: a whole number, 1 to 9999"),
+    (lambda: with_table(printed="no"), "printed is 'no'; allowed: True, False"),
+    (lambda: with_table(kind=np.array(["table", "x"])), "kind is array(['table', 'x'], dtype='<U5'); allowed: 'table'"),
+    (lambda: with_table(rows=["a", ["b"]]), "an element of rows is ['b'] (list); expected: a text"),
+    (lambda: with_table(rows=np.array([1, 2])), "an element of rows is np.int64(1) (int64); expected: a text"),
+    (lambda: with_table(rows={"a"}), "rows is {'a'} (set); expected: a list of texts"),
+    (lambda: with_table(labels=False), "labels is False (bool); expected: texts by key"),
+    (lambda: with_table(spans=np.zeros(2)), "spans is array([0., 0.]) (ndarray); expected: by cell a list of others"),
+    (lambda: with_table(title=pd.Series([1, 2])), "title is 0 1 1 2 dtype: int64 (Series); expected: a text"),
+    (lambda: with_table(significant_digits=10**30), "significant_digits is 1" + "0" * 30 + "; expected: at most 100"),
+    (lambda: with_figure("fig-1", points="no"), "points is 'no'; allowed: True, False"),
+    (
+        lambda: with_chart("c", parameters=np.zeros(2)),
+        "parameters is array([0., 0.]) (ndarray); expected: texts by key",
+    ),
+    (lambda: with_chart("c", parameters={}), "chart 'c' has no parameters"),
+    (lambda: with_ranking(cases=None), "cases is missing; expected: a list of texts"),
+    (lambda: with_ranking(quantity=np.zeros(2)), "quantity is array([0., 0.]) (ndarray); expected: a text"),
+    (lambda: with_ranking(says=3), "says is 3 (int); expected: a text"),
+    (lambda: with_ranking(consequence="death"), "consequence is 'death'; allowed: 'none'"),
+    (lambda: bound(two_rows(), "x", ("a",), "S", above="1"), "above is '1' (str); expected: a number"),  # type: ignore[arg-type]
+    (lambda: bound(two_rows(), "x", (), "S", above=1.0), "a bound of no number says nothing"),
+    (lambda: two_rows().frame(3), "what holds the rows is 3 (int); expected: a dictionary"),  # type: ignore[arg-type]
     (lambda: paper(title="a\x1b[2J"), "title holds the character U+001B"),
     (lambda: paper(citation="1\u202e2"), "citation holds the character U+202E RIGHT-TO-LEFT OVERRIDE"),
     (lambda: with_table(rows="abc"), "rows is 'abc' (str); expected: a list of texts"),
@@ -192,6 +226,11 @@ WRONG: list[tuple[Callable[[], object], str]] = [
 def test_wrong_types_are_named(define: Callable[[], object], said: str) -> None:
     with pytest.raises(PaperDefinitionError, match=re.escape(said)):
         define()
+
+
+def test_rows_may_be_anything_that_has_an_order() -> None:
+    for rows in (["a", "b"], np.array(["a", "b"]), (key for key in "ab"), {"a": 1, "b": 2}):
+        assert paper().table("table-1", "T", rows=rows, columns=("x",)).rows == ("a", "b")  # type: ignore[arg-type]
 
 
 PLACES = [

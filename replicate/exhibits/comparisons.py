@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 from replicate.errors import PaperDefinitionError
 from replicate.exhibits.claims import Consequence
+from replicate.exhibits.definitions import as_keys, check_number, check_one_of, check_texts
 from replicate.exhibits.printed import Key
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def rank(table: Table, quantity: str, cases: Sequence[str], says: str, consequen
         If the table does not have such cells, or there are fewer than two.
     """
     cells = _cells(table, quantity, cases)
+    _check_words(table, says, consequence)
     if len(cells) < 2:
         msg = f"{table.id}: a ranking of {len(cells)} number says nothing; expected: two or more cases"
         raise PaperDefinitionError(msg)
@@ -136,16 +138,29 @@ def bound(
     PaperDefinitionError
         If the table does not have such cells, or no end is given.
     """
+    cells = _cells(table, quantity, cases)
+    _check_words(table, says, consequence)
+    if not cells:
+        msg = f"{table.id}: a bound of no number says nothing; expected: one case or more"
+        raise PaperDefinitionError(msg)
+    for name, end in (("above", above), ("below", below)):
+        check_number(f"{table.id}: bound", name, end)
     if math.isinf(above) and math.isinf(below):
         msg = f"{table.id}: a bound has no end; expected: above, below or both"
         raise PaperDefinitionError(msg)
-    table.comparisons.append(Bound(_cells(table, quantity, cases), says, above, below, consequence))
+    table.comparisons.append(Bound(cells, says, above, below, consequence))
 
 
 def _cells(table: Table, quantity: str, cases: Sequence[str]) -> tuple[Key, ...]:
-    cells = tuple(table.key(case, quantity) for case in cases)
+    check_texts(f"{table.id}: comparison", quantity=quantity)
+    cells = tuple(table.key(case, quantity) for case in as_keys(f"{table.id}: comparison", "cases", cases))
     for row, column in cells:
         if row not in table.rows or column not in table.columns:
             msg = f"{table.id}: there is no cell in row '{row}', column '{column}' to compare"
             raise PaperDefinitionError(msg)
     return cells
+
+
+def _check_words(table: Table, says: str, consequence: Consequence) -> None:
+    check_texts(f"{table.id}: comparison", says=says)
+    check_one_of(f"{table.id}: comparison", "consequence", consequence, get_args(Consequence))

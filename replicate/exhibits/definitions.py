@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Set
+from numbers import Real
 from typing import Any, NoReturn
 
 from replicate.errors import PaperDefinitionError
@@ -16,6 +17,8 @@ from replicate.plain_text import steering
 
 _ID = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9_.-]{0,98}[A-Za-z0-9_-])?", re.ASCII)
 _ALLOWED = "letters and digits first, then also '-', '_' and '.', at most 100 and no '.' at the end"
+
+_LAST_YEAR = 9999
 
 #: Names of a report's own pages, which no paper may have.
 PAGES = frozenset({"errata", "index", "methods", "search", "verdicts", "whatif"})
@@ -45,7 +48,7 @@ def check_id(what: str, id: object, others: Iterable[str] = ()) -> None:
     """
     if not isinstance(id, str) or not _ID.fullmatch(id):
         article = "an" if what[0] in "aeiou" else "a"
-        refuse(f"{id!r} is not an id of {article} {what}; allowed: {_ALLOWED}")
+        refuse(f"{shown(id)} is not an id of {article} {what}; allowed: {_ALLOWED}")
     for other in others:
         if other == id:
             refuse(f"{what} '{id}' is defined twice")
@@ -92,23 +95,25 @@ def check_lists(what: str, **lists: object) -> None:
     """
     for name, values in lists.items():
         if isinstance(values, str) or not isinstance(values, Sequence):
-            hint = f", as in ({values!r},)" if isinstance(values, str) else ""
+            hint = f", as in ({shown(values)},)" if isinstance(values, str) else ""
             refuse(f"{what}: {name} is {_typed(values)}; expected: a list of texts{hint}")
         for value in values:
             check_texts(what, **{f"an element of {name}": value})
 
 
 def as_keys(what: str, name: str, keys: Iterable[str]) -> tuple[str, ...]:
-    """Return keys as a tuple; a text would be taken for its letters.
+    """Return keys as a tuple of texts; a text would be taken for its letters, and a set has no order.
 
     Raises
     ------
     PaperDefinitionError
-        If they are a text, or nothing one can count.
+        If they are none that one can list.
     """
-    if isinstance(keys, str) or not isinstance(keys, Iterable):
+    if isinstance(keys, str | bytes | Set) or not isinstance(keys, Iterable):
         refuse(f"{what}: {name} is {_typed(keys)}; expected: a list of texts")
-    return tuple(keys)
+    listed = tuple(keys)
+    check_lists(what, **{name: listed})
+    return listed
 
 
 def check_mappings(what: str, **mappings: object) -> None:
@@ -124,6 +129,19 @@ def check_mappings(what: str, **mappings: object) -> None:
             refuse(f"{what}: {name} is {_typed(mapping)}; expected: texts by key")
         for key, text in mapping.items():
             check_texts(what, **{f"a key of {name}": key, f"{name} of '{key}'": text})
+
+
+def as_texts(what: str, name: str, mapping: object) -> dict[str, str]:
+    """Return a mapping from text to text as a dictionary of its own; nothing given is an empty one.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it is none.
+    """
+    if mapping is not None:
+        check_mappings(what, **{name: mapping})
+    return as_mapping(what, name, mapping)
 
 
 def as_mapping(what: str, name: str, mapping: object) -> dict[Any, Any]:
@@ -143,8 +161,32 @@ def as_mapping(what: str, name: str, mapping: object) -> dict[Any, Any]:
     return dict(mapping)
 
 
-def check_count(what: str, name: str, value: object) -> None:
-    """Check that a field is a whole number, 1 or more.
+def check_year(what: str, value: object) -> None:
+    """Check the year of a paper.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it is none.
+    """
+    if type(value) is not int or not 1 <= value <= _LAST_YEAR:
+        refuse(f"{what}: year is {shown(value)}; expected: a whole number, 1 to {_LAST_YEAR}")
+
+
+def check_number(what: str, name: str, value: object) -> None:
+    """Check that a field is a real number; it may be infinite.
+
+    Raises
+    ------
+    PaperDefinitionError
+        If it is not.
+    """
+    if isinstance(value, bool) or not isinstance(value, Real) or math.isnan(value):
+        refuse(f"{what}: {name} is {_typed(value)}; expected: a number")
+
+
+def check_count(what: str, name: str, value: object, most: int = 10**9) -> None:
+    """Check that a field is a whole number, 1 or more, and at most `most`.
 
     Raises
     ------
@@ -153,6 +195,8 @@ def check_count(what: str, name: str, value: object) -> None:
     """
     if not isinstance(value, int) or isinstance(value, bool) or value < 1:
         refuse(f"{what}: {name} is {_typed(value)}; expected: a whole number, 1 or more")
+    if value > most:
+        refuse(f"{what}: {name} is {shown(value)}; expected: at most {most}")
 
 
 def check_spans(what: str, spans: object) -> None:
@@ -180,8 +224,8 @@ def check_one_of(what: str, name: str, value: object, allowed: Sequence[object])
     PaperDefinitionError
         If it has not; the message lists them.
     """
-    if value not in allowed:
-        refuse(f"{what}: {name} is {value!r}; allowed: {', '.join(repr(one) for one in allowed)}")
+    if not any(isinstance(value, type(one)) and value == one for one in allowed):
+        refuse(f"{what}: {name} is {shown(value)}; allowed: {', '.join(repr(one) for one in allowed)}")
 
 
 def check_kind(what: str, name: str, value: object, kind: type) -> None:
@@ -206,7 +250,7 @@ def check_size(what: str, size: object) -> None:
     """
     fits = isinstance(size, Sequence) and not isinstance(size, str) and len(size) == 2
     if not fits or not all(isinstance(one, int | float) and math.isfinite(one) and one > 0 for one in size):  # type: ignore[attr-defined]
-        refuse(f"{what}: size is {size!r}; expected: width and height in inches, two positive numbers")
+        refuse(f"{what}: size is {shown(size)}; expected: width and height in inches, two positive numbers")
 
 
 def check_function(what: str, name: str, function: object) -> None:
@@ -227,4 +271,9 @@ def refuse(message: str) -> NoReturn:
 
 
 def _typed(value: object) -> str:
-    return "missing" if value is None else f"{value!r:.60} ({type(value).__name__})"
+    return "missing" if value is None else f"{shown(value)} ({type(value).__name__})"
+
+
+def shown(value: object) -> str:
+    """Return a value as Python writes it, on one short line."""
+    return f"{' '.join(repr(value).split()):.60}"

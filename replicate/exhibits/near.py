@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from replicate.exhibits.definitions import refuse
+from replicate.exhibits.definitions import refuse, shown
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Near:
         """Check what would make no sense as a distance."""
         for name, value in vars(self).items():
             if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value < math.inf:
-                refuse(f"near: {name} is {value!r}; expected: a number, 0 or more")
+                refuse(f"near: {name} is {shown(value)}; expected: a number, 0 or more")
 
 
 USUAL = Near()

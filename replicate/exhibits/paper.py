@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING, Literal
 from replicate.exhibits.claims import Claims
 from replicate.exhibits.definitions import (
     as_keys,
+    as_texts,
     check_id,
     check_lists,
-    check_mappings,
+    check_one_of,
     check_paper_id,
     check_texts,
+    check_year,
     refuse,
 )
 from replicate.exhibits.drawn import Chart, Figure, FigureKind
@@ -85,8 +87,7 @@ class Paper:
         what = f"paper '{self.id}'"
         check_texts(what, package=self.package, title=self.title, citation=self.citation, summary=self.summary)
         check_lists(what, authors=self.authors, modules=self.modules, numbered=self.numbered)
-        if type(self.year) is not int:
-            refuse(f"{what}: year is {self.year!r}; expected: a whole number")
+        check_year(what, self.year)
 
     def load(self) -> Paper:
         """Import the modules that define the exhibits (once), put all in the paper's order, return the paper itself.
@@ -164,7 +165,7 @@ class Paper:
         """
         return _printed_cells(self.package, exhibit)
 
-    def printed_numbers(self, exhibit: str) -> dict[tuple[str, str], float]:
+    def printed_numbers(self, exhibit: str) -> dict[Key, float]:
         """Return the printed cells of the table ``exhibit`` as numbers."""
         return {key: float(PrintedValue(cell).value) for key, cell in self.printed_cells(exhibit).items()}
 
@@ -210,25 +211,26 @@ class Paper:
         PaperDefinitionError
             If the id is taken, or a printed exhibit names no rows or columns.
         """
+        check_one_of(id, "printed", printed, (True, False))
+        rows, columns = as_keys(id, "rows", rows), as_keys(id, "columns", columns)
         if printed and not (rows and columns):
             refuse(f"{self.id}: {id} has printed values, so its row and column keys must be given")
-        check_mappings(id, labels=labels or {}, shared_labels=shared_labels or {})
-        own = {*as_keys(id, "rows", rows), *as_keys(id, "columns", columns)}
-        shared = {key: text for key, text in (shared_labels or {}).items() if key in own}
+        shared = as_texts(id, "shared_labels", shared_labels)
+        own = {key: text for key, text in shared.items() if key in (*rows, *columns)}
         exhibit = Table(
             id,
             kind,
             title,
             caption,
-            as_keys(id, "rows", rows),
-            as_keys(id, "columns", columns),
-            {**shared, **(labels or {})},
-            units or {},
+            rows,
+            columns,
+            own | as_texts(id, "labels", labels),
+            as_texts(id, "units", units),
             significant_digits,
             printed,
             notation=notation,
             near=near,
-            spans=spans or {},
+            spans={} if spans is None else spans,
             depends=self._declared(id, depends),
             cases=cases,
         )
@@ -266,6 +268,7 @@ class Paper:
         PrintedFileError
             If the file of points is missing or malformed.
         """
+        check_one_of(id, "points", points, (True, False))
 
         def register(draw: Callable[[MatplotlibFigure], None]) -> Callable[[MatplotlibFigure], None]:
             needs = self._declared(id, depends)
@@ -291,12 +294,7 @@ class Paper:
         return register
 
     def chart(
-        self,
-        id: str,
-        title: str,
-        *,
-        parameters: dict[str, str],
-        size: tuple[float, float] = (6.4, 4.0),
+        self, id: str, title: str, *, parameters: dict[str, str], size: tuple[float, float] = (6.4, 4.0)
     ) -> Callable[[Callable[..., None]], Callable[..., None]]:
         """Register the decorated function as a chart; it draws on an empty figure, given the parameters by name.
 
@@ -311,11 +309,12 @@ class Paper:
             If there is a chart of that name, or no parameter.
         """
         check_id("chart", id, self.charts)
-        if not parameters:
+        named = as_texts(f"chart '{id}'", "parameters", parameters)
+        if not named:
             refuse(f"{self.id}: chart '{id}' has no parameters")
 
         def register(draw: Callable[..., None]) -> Callable[..., None]:
-            self.charts[id] = Chart(id, title, draw, parameters, size)
+            self.charts[id] = Chart(id, title, draw, named, size)
             return draw
 
         return register

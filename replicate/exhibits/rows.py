@@ -7,6 +7,7 @@ from datetime import date
 from typing import TYPE_CHECKING
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.definitions import as_mapping
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -36,9 +37,10 @@ def frame_of_rows(
     """
     import pandas as pd
 
-    keys = list(row_keys or rows)
-    _expect_all(table, rows, keys)
-    cells = {key: _cells(rows[key]) for key in keys}
+    keyed = as_mapping(table, "what holds the rows", rows)
+    keys = list(row_keys or keyed)
+    _expect_all(table, keyed, keys)
+    cells = {key: _cells(keyed[key]) for key in keys}
     given = dict.fromkeys(column for row in cells.values() if isinstance(row, Mapping) for column in row)
     columns = list(column_keys or given)
     for key, row in cells.items():

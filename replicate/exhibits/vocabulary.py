@@ -44,6 +44,8 @@ from replicate.exhibits.trials import ComputedTrial, Trials
 if TYPE_CHECKING:
     import pandas as pd
 
+_MOST_DIGITS = 100
+
 TableKind = Literal["table", "example", "formula"]
 
 
@@ -130,7 +132,7 @@ class Table:
         check_mappings(what, labels=self.labels, units=self.units)
         check_kind(what, "near", self.near, Near)
         if self.significant_digits is not None:
-            check_count(what, "significant_digits", self.significant_digits)
+            check_count(what, "significant_digits", self.significant_digits, _MOST_DIGITS)
         check_spans(what, self.spans)
         if not isinstance(self.notation, Mapping):
             check_kind(what, "notation", self.notation, Notation)

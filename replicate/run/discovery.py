@@ -30,6 +30,8 @@ from replicate.run.limits import IMPORT_TIMEOUT
 ENTRY_POINTS = "replicate.papers"
 _HERE = {__file__, alarm.__file__, exits.__file__}
 _PAPER = str(inspect.getsourcefile(Paper))
+_CORE = str(Path(_PAPER).parents[1])
+_BUNDLED = str(Path(_CORE, "papers"))
 _STANDARD, _SITE = sysconfig.get_path("stdlib"), "site-packages"
 
 
@@ -136,7 +138,7 @@ def importing(what: str) -> Iterator[None]:
 def _raised_at(frames: list[traceback.FrameSummary], error: BaseException) -> tuple[str, int] | None:
     """Return file and line where an import failed: for a listed module that does not exist, the line that lists it."""
     outside = [frame for frame in frames if not frame.filename.startswith("<") and not _is_standard(frame.filename)]
-    own = [frame for frame in outside if _SITE not in frame.filename] or outside
+    own = [frame for frame in outside if _SITE not in frame.filename and not _is_core(frame.filename)] or outside
     place = (own[-1].filename, own[-1].lineno or 0) if own else None
     if isinstance(error, ModuleNotFoundError) and error.name and (place is None or place[0] == _PAPER):
         package, _, module = error.name.rpartition(".")
@@ -147,6 +149,10 @@ def _raised_at(frames: list[traceback.FrameSummary], error: BaseException) -> tu
             listed = (number for number, line in enumerate(lines, 1) if quoted.search(line))
             return file, next(listed, 1)
     return place
+
+
+def _is_core(file: str) -> bool:
+    return file.startswith(_CORE) and not file.startswith(_BUNDLED)
 
 
 def _is_standard(file: str) -> bool:
