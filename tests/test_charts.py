@@ -72,6 +72,7 @@ def test_what_is_wrong_with_the_parameters_is_said(paper: Paper, arguments: list
 def test_files(paper: Paper, tmp_path: Path) -> None:
     chart, values = find_chart(paper), {"rate": 0.5, "until": 3.0}
     assert file_name(paper, chart, values) == "lab-decay-rate-0.5-until-3.svg"
+    assert file_name(paper, chart, values | {"rate": 0.12345678}) == "lab-decay-rate-0.12345678-until-3.svg"
     svg, again, png = (tmp_path / "new" / name for name in ("a.svg", "b.svg", "a.png"))
     (tmp_path / "new").mkdir()
     for path in (svg, again, png):

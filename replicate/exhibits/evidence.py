@@ -64,11 +64,19 @@ def share(flags: Iterable[bool]) -> Share:
     flags
         For each member, whether it keeps the claim.
 
+    Raises
+    ------
+    ValueError
+        If the list is empty: of nothing, anything holds.
+
     Examples
     --------
     >>> share([True, False, True])
     Share(verdict='holds-partly', kept=2, total=3)
     """
     known = list(flags)
+    if not known:
+        msg = "there is nothing to judge: the list is empty"
+        raise ValueError(msg)
     kept = sum(known)
     return Share("holds" if kept == len(known) else "holds-partly" if kept else "fails", kept, len(known))

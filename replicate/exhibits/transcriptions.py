@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from replicate.exhibits.printed import Key, Transcription, read_transcription
+from replicate.exhibits.printed import Transcription, read_transcription
 
 
 def differences(one: Path, other: Path) -> tuple[list[str], int]:
@@ -24,7 +24,9 @@ def differences(one: Path, other: Path) -> tuple[list[str], int]:
     """
     first, second = read_transcription(one), read_transcription(other)
     lines = [*_missing(one, first, other, second), *_missing(other, second, one, first)]
-    common = [key for key in _keys(first) if key in _keys(second)]
+    rows = [row for row in first.lines if row in second.lines]
+    columns = [column for column in first.columns if column in second.columns]
+    common = [(row, column) for row in rows for column in columns]
     for row, column in common:
         texts = first.cells.get((row, column), ""), second.cells.get((row, column), "")
         if texts[0] != texts[1]:
@@ -34,10 +36,6 @@ def differences(one: Path, other: Path) -> tuple[list[str], int]:
     if not lines and (first.columns != second.columns or list(first.lines) != list(second.lines)):
         lines.append(f"{one} and {other}: rows or columns are in another order")
     return lines, len(common)
-
-
-def _keys(table: Transcription) -> dict[Key, None]:
-    return dict.fromkeys((row, column) for row in table.lines for column in table.columns)
 
 
 def _missing(one: Path, first: Transcription, other: Path, second: Transcription) -> list[str]:

@@ -91,7 +91,8 @@ def _number(key: str, text: str) -> float:
 
 def file_name(paper: Paper, chart: Chart, values: Mapping[str, float]) -> str:
     """Return a name made of paper, chart and parameters, for example ``lab-nyquist-gain-2.5.svg``."""
-    settings = "".join(f"-{key}-{values[key]:g}" for key in chart.parameters)
+    # All digits: charts of two values must not go by one name.
+    settings = "".join(f"-{key}-{repr(values[key]).removesuffix('.0')}" for key in chart.parameters)
     return f"{paper.id}-{chart.id}{settings}.svg"
 
 
