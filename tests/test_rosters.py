@@ -38,6 +38,11 @@ def test_a_roster_of_many_scripts() -> None:
         ("name\nA\u202edA\n", "", "r.csv:2: holds the character U.202E"),
         ("Group 2026,,\nname,mail,x\nAda,a,1\n", "", "r.csv:1: 'Group 2026' is a title, not the names of the columns"),
         ("Group 2026\nname,mail\nAda,a\n", "", "r.csv:2: has 2 cells, more than the 1 columns that the first line"),
+        (
+            ",Students,,Marks,\nid,first,last,1,2\n7,Ada,L,3,4\n",
+            "",
+            "r.csv:1: column 3 has no name; name it, or",
+        ),
         ("name,mail\nLovelace, Ada,a\n", "", "r.csv:2: has 3 cells, .* is a quotation mark missing"),
         ("name\nA\0B\n", "", "r.csv:2: holds the character U.0000"),
     ],
@@ -70,6 +75,7 @@ def test_long_names_that_differ_at_their_end_name_two_sheets(tmp_path: Path) -> 
         "name;x\nAda;1\nZoë;2".encode("utf-32-le"),
         b"\r\nname\tx\r\n\r\nAda\t1\r\nZo\xc3\xab\t2",
         b'"name","x"\rAda,"1\r2"\rZo\xc3\xab',
+        'name;"a, b, c"\nAda;1\nZoë;2\n'.encode(),
     ],
 )
 def test_a_roster_as_spreadsheets_save_it(tmp_path: Path, content: bytes) -> None:

@@ -13,6 +13,7 @@ from unicodedata import category
 from replicate.errors import ReplicateError
 from replicate.plain_text import read_text
 
+_QUOTED = re.compile(r'"[^"]*"')
 _UNSAFE = re.compile(r'[<>:"/\\|?*]')  # in a file's name, on some system
 _LONGEST = 150  # bytes of a name, so that its file's name fits any system
 _SHOWN = 60  # letters of a name in a message
@@ -76,7 +77,7 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     head = text.splitlines()[0] if text.strip() else ""
     skipped = 1 if re.fullmatch(r'"?sep=[,;\t]"?', head.strip()) else 0  # what a spreadsheet may write first
     text = "\n" * skipped + text.partition("\n")[2] if skipped else text
-    head = next((line for line in text.splitlines() if line.strip()), "")
+    head = _QUOTED.sub("", next((line for line in text.splitlines() if line.strip()), ""))
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=max(",;\t", key=head.count), strict=True)
     try:
         found = [(rows.line_num, row) for row in rows if any(cell.strip() for cell in row)]
@@ -95,6 +96,11 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     columns = [name.strip() for name in names]
     if len(columns) > 1 and not any(columns[1:]):
         msg = f"{path.name}:{number}: '{_short(columns[0])}' is a title, not the names of the columns; remove the line"
+        raise ReplicateError(msg)
+    unnamed = [place for place, name in enumerate(columns) if place and not name and any(columns[place:])]
+    if unnamed:  # the first column may be an index, and those at the end may be empty
+        why = "name it, or remove the line if it holds heads of several columns each"
+        msg = f"{path.name}:{number}: column {unnamed[0] + 1} has no name; {why}"
         raise ReplicateError(msg)
     for number, row in lines:
         if any(cell.strip() for cell in row[len(columns) :]):
