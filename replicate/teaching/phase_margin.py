@@ -19,6 +19,10 @@ def phase_margin(degrees: float, tolerance: float) -> Answer:
         degrees,
         unit="degrees",
         tolerance=tolerance,
-        mistakes={"angle from the positive axis": 180.0 - degrees, "radians": math.radians(degrees)},
+        mistakes={
+            "angle from the positive axis": 180.0 - degrees,
+            "angle from the imaginary axis": 90.0 - degrees,
+            "radians": math.radians(degrees),
+        },
         asked="phase margin",
     )
