@@ -17,7 +17,7 @@ from replicate.handout import handouts
 from replicate.new_paper import new_paper
 from replicate.run.library import Library
 from replicate.run.outcome import recompute
-from replicate.verdicts.ledger import CAUSES
+from replicate.verdicts.causes import CAUSES
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"

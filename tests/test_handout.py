@@ -312,7 +312,7 @@ def test_formulas_are_said_in_words() -> None:
 
 @pytest.mark.parametrize(
     ("tex", "spaces"),
-    [(r"\ln 10", 1), (r"2\sin\omega", 2), (r"\cosh(x)", 0), (r"K\cosh(x)", 1), (r"\max_\omega S", 0), ("K h", 0)],
+    [(r"\ln 10", 1), (r"2\sin\omega", 2), (r"\cosh(x)", 0), (r"K\cosh(x)", 1), (r"\max_\omega S", 1), ("K h", 0)],
 )
 def test_names_of_functions_stand_apart(tex: str, spaces: int) -> None:
     ((_, found),) = convert([(False, tex)]).items()

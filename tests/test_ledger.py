@@ -6,7 +6,8 @@ import pytest
 import synthetic
 
 from replicate.errors import LedgerError
-from replicate.verdicts.ledger import CAUSES, Ledger, LedgerEntry
+from replicate.verdicts.causes import CAUSES
+from replicate.verdicts.ledger import Ledger, LedgerEntry
 
 ENTRY = """
 [[entry]]

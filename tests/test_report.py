@@ -313,7 +313,11 @@ def test_a_short_text_is_never_a_block(text: str) -> None:
     ("tex", "shown"),
     [
         ("2\\ln 10", "2_ln_10"), ("d\\arg L/d\\ln x^2", "d_arg_L/d_ln_x2"), ("-\\cos m", "−cos_m"),
-        ("\\frac{1}{p}\\sin(x)", "1p_sin(x)"), ("\\min_w f", "minwf"),
+        ("\\frac{1}{p}\\sin(x)", "1p_sin(x)"), ("\\min_w f", "minw_f"), ("\\tfrac12\\ln x", "12_ln_x"),
+        ("(a+b)\\ln|x|", "(a+b)_ln_|x|"), ("|a|\\ln\\sin x", "|a|_ln_sin_x"), ("2\\sin^2 x", "2_sin2_x"),
+        ("\\bar a\\log_{10}\\tfrac12", "a‾_log10_12"), ("\\sqrt 2\\operatorname{Re} z", "2_Re_z"),
+        ("a/\\ln x", "a/ln_x"), ("\\left(a\\right)\\ln\\left(b\\right)", "(a)_ln(b)"),
+        ("\\frac{2\\ln x}{y}", "2_ln_xy"), ("|\\ln x|", "|ln_x|"),
     ],
 )  # fmt: skip
 def test_functions_stand_apart_in_formulas(tex: str, shown: str) -> None:

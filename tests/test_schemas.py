@@ -27,7 +27,7 @@ from replicate.resources import schemas, templates_dir
 from replicate.run import project as projects
 from replicate.sweeps import sweep_file
 from replicate.verdicts import ledger as ledgers
-from replicate.verdicts.ledger import Cause
+from replicate.verdicts.causes import CAUSES, Cause
 from replicate.verdicts.rows import ValueVerdict
 
 ROOT = Path(__file__).parent.parent
@@ -139,7 +139,7 @@ def test_a_schema_knows_the_fields_that_are_read() -> None:
     entry = json.loads(schemas()["ledger"])["$defs"]["entry"]
     assert tuple(entry["properties"]) == ledgers._REQUIRED + ledgers._OPTIONAL
     assert tuple(entry["required"]) == ledgers._REQUIRED
-    assert tuple(entry["properties"]["cause"]["enum"]) == ledgers.CAUSES
+    assert tuple(entry["properties"]["cause"]["enum"]) == tuple(CAUSES)
     assert tuple(json.loads(schemas()["project"])["properties"]) == projects._KEYS
     sweep = json.loads(schemas()["sweep"])["properties"]
     assert tuple(sweep) == sweep_file._KEYS

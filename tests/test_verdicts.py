@@ -279,7 +279,7 @@ def test_nothing_computed(nothing: object) -> None:
         "table",
         "Numbers",
         "partly",
-        "1 of 4 printed values cannot be computed (unavailable)",
+        "1 of 4 printed values cannot be computed (inputs not given)",
     )
 
 

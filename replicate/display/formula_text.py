@@ -1,14 +1,16 @@
-"""A formula as characters in one line, for where no element can stand: a name, a cell of a CSV."""
+"""A formula of a page as characters in one line, for where no element can stand: a description, what is copied.
+
+It is read from the MathML of the page. Labels of the data and of drawings are no part of a page that pandoc converts,
+and say "K_P", as whoever plots them would type; here, an index is set beside its letter.
+"""
 
 from __future__ import annotations
 
-import re
 from xml.etree import ElementTree as ET
 
+from replicate.display.function_names import OPERATORS
 from replicate.display.numbers import OVERLINE
 
-#: Invisible operators: application of a function, times, separator, plus.
-OPERATORS = re.compile("[\u200b\u2061-\u2064]")
 _PRIMES = set("′″‴*")
 _ENDS = {",", ".", ";"}
 _BARS = {"¯", "‾", "_"}
@@ -43,6 +45,10 @@ def formula_text(element: ET.Element) -> str:
             text = _raised(*parts)
         case "msubsup":
             text = _raised(f"{parts[0]}{parts[1]}", parts[2])
+        case "mtr":
+            text = ", ".join(parts)
+        case "mtable":
+            text = "; ".join(parts)
         case "mover" if parts[1] in _BARS:
             text = f"{parts[0]}{OVERLINE}"
     return text

@@ -6,18 +6,13 @@ import html
 import re
 from xml.etree import ElementTree as ET
 
-from replicate.display.formula_text import OPERATORS, formula_text
+from replicate.display.formula_text import formula_text
+from replicate.display.function_names import OPERATORS, functions_apart, markup, references
 
 _FORMULA = re.compile(
     r'<math display="(block|inline)"><semantics>(.*?)<annotation[^>]*>(.*?)</annotation></semantics></math>', re.DOTALL
 )
-_FUNCTION = re.compile(
-    "(?P<factor>(?<!−)</mi>|</mn>|</m(?:sub|sup|frac)>)?(?<!<msub>)(?<!<munder>)"
-    '<mrow>(?P<name><mi mathvariant="normal">[a-z]+</mi><mo>(?:\N{FUNCTION APPLICATION}|&#8289;)</mo>)</mrow>'
-    "(?P<argument><m(?:i|n|sub|sup|frac|sqrt|root)\\b)?"
-)
-_BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space)\\b")
-_THIN = '<mspace width="0.167em"></mspace>'
+_BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space|table)\\b")
 _LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
 _VERY_LONG = 34
 _BREAKS = {"=", "≤", "≥", "<", ">", "≈", "≠", "→", "+", "−"}  # a line may break before these, as in a printed text
@@ -26,10 +21,9 @@ _BREAKS = {"=", "≤", "≥", "<", ">", "≈", "≠", "→", "+", "−"}  # a li
 def formulas(text: str) -> str:
     r"""Return pandoc's HTML with its formulas made fit for a page.
 
-    A third of the elements of a page would only carry TeX. Names of functions stand apart from what is beside them,
-    which browsers do not see to; invisible operators are written as references, since a page shows such characters
-    where they are raw. A displayed formula that may be too wide for a phone scrolls, so the keyboard has to reach it;
-    one in a line is cut before its outer relations and signs, since a browser does not break a formula.
+    A third of the elements of a page would only carry TeX. A displayed formula that may be too wide for a phone
+    scrolls, so the keyboard has to reach it; one in a line is cut before its outer relations and signs, since a browser
+    does not break a formula.
 
     Examples
     --------
@@ -38,7 +32,7 @@ def formulas(text: str) -> str:
     >>> formulas(f'<math display="inline"><semantics><mrow>{math}</mrow>{tex}</semantics></math>').count("<math")
     3
     """
-    return _FORMULA.sub(lambda found: OPERATORS.sub(_reference, _formula(found)), text)
+    return _FORMULA.sub(lambda found: references(_formula(found)), functions_apart(text))
 
 
 def without_operators(text: str) -> str:
@@ -52,24 +46,8 @@ def without_operators(text: str) -> str:
     return OPERATORS.sub(" ", text)
 
 
-def functions_apart(mathml: str) -> str:
-    r"""Set the names of functions in MathML of pandoc apart from what is beside them.
-
-    Examples
-    --------
-    >>> functions_apart('<mrow><mi mathvariant="normal">ln</mi><mo>\u2061</mo></mrow><mn>10</mn>').count("<mspace")
-    1
-    """
-    return _FUNCTION.sub(_apart, mathml)
-
-
-def _reference(match: re.Match[str]) -> str:
-    return f"&#{ord(match[0])};"
-
-
 def _formula(match: re.Match[str]) -> str:
     display, content, tex = match.groups()
-    content = functions_apart(content)
     long = len(html.unescape(tex)) > _LONG[display]
     if display == "inline" and long:
         inside = 1 if len(html.unescape(tex)) > _VERY_LONG else 0
@@ -87,12 +65,6 @@ def _element(content: str, attributes: str) -> str:
     return f"<math {attributes}{said}>{content}</math>"
 
 
-def _apart(match: re.Match[str]) -> str:
-    """Set a function apart from a factor before it and from an argument without brackets."""
-    factor, name, argument = match.groups("")
-    return f"{factor}{_THIN if factor else ''}<mrow>{name}</mrow>{_THIN if argument else ''}{argument}"
-
-
 def _pieces(content: str, inside: int) -> list[str]:
     """Cut a formula before its relations and signs outside fractions and roots, and in at most so many brackets."""
     row = ET.fromstring(content)  # noqa: S314 -- pandoc's, and sanitised
@@ -107,4 +79,4 @@ def _pieces(content: str, inside: int) -> list[str]:
             part.set("form", "infix")  # at the start of a piece, it would be taken for a sign before a number
             pieces.append([])
         pieces[-1].append(part)
-    return [f"<mrow>{''.join(ET.tostring(part, encoding='unicode') for part in piece)}</mrow>" for piece in pieces]
+    return [f"<mrow>{markup(piece)}</mrow>" for piece in pieces]

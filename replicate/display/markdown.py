@@ -40,6 +40,7 @@ _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 _VERBATIM = re.compile(r"(<(?:code|pre|math)\b.*?</(?:code|pre|math)>|<[^>]*>)", re.DOTALL)
 _SAID = re.compile(r'<math [^>]*?alttext="([^"]*)"[^>]*>.*?</math>', re.DOTALL)
+_PER_CENT = re.compile(r"(?<=\d)%(?!\w)")
 _MARKS = re.compile("[\ue000-\ue007]")
 
 #: Rooms of the framework whose code has texts converted, and what converts them: what a `Keep` of them looks at.
@@ -135,7 +136,7 @@ class MarkdownBatch:
             raise TemplateError(msg) from error
         # Every block has its own list of footnotes, and pandoc gives all of them the same id.
         document = sanitised(document).replace(' id="footnotes"', "")
-        document = _with_minus_signs(formulas(document))
+        document = _typeset(formulas(document))
         parts = _MARKER.split(document)
         texts = dict(zip(map(int, parts[1::2]), parts[2::2], strict=True))
         for text, number in self._texts.items():
@@ -169,16 +170,18 @@ def _not_a_block(text: str) -> str:
     return re.sub(r"^\s*([-+*#>|:]+\s)", r"\\\1", text)
 
 
-def _with_minus_signs(document: str) -> str:
-    """Return HTML in which numbers of the text, but not of code, addresses and formulas, have minus signs.
+def _typeset(document: str) -> str:
+    """Return HTML whose numbers, but not those of code, addresses and formulas, have minus signs and stand off a "%".
 
     Examples
     --------
-    >>> _with_minus_signs('<a href="x-1 -1">at -1</a> <code>a -1</code>')
+    >>> _typeset('<a href="x-1 -1">at -1</a> <code>a -1</code>')
     '<a href="x-1 -1">at −1</a> <code>a -1</code>'
+    >>> _typeset('5% of <code>5%</code>')
+    '5\N{NO-BREAK SPACE}% of <code>5%</code>'
     """
     parts = _VERBATIM.split(document)
-    parts[::2] = [minus_signs(part) for part in parts[::2]]
+    parts[::2] = [_PER_CENT.sub("\N{NO-BREAK SPACE}%", minus_signs(part)) for part in parts[::2]]
     return "".join(parts)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from replicate.display import numbers
@@ -219,7 +219,7 @@ def table_view(table: Table, result: TableResult, verdicts: Iterable[VerdictRow]
     first = next(iter(frames.values()), None)
     rows = list(table.rows) or ([] if first is None else list(first.rows))
     columns = list(table.columns) or ([] if first is None else list(first.columns))
-    notes = _notes(by_cell.values())
+    notes = _notes(by_cell.values(), columns)
     note_of = {where: note.number for note, cells in notes for where in cells}
     cells = {
         (row, column): _cell(table, result, frames, (row, column), by_cell.get((row, column)))
@@ -315,7 +315,7 @@ def _texts(cell: Cell) -> list[str]:
     return [cell.printed, *(value.text for value in cell.values if value.full)]
 
 
-def _notes(verdicts: Iterable[VerdictRow]) -> list[tuple[Note, list[Key]]]:
+def _notes(verdicts: Iterable[VerdictRow], columns: Sequence[str]) -> list[tuple[Note, list[Key]]]:
     """Return the explanations of cells that do not hold, each once, numbered in the order of the table."""
     groups: dict[tuple[str, str, str, str], list[VerdictRow]] = {}
     for verdict in verdicts:
@@ -331,7 +331,7 @@ def _notes(verdicts: Iterable[VerdictRow]) -> list[tuple[Note, list[Key]]]:
         for row, column in keys:
             by_row.setdefault(row, []).append(column)
             by_column.setdefault(column, []).append(row)
-        where = by_row if len(by_row) <= len(by_column) else by_column
+        where = by_row if len(by_row) <= len(by_column) and columns != ["value"] else by_column
         corrections = [verdict for verdict in group if verdict.corrected]
         notes.append((Note(number, group[0], where, corrections, _ranges(group)), keys))
     return notes

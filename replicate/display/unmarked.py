@@ -1,4 +1,7 @@
-"""Labels without Markdown and TeX, for where only characters can stand: a description, a cell of a CSV."""
+"""Labels without Markdown and TeX, for the data and for drawings, which no call of pandoc converts: "K_P".
+
+What a page says of its own formulas is read from their MathML, by `formula_text`.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ _COMMAND = re.compile(r"\\([A-Za-z]+)")
 _MARKS = re.compile(r"[$*`{}\\]")
 _SIGNS = {
     "bar": "", "cdot": "·", "ge": "≥", "geq": "≥", "infty": "∞", "lambda": "λ", "le": "≤", "leq": "≤",
-    "pm": "±", "times": "×", "to": "→",
+    "pm": "±", "sqrt": "√", "sum": "∑", "times": "×", "to": "→",
 }  # fmt: skip
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from replicate.verdicts.rows import Certainty
+from replicate.verdicts.causes import CAUSES
+from replicate.verdicts.rows import Certainty, VerdictRow
 
 
 @dataclass(frozen=True)
@@ -80,19 +81,13 @@ CERTAINTIES: dict[Certainty, str] = {
 }
 """By what is known of printed inputs that give the print, where none do: what is said of it."""
 
-CAUSES = {
-    "misprint": "misprint",
-    "print-or-copy": "in the paper or in the copy at hand",
-    "scan": "in the copy at hand",
-    "definition": "another definition",
-    "method": "numerical method of the time",
-    "optimiser": "optimiser stopped early",
-    "rounding": "rounded intermediate values",
-    "measured": "measured data",
-    "unavailable": "inputs not given",
-    "unknown": "unknown",
-}
-"""By cause of a ledger entry: how the report names it."""
+
+def cause(verdict: VerdictRow) -> str:
+    """Return the cause of a verdict in words; empty where the verdict says as much itself."""
+    if not verdict.cause or verdict.cause in {"unknown", verdict.verdict}:
+        return ""
+    return CAUSES[verdict.cause]
+
 
 CONSEQUENCES = {
     word.id: word

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from replicate.display.formulas import functions_apart
+from replicate.display.function_names import functions_apart
 from replicate.display.pandoc import PandocError, refusal
 from replicate.errors import TemplateError
 from replicate.handout.pandoc import written

@@ -7,7 +7,7 @@ import html
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from replicate.display.formulas import functions_apart
+from replicate.display.function_names import functions_apart
 from replicate.handout.drawings import Drawing
 from replicate.handout.pandoc import written
 from replicate.handout.questions import Question

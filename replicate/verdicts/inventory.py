@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Table
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
+from replicate.verdicts.causes import CAUSES
 from replicate.verdicts.rows import ExhibitRow, Status, VerdictRow
 
 NOT_COMPUTED = "was not computed"
@@ -54,7 +55,7 @@ def _table(result: TableResult, verdicts: Sequence[VerdictRow]) -> tuple[Status,
     if not missing:
         return "done", ""
     reason = f"{len(missing)} of {len(verdicts)} printed values cannot be computed"
-    causes = sorted({verdict.cause for verdict in missing if verdict.cause})
+    causes = sorted({CAUSES[verdict.cause] for verdict in missing if verdict.cause})
     if causes:
         reason += f" ({', '.join(causes)})"
     status: Status = "partly" if len(missing) < len(verdicts) else "not-computable"

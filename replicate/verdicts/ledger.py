@@ -29,28 +29,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Literal, get_args
+from typing import get_args
 
 from replicate.errors import LedgerError, listed
 from replicate.exhibits import AS_WRITTEN, Consequence, Paper, Table
 from replicate.exhibits.file_names import display_name
 from replicate.exhibits.numerals import ALLOWED, parse_number
 from replicate.plain_text import parse_toml, read_text, steering
-
-Cause = Literal[
-    "misprint",
-    "print-or-copy",
-    "scan",
-    "definition",
-    "method",
-    "optimiser",
-    "rounding",
-    "measured",
-    "unavailable",
-    "unknown",
-]
-CAUSES: tuple[Cause, ...] = get_args(Cause)
-CORRECTING_CAUSES: frozenset[Cause] = frozenset({"misprint", "print-or-copy", "scan"})
+from replicate.verdicts.causes import CAUSES, CORRECTING_CAUSES, Cause
 
 _CONSEQUENCES: tuple[Consequence, ...] = get_args(Consequence)
 

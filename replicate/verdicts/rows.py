@@ -9,6 +9,7 @@ from replicate.exhibits import ClaimVerdict, Consequence
 from replicate.exhibits.matching import Match, MatchHow, MatchKind, computed_text
 from replicate.exhibits.printed import PrintedValue
 from replicate.exhibits.results import Proof
+from replicate.verdicts.causes import Cause
 
 if TYPE_CHECKING:
     from replicate.verdicts.strength import Strength
@@ -161,7 +162,7 @@ class VerdictRow:
     reading: str
     computed: str
     corrected: str = ""
-    cause: str = ""
+    cause: Cause | Literal[""] = ""
     explanation: str = ""
     lower: str = ""
     upper: str = ""

@@ -91,13 +91,13 @@ class Strength:
         >>> Strength(9, 1, 0.9, 1, 0.3).sentence
         'Meets 1 of 9 values, 1 digit, with 1 alternative tried: by accident in 30 % of cases.'
         >>> Strength(1, 0, 0.0, 6, 1.0).sentence
-        'Meets none of 1 value.'
+        'Does not meet its one value.'
         >>> Strength(12, 7, 0.2, 1, 1.0).sentence
         'Meets 7 of 12 values, no more than an accident would: no evidence for this reading.'
         """
         values = f"{self.compared} value{'s' if self.compared != 1 else ''}"
         if not self.met:
-            return f"Meets none of {values}."
+            return f"Meets none of {values}." if self.compared != 1 else "Does not meet its one value."
         if self.chance >= _EVEN:
             return f"Meets {self.met} of {values}, no more than an accident would: no evidence for this reading."
         tried = f"{self.choices} alternative{'s' if self.choices != 1 else ''} tried"

@@ -11,9 +11,10 @@ from replicate.exhibits.matching import computed_text
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.exhibits.rounded_inputs import given_cells
+from replicate.verdicts.causes import CORRECTING_CAUSES, Cause
 from replicate.verdicts.consequences import with_consequences
 from replicate.verdicts.corrections import Correction, correction
-from replicate.verdicts.ledger import CORRECTING_CAUSES, Cause, Ledger, LedgerEntry
+from replicate.verdicts.ledger import Ledger, LedgerEntry
 from replicate.verdicts.matches import other_convention, reading_matches, share_points
 from replicate.verdicts.rows import ERRORS, Computed, Judgement, ValueVerdict, VerdictRow
 from replicate.verdicts.strength import Strength, strengths

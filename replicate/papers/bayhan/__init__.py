@@ -45,7 +45,7 @@ paper = Paper(
         "fig-5",
     ),
     summary="A tuning rule that gives the loop a double pole, compared with ten classical rules. The rule "
-    "holds. The comparison does not: the classical rules were run with the integral gain 1/Ti where the "
-    "paper's equation (3) says Kp/Ti. With 1/Ti, on the authors' own Padé model and sample grid, the tables "
+    "holds. The comparison does not: the classical rules were run with the integral gain $1/T_i$ where the "
+    "paper's equation (3) says $K_p/T_i$. With $1/T_i$, on the authors' own Padé model and sample grid, the tables "
     "are reproduced digit for digit; computed as written, they are not.",
 )

@@ -80,7 +80,7 @@ def settles_third() -> Finding:
         f"{'True' if good[0] else 'False'} of Table 2 as printed, whose order begins {', '.join(list(printed)[:4])} "
         f"(recomputed with its gains, $K_i = 1/T_i$: {', '.join(list(authors)[:4])}), "
         f"{'and true' if good[1] else 'but false'} of the rules themselves: with the gains of equation (3) PA "
-        f"({number(text['PA'])}) comes in at place {rank}, after {listed(faster)}.",
+        f"({number(text['PA'])}) is number {rank}, after {listed(faster)}.",
     )
 
 

@@ -140,10 +140,10 @@ def fig_8_rise_times() -> Finding:
 
 @claims.claim("not-too-small-g", "A not too small value of g is often preferable.", where="section 7")
 def not_too_small_g() -> Finding:
-    figures = ("fig-9", "fig-10", "fig-11", "fig-12")
+    figures = (9, 10, 11, 12)
     slowest = []
     for figure in figures:
-        at = {row: (named.a, named.b) for row, named in named_points(figure).items()}
+        at = {row: (named.a, named.b) for row, named in named_points(f"fig-{figure}").items()}
         least = min(at, key=lambda row: margins_at(*at[row])["g"])
         slowest.append(least == max(at, key=lambda row: metrics_at(*at[row])["settling_time"]))
     count = sum(slowest)
@@ -152,5 +152,5 @@ def not_too_small_g() -> Finding:
         count,
         f"In {count} of the {len(figures)} figures with step responses the curve with the smallest g is the one that "
         "settles last; the exception is "
-        f"{', '.join(figure for figure, ok in zip(figures, slowest, strict=True) if not ok) or 'none'}.",
+        f"{', '.join(f'Figure {figure}' for figure, ok in zip(figures, slowest, strict=True) if not ok) or 'none'}.",
     )
