@@ -195,6 +195,13 @@ def test_the_right_value_comes_from_the_named_reading() -> None:
     )
 
 
+def test_a_reading_that_gives_the_print_does_not_say_how_far_off_it_is() -> None:
+    """One that is too weak to reconstruct a cell would call it wrong and right at once."""
+    run = results(as_written=frame(ax=1.7))
+    found = verdict(judged(entry(reading="authors"), run=run))
+    assert (found.verdict, found.reading, found.computed) == ("discrepant", "as-written", "1.7")
+
+
 @pytest.mark.parametrize("corrected", ["1.3", "1.2", "1"])
 def test_a_stated_right_value_is_checked(corrected: str) -> None:
     run = results(as_written=frame(ax=1.26), authors=frame(ax=1.26))

@@ -185,12 +185,14 @@ class TableJudge:
         return correction(key, entry, others, self.numbers[entry.reading])
 
     def _explained(self, key: Key, entry: LedgerEntry) -> VerdictRow:
-        corrected = ""
+        corrected, reading = "", entry.reading
         if entry.cause in CORRECTING_CAUSES:
             corrected = self._correction(key, entry).text
+        elif self.computed[reading][key].match.kind == "equal":
+            reading = AS_WRITTEN  # one that gives the print, but is too weak to tell, does not say how far off it is
         verdict = _CAUSE_VERDICTS[entry.cause]
         return replace(
-            self._verdict_row(key, verdict, entry.reading),
+            self._verdict_row(key, verdict, reading),
             corrected=corrected,
             cause=entry.cause,
             explanation=" ".join(text for text in (entry.explanation, entry.evidence) if text),
