@@ -56,6 +56,17 @@ def cell_keys(row: str, column: str, columns: Sequence[str]) -> tuple[str, ...]:
     return (row,) if list(columns) == ["value"] else (row, column)
 
 
+def key_text(key: str) -> str:
+    """Return a key of a row or column that has no label as a reader sees it.
+
+    Examples
+    --------
+    >>> key_text("gain_margin"), key_text("0.5 <= ph <= 10")
+    ('gain margin', '0.5 ≤ ph ≤ 10')
+    """
+    return key.replace("_", " ").replace("<=", "≤").replace(">=", "≥")
+
+
 _ROMAN = {"M": 1000, "CM": 900, "D": 500, "CD": 400, "C": 100, "XC": 90, "L": 50, "XL": 40, "X": 10, "IX": 9, "V": 5,
           "IV": 4, "I": 1}  # fmt: skip
 

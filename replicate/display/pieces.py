@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from replicate.display.labels import key_text
 from replicate.display.spanners import Span, spans
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def pieces(view: TableView) -> list[Piece]:
 
 
 def _piece(view: TableView, columns: list[str], first: int, rows: list[tuple[int, str, list[Cell]]]) -> Piece:
-    labels = [view.table.labels.get(column, column.replace("_", " ")) for column in columns]
+    labels = [view.table.labels.get(column, key_text(column)) for column in columns]
     return Piece(columns, first, spans(labels), rows)
 
 

@@ -17,7 +17,7 @@ from replicate.display import consequences, environment, numbers, scores, words
 from replicate.display.addresses import anchor
 from replicate.display.distance import off
 from replicate.display.keeping import Keep, made_anew
-from replicate.display.labels import cell_keys, cited
+from replicate.display.labels import cell_keys, cited, key_text
 from replicate.display.markdown import MarkdownBatch, without_marks
 from replicate.display.safe_html import policy
 from replicate.figures.style import dark_curves
@@ -83,6 +83,7 @@ def render(template: str, name: str, keep: Keep = made_anew, **context: Any) -> 
         words=words,
         anchor=anchor,
         cell_keys=cell_keys,
+        key_text=key_text,
         cited=cited,
         scores=scores,
         consequences=consequences,
@@ -143,4 +144,4 @@ def with_policy(page: str) -> str:
 
 def _key(batch: MarkdownBatch, key: str, labels: Mapping[str, str]) -> Markup:
     """Return the display text of a row or column key: its label, or the key in words."""
-    return batch.inline(labels[key]) if key in labels else Markup.escape(numbers.minus_signs(key.replace("_", " ")))
+    return batch.inline(labels[key]) if key in labels else Markup.escape(numbers.minus_signs(key_text(key)))

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from replicate.display.labels import key_text
 from replicate.display.numbers import aligned
 from replicate.display.tables import Cell, TableView, Value
 from replicate.display.words import MATCHES, VERDICTS
@@ -77,7 +78,7 @@ def key_table(view: TableView, choice: Choice) -> Element:
     labels = {**table.labels, **(choice.labels or {})}
 
     def label(key: str) -> list[Element]:
-        return inlines(labels.get(key, key.replace("_", " ")))
+        return inlines(labels.get(key, key_text(key)))
 
     groups = len(readings) + printed
     by_row = dict(view.rows)

@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from replicate.display.labels import key_text
 from replicate.display.unmarked import unmarked
 from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.results import FigureResult, Results, TableResult
@@ -32,7 +33,7 @@ def column_rows(paper: Paper, results: Results) -> Iterator[tuple[str, str, str,
         if isinstance(exhibit, Table) and isinstance(result, TableResult):
             first = next(iter(result.cells.values()), None)
             for column in exhibit.columns or (first.columns if first else ()):
-                label = unmarked(exhibit.labels.get(column, column.replace("_", " ")))
+                label = unmarked(exhibit.labels.get(column, key_text(column)))
                 yield (
                     f"tables/{paper.id}/{exhibit.id}.*.csv",
                     "",

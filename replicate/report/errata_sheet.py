@@ -10,7 +10,7 @@ from replicate.display import numbers
 from replicate.display.addresses import address, pages_of, parts_of
 from replicate.display.consequences import errors
 from replicate.display.distance import off
-from replicate.display.labels import cell_keys, heading
+from replicate.display.labels import cell_keys, heading, key_text
 from replicate.exhibits import Claims, Paper, Table
 from replicate.verdicts.rows import CLAIM_COLUMN, Judgement, VerdictRow
 
@@ -72,7 +72,7 @@ class Erratum:
 
     def named(self, row: VerdictRow) -> str:
         """Return what a cell is called inside its exhibit."""
-        return ", ".join(self.labels.get(key, key.replace("_", " ")) for key in self.keys(row))
+        return ", ".join(self.labels.get(key, key_text(key)) for key in self.keys(row))
 
     @property
     def page(self) -> str:
