@@ -12,6 +12,9 @@ from replicate.display.function_names import OPERATORS, functions_apart, markup,
 _FORMULA = re.compile(
     r'<math display="(block|inline)"><semantics>(.*?)<annotation[^>]*>(.*?)</annotation></semantics></math>', re.DOTALL
 )
+_BESIDE = re.compile(
+    '(?P<opens>[(\\[“‘]?)(?P<formula><math display="inline"[^>]*>.*?</math>)(?P<ends>[-,.;:!?)\\]”’%]*)', re.DOTALL
+)
 _BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space|table)\\b")
 _LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
 _VERY_LONG = 34
@@ -44,6 +47,24 @@ def without_operators(text: str) -> str:
     'ln 10'
     """
     return OPERATORS.sub(" ", text)
+
+
+def tied(page: str) -> str:
+    """Return a page on which no line ends between a formula and the punctuation beside it.
+
+    To a browser a formula is like a picture: a comma after it may begin the next line.
+
+    Examples
+    --------
+    >>> tied('(<math display="inline"><mi>k</mi></math>, that is')
+    '<span class="tied">(<math display="inline"><mi>k</mi></math>,</span> that is'
+    """
+    return _BESIDE.sub(lambda found: _tied(*found.groups()), page)
+
+
+def _tied(opens: str, formula: str, ends: str) -> str:
+    whole = f"{opens}{formula}{ends}"
+    return f'<span class="tied">{whole}</span>' if opens or ends else whole
 
 
 def _formula(match: re.Match[str]) -> str:

@@ -341,6 +341,14 @@ def test_heads_are_repeated_on_printed_pages(report: Path, browser: Any) -> None
         page.emulate_media(media="print")
         assert not any(button.is_visible() for button in buttons.all())
         assert page.locator("table.values thead:has(button) .label").first.is_visible()
+    with Sight(browser, report / "ali.html") as page:  # a heading turns with the wide table that follows it
+        page.emulate_media(media="print")
+        sheets = (
+            "(heads) => heads.map((head) => [head, head.nextElementSibling].map((one) => getComputedStyle(one).page))"
+        )
+        pairs = page.locator("h2:has(+ .exhibit)").evaluate_all(sheets)
+        assert ["wide", "wide"] in pairs
+        assert all(head == exhibit for head, exhibit in pairs)
 
 
 def test_curves_are_called_what_the_legend_calls_them(report: Path, browser: Any) -> None:
