@@ -81,7 +81,8 @@ def compare_axes(before: Sequence[Axes], after: Sequence[Axes]) -> list[Differen
             what, kind = ("gone", "removed") if new is None else ("new", "new")
             changes.append(Difference("axes", f"panel '{panel}' is {what}", panel, kind))
             continue
-        own = [name for name in _names(old, new, known) if name not in silent and not name.startswith(_WHOLE)]
+        said = silent | ({"yscale"} if "polar" in old and "polar" in new else set())  # with the radius
+        own = [name for name in _names(old, new, known) if name not in said and not name.startswith(_WHOLE)]
         changes += _compare(old, new, own, f"'{panel}': " if several else "")
     return changes
 
@@ -176,7 +177,7 @@ def _same_radii(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
 def _limits(axis: str, before: Axes, after: Axes) -> Iterator[str]:
     polar = "polar" in before and "polar" in after
     if polar and axis == "y" and not _same_radii(before["polar"], after["polar"]):
-        return  # said already
+        return  # said of the radius
     one, other = before[f"{axis}lim"], after[f"{axis}lim"]
     called = {"x": "angle", "y": "radius"}[axis] if polar else f"{axis} axis"
     if same_value(list(one), list(reversed(other))):

@@ -228,7 +228,7 @@ def _texts(one: Mark, other: Mark) -> Iterator[str]:
     if before is None or after is None or before == after:
         return
     shown = [
-        ", ".join(repr(text) if len(texts) == 1 else text for text in texts[:_MOST_TEXTS])
+        ", ".join(f"'{text}'" if len(texts) == 1 else text for text in texts[:_MOST_TEXTS])
         + (", …" if len(texts) > _MOST_TEXTS else "")
         for texts in (after, before)
     ]

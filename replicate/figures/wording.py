@@ -136,4 +136,6 @@ def _at(axes: Axes, units: Points) -> str:
         return f"({on_axis(x)}, {on_axis(y)}) of the axes"
     if "polar" in axes:
         return f"angle = {on_axis(float(np.degrees(x)))}°, radius = {on_axis(y)}"
-    return f"{symbol(axes, 'x')} = {on_axis(x, axes, 'x')}, {symbol(axes, 'y')} = {on_axis(y, axes, 'y')}"
+    names = [symbol(axes, axis) for axis in "xy"]
+    names = ["x", "y"] if names[0] == names[1] else names
+    return f"{names[0]} = {on_axis(x, axes, 'x')}, {names[1]} = {on_axis(y, axes, 'y')}"
