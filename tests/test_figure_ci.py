@@ -68,6 +68,9 @@ def test_the_example_is_as_accepted_and_its_steps_run(example: Path) -> None:
     assert "nothing differs from the accepted state; figures compared: 6" in done.stdout
     assert shell(found["For the comment"]["run"], example, PULL_REQUEST="7").returncode == 0
     assert (example / "build/figures-diff/pull-request").read_text() == "7\n"
+    shutil.rmtree(example / "build")
+    assert shell(found["For the comment"]["run"], example, PULL_REQUEST="7").returncode == 0
+    assert (example / "build/figures-diff/comment.md").read_text().startswith(f"{MARKER}\n## 🔴 Figures\n")
 
 
 def test_the_action_is_green_red_and_broken(example: Path) -> None:
@@ -93,7 +96,6 @@ def test_the_action_is_green_red_and_broken(example: Path) -> None:
     assert (status, comment.splitlines()[:2]) == ("1", [MARKER, "## 🔴 Figures"])
     script.write_text("raise SystemExit(1)\n")
     assert compare("plots/plot_rules.py")[0] == "2"
-    shutil.rmtree(example / "out")
     status, comment = compare("")
     assert status == "2"
     assert "nothing was compared" in comment
