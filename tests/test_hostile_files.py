@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import sys
 import threading
-import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -106,17 +105,15 @@ def test_brackets_without_end_are_one_line(text: str) -> None:
 
 
 def test_a_text_that_keeps_pandoc_busy_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pandoc, "TIME_LIMIT", 3.0)
-    monkeypatch.setattr(markdown, "_LIMIT_ALONE", 1.5)
+    monkeypatch.setattr(pandoc, "TIME_LIMIT", 2.0)
+    monkeypatch.setattr(markdown, "_LIMIT_ALONE", 4.0)
     batch = MarkdownBatch("toy.html")
     page = batch.block("A text.") + batch.block(f"Before.\n\nAnother {'[' * 40} one.\n\nAfter.")
-    begun = time.monotonic()
     with pytest.raises(
         UnreadableTextError, match=r"^toy\.html: pandoc cannot convert the text 'Another \[\["
     ) as caught:
         batch.substitute(page)
-    assert caught.value.why.startswith("it takes more than 3 seconds")
-    assert time.monotonic() - begun < 60
+    assert caught.value.why.startswith("it takes more than 2 seconds")
 
 
 @pytest.mark.parametrize("program", ["/bin/false", "/nowhere/pandoc", "/x\x1b[31m"])

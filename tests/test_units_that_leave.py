@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -143,10 +143,10 @@ def test_of_claims_only_the_one_that_leaves_is_lost(outcome: tuple[Results, list
 
 
 def test_no_process_is_left(tmp_path: Path) -> None:
-    started = "import subprocess\nsubprocess.Popen(['sleep', '4321.25'])\nreturn good()"
-    with rogue.installed(tmp_path, {"child": started}):
+    sleep = f"sleep 4321.{os.getpid()}"
+    with rogue.installed(tmp_path, {"child": f"import subprocess\nsubprocess.Popen({sleep.split()})\nreturn good()"}):
         run([Library().paper("rogue")], jobs=1, cache_dir=None)
-    assert "4321.25" not in commands()
+    assert until(lambda: sleep not in {command for _, command in processes().values()})
 
 
 @POSIX
@@ -256,10 +256,6 @@ def processes() -> dict[int, tuple[int, str]]:
     return {int(pid): (int(parent), rest[0] if rest else "") for pid, parent, *rest in fields}
 
 
-def commands() -> str:
-    return "\n".join(command for _, command in processes().values())
-
-
 def descendants(pid: int) -> set[int]:
     found: set[int] = set()
     while new := {child for child, (parent, _) in processes().items() if parent in found | {pid}} - found:
@@ -267,22 +263,26 @@ def descendants(pid: int) -> set[int]:
     return found
 
 
-def busy(process: subprocess.Popen[str]) -> set[int]:
-    """Wait until the command's workers are there; return all its processes."""
-    assert process.stderr is not None
-    assert "as-written" in process.stderr.readline()  # the other reading is at work now
-    limit = time.monotonic() + 20
-    while len(found := descendants(process.pid)) < _PROCESSES and time.monotonic() < limit:
+def until(holds: Callable[[], bool]) -> bool:
+    """Wait until something holds; return whether it does."""
+    limit = time.monotonic() + 120
+    while not (found := holds()) and time.monotonic() < limit:
         time.sleep(0.1)
-    assert len(found) == _PROCESSES
     return found
 
 
-def all_gone(pids: set[int]) -> bool:
-    limit = time.monotonic() + 20
-    while pids & processes().keys() and time.monotonic() < limit:
-        time.sleep(0.1)
-    return not pids & processes().keys()
+def busy(process: subprocess.Popen[str]) -> dict[int, str]:
+    """Wait until the command's workers are there; return all its processes with their command lines."""
+    assert process.stderr is not None
+    assert "as-written" in process.stderr.readline()  # the other reading is at work now
+    assert until(lambda: len(descendants(process.pid)) == _PROCESSES)
+    there = processes()
+    return {pid: there[pid][1] for pid in descendants(process.pid)}
+
+
+def all_gone(workers: dict[int, str]) -> bool:
+    """Wait until processes have ended; their numbers may be those of others by then."""
+    return until(lambda: not workers.items() & {pid: command for pid, (_, command) in processes().items()}.items())
 
 
 @POSIX
@@ -298,7 +298,7 @@ def test_no_worker_outlives_a_main_process_that_is_killed(command: subprocess.Po
 def test_a_run_that_is_told_to_end_ends_with_its_workers(command: subprocess.Popen[str], number: int) -> None:
     workers = busy(command)
     command.send_signal(number)
-    command.wait(timeout=20)
+    command.wait(timeout=120)
     assert command.returncode != 0
     assert all_gone(workers)
 
@@ -310,7 +310,7 @@ def test_a_worker_that_is_killed_ends_the_run_at_once_with_its_name(command: sub
     assert len(workers) == 2
     for pid in workers:
         os.kill(pid, signal.SIGKILL)
-    _, errors = command.communicate(timeout=60)
+    _, errors = command.communicate(timeout=120)
     assert command.returncode == 2
     assert "rogue/table-1 (endless): its worker process was ended by SIGKILL" in errors
 
