@@ -25,7 +25,7 @@ from replicate.report import data
 from replicate.report.columns import COLUMN_COLUMNS
 from replicate.resources import schemas, templates_dir
 from replicate.run import project as projects
-from replicate.sweeps import sweep_file
+from replicate.sweeps import sides, sweep_file
 from replicate.verdicts import ledger as ledgers
 from replicate.verdicts.causes import CAUSES, Cause
 from replicate.verdicts.rows import ValueVerdict
@@ -129,6 +129,7 @@ def test_the_sweep_of_the_guide_fits() -> None:
         ("sweep", {"plants": "1/(s+1)"}),
         ("sweep", {"plants": "1/(s+1)", "controllers": {"kp": 1}}),
         ("sweep", {"plants": "1/(s+1)", "controllers": {"k": {"from": 1, "to": 2}}}),
+        ("sweep", {"plants": "1/(s+1)", "controllers": {"k": {"from": 1, "to": 2, "points": sides.MOST_POINTS + 1}}}),
     ],
 )
 def test_what_is_refused(name: str, data: dict[str, object]) -> None:

@@ -36,7 +36,7 @@ ComplexArray = NDArray[np.complex128]
 
 TAIL = 1e13  # time constants of the slowest mode after which an algebraic tail no longer counts
 LONG = 1e-7  # of such a horizon, from which on rounding errors would show in its integrals
-FAR = 1e3  # horizon, in units of the loop's time, from which on it pays to ask when the response is at rest
+FAR = 200.0  # horizon, in units of the loop's time, from which on it pays to ask when the response is at rest
 CLEAR = 1e-6  # distance of a pole from the imaginary axis, relative to its modulus, that leaves no doubt
 
 

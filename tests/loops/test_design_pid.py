@@ -17,6 +17,7 @@ import pytest
 from scipy.optimize import Bounds, brentq, differential_evolution, nnls
 
 from replicate.loops import PI, Constraint, Loop, LoopError, PIDDesign, Plant, design_pi, design_pid, search_range
+from replicate.loops.design import pid_search
 
 LAG = np.array([1.0, 1.0])
 
@@ -228,6 +229,18 @@ def test_the_optimum_of_a_lightly_damped_plant_is_found() -> None:
     # feasible gains are a needle about those whose zeros cancel the plant's poles
     compare("lightly damped", 1.4, ("curvature", "phase"))
     assert designed("lightly damped", 1.4, ("curvature", "phase"))[0].status == "optimal"
+
+
+def test_what_a_fine_map_shows_is_an_optimum_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    # the resonance is so narrow that the circle is touched between the frequencies of the coarse grid
+    climbs = []
+    ascend = pid_search.ascend
+    monkeypatch.setattr(pid_search, "ascend", lambda *given: climbs.append(given) or ascend(*given))
+    resonant = Plant([9.0], np.polymul([1.0, 1.0], [1.0, 0.1, 9.0]))
+    found = design_pid(resonant, ms=2.0)
+    assert found.status == "optimal"
+    assert Loop(resonant, found.controller).sensitivity_peak().value == pytest.approx(2.0, rel=1e-9)
+    assert len(climbs) == 1
 
 
 @pytest.mark.parametrize(("name", "ms"), [("G1", 2.0), ("G2", 1.4), ("G4", 1.4), ("G8", 2.0)])

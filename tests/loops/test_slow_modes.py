@@ -6,6 +6,7 @@ References: de Hoog's inversion of the closed loop's transform in mpmath, and IE
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import mpmath as mp
 import numpy as np
@@ -91,3 +92,27 @@ def test_a_long_end_close_to_rest_has_the_digits_of_its_deviation() -> None:
             )
             assert 1.0 - y(t) == pytest.approx(float(deviation), rel=2e-9)
     assert y.iae() == pytest.approx(20.0, rel=5e-9)
+
+
+@pytest.mark.parametrize(("k", "ki"), [("0.51242", "0.00034788"), ("0.41721", "0.00029552")])
+def test_the_moment_of_an_error_with_a_weak_slow_mode(k: str, ki: str) -> None:
+    # 1/(s (5 s + 1)) under PI: the error is a sum of three exponentials, the slowest a thousandth of the first
+    with mp.workdps(40):
+        gain, integral = mp.mpf(k), mp.mpf(ki)
+        poles = mp.polyroots([5, 1, gain, integral], maxsteps=200, extraprec=200)
+        residues = [-(gain * p + integral) / (p * (15 * p**2 + 2 * p + gain)) for p in poles]
+
+        def error(t: mp.mpf) -> mp.mpf:
+            return mp.re(sum(r * mp.exp(p * t) for r, p in zip(residues, poles, strict=True)))
+
+        def moment(t: mp.mpf) -> mp.mpf:  # antiderivative of t e(t)
+            return mp.re(sum(r * mp.exp(p * t) * (t / p - 1 / p**2) for r, p in zip(residues, poles, strict=True)))
+
+        times = [mp.mpf(i) / 2 for i in range(400)]
+        turns = [pair for pair in pairwise(times) if error(pair[0]) * error(pair[1]) < 0]
+        ends = [mp.mpf(0), *(mp.findroot(error, pair, solver="anderson") for pair in turns)]
+        values = [*(moment(t) for t in ends), mp.mpf(0)]
+        expected = float(sum(abs(after - before) for before, after in pairwise(values)))
+    y = Loop(Plant([1.0], [5.0, 1.0, 0.0]), PI(float(k), float(ki))).step()
+    assert y.itae() == pytest.approx(expected, rel=3e-10)
+    assert y.breaks.size < MOST_PIECES

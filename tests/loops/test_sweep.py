@@ -368,8 +368,16 @@ def test_a_sweep_uses_one_thread_and_leaves_their_number_as_it_was(monkeypatch: 
         (Plant([1.0], [1.0, 4.0, 6.0, 4.0, 1.0]), {"kd": 0.4, "derivative_filter": 0.05}),
         (Plant([1.0], [1.0, 1.0, 0.0]), {"b": 0.3, "measurement_filter": 0.2, "setpoint_filter": 1.5}),
         (Plant([-1.0, 2.0], [1.0, 3.0, 2.0]), {"k": 0.0}),
+        (Plant([1.0], np.polymul([200.0, 1.0], [1.0, 0.2, 1.0])), {"ki": 5e-4}),
     ],
-    ids=["first order, P", "second order, PI", "fourth order, PID", "integrating, filtered", "zero to the right, I"],
+    ids=[
+        "first order, P",
+        "second order, PI",
+        "fourth order, PID",
+        "integrating, filtered",
+        "zero to the right, I",
+        "slow and resonant, PI",
+    ],
 )
 def test_a_block_without_dead_time_has_the_values_of_the_single_loops(plant: Plant, form: dict[str, Any]) -> None:
     controllers = [PID(**{"k": 0.5 * (1.0 + 0.02 * i), "ki": 0.2 * (1.0 + 0.03 * i), **form}) for i in range(4)]
@@ -380,6 +388,25 @@ def test_a_block_without_dead_time_has_the_values_of_the_single_loops(plant: Pla
     for i, controller in enumerate(controllers):
         for name, expected in single(Loop(plant, controller), None).items():
             np.testing.assert_allclose(result[name][0, i], expected, rtol=1e-9, atol=1e-12, err_msg=name)
+
+
+def test_slow_modes_of_a_block_without_dead_time_have_the_integrals_of_their_closed_form(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # 1/(s (s + 1)) under k: E = (s + 1)/(s^2 + s + k), e > 0; its integrals are values of E, -E' and Parseval's
+    k = np.array([1e-2, 3e-3, 1e-3, 1e-4, 1e-6])
+    monkeypatch.delattr(running, "loop_metrics")  # they go together
+    found = sweep(Plant([1.0], [1.0, 1.0, 0.0]), np.column_stack([k, 0.0 * k]), metrics=["iae", "itae", "ise"])
+    np.testing.assert_allclose(found["iae"][0], 1.0 / k, rtol=1e-9)
+    np.testing.assert_allclose(found["itae"][0], (1.0 - k) / k**2, rtol=1e-9)
+    np.testing.assert_allclose(found["ise"][0], (1.0 + k) / (2.0 * k), rtol=1e-9)
+
+
+def test_sensitivity_that_only_tends_to_one_is_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    # S = s/(s + k + ki/s) with k^2 > 2 ki: |S|^2 = x^2/(x^2 + (k^2 - 2 ki) x + ki^2) < 1, with x = w^2
+    monkeypatch.delattr(running, "loop_metrics")
+    gains = np.array([[2.0, 0.1], [2.1, 0.2], [2.2, 0.5], [2.3, 1.0]])
+    np.testing.assert_array_equal(sweep(Plant([1.0], [1.0, 0.0]), gains, metrics="ms")["ms"], 1.0)
 
 
 def test_loops_without_dead_time_are_grouped_by_their_pace() -> None:

@@ -7,6 +7,8 @@ frequencies and the multipliers at once; the result is verified on all frequenci
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import nnls
@@ -82,11 +84,20 @@ class GridProblem:
         except LoopError:
             return False
 
-    def finish(self, x: Array) -> PIDDesign | None:
-        """Return the verified design near a grid optimum, polished if the optimality system converges."""
+    def finish(self, x: Array, grids: Sequence[LoopJet] | None = None) -> PIDDesign | None:
+        """Return the verified design near a grid optimum, polished if the optimality system converges.
+
+        Parameters
+        ----------
+        x
+            Gains (k, ki, kd).
+        grids
+            One for each constraint, on which the point is an optimum: on a coarser one it may touch nothing. By default
+            those of the problem.
+        """
         active: list[ActiveConstraint] = []
         for preference in (TOUCHING_FIRST, 0.0):
-            active = self._active(x, preference)
+            active = self._active(x, preference, self.grids if grids is None else grids)
             polished = self._newton(x, active) if active else None
             if polished is not None:
                 gains, parts = polished
@@ -98,14 +109,14 @@ class GridProblem:
             return self._design(shrunk, tuple(active), "not-polished")
         return None
 
-    def _active(self, x: Array, preference: float) -> list[ActiveConstraint]:
+    def _active(self, x: Array, preference: float, grids: Sequence[LoopJet]) -> list[ActiveConstraint]:
         """Return the touching points with positive multipliers, from a non-negative fit of the gradient.
 
         ``preference`` weighs against points that come close to zero but do not touch it.
         """
         candidates: list[tuple[int, float, Array, float]] = []
-        for index, grid in enumerate(self.grids):
-            value, gradient = self.values(index, x)
+        for index, grid in enumerate(grids):
+            value, gradient = self.values(index, x, grid)
             edge = np.concatenate([[np.inf], value, [np.inf]])
             low = np.nonzero((value <= edge[:-2]) & (value <= edge[2:]) & (value < 5e-3))[0]
             candidates += [(index, float(grid.w[i]), gradient[i], abs(float(value[i]))) for i in low]

@@ -119,7 +119,7 @@ class Search:
             if found is not None and found.ki >= summit.ki:
                 break
             fine = ascend(self._fine_jets, self.problem.circle, summit, slack, self.problem.largest_kd)
-            higher = self.problem.finish(fine.gains)
+            higher = self.problem.finish(fine.gains, [jet for _, jet in self._fine_jets])
             found = max((d for d in (found, higher) if d is not None), key=lambda d: d.ki, default=None)
         return found
 

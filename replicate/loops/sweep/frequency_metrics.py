@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from replicate.loops.sweep.frequency_scan import Scan, scan
 from replicate.loops.sweep.loop_columns import LoopColumns, column_products
-from replicate.loops.sweep.stability_counts import polynomial_roots
+from replicate.loops.sweep.stability_counts import polynomial_roots, squared_magnitude
 
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
@@ -67,7 +67,8 @@ class FrequencyMetrics:
             at_rest = np.where(np.isinf(self._at_rest), 0.0, np.abs(1.0 / (1.0 + self._at_rest)))
         limit = 1.0 / (1.0 - self.loops.feedthrough)
         peak = np.maximum(self._peak(distance, inverse=False), np.maximum(at_rest, limit))
-        self._require_bounded(peak, 1.0 / (1.0 - self._beyond), limit)
+        beyond = np.where(self._may_exceed_one_beyond, 1.0 / (1.0 - self._beyond), 1.0)
+        self._require_bounded(peak, beyond, limit)
         return peak
 
     def mp(self) -> Array:
@@ -165,9 +166,28 @@ class FrequencyMetrics:
         """Which curves may be real at a frequency beyond the grid; without dead time the roots of a polynomial say."""
         if self.loops.delay:
             return np.ones(len(self.loops), dtype=bool)
+        return self._may_have_roots_beyond(self._turned[1::2])
+
+    @property
+    def _may_exceed_one_beyond(self) -> Flags:
+        """For which loops |S| may exceed one at a frequency beyond the grid."""
+        if self.loops.delay:
+            return np.ones(len(self.loops), dtype=bool)
+        excess = 2.0 * self._turned[::2]  # (|1 + L|^2 - 1) |D|^2 = |N|^2 + 2 Re(N conj(D))
+        size = squared_magnitude(self.loops.num)[::-1]
+        excess[: size.shape[0]] += size
+        return self._may_have_roots_beyond(excess) | (excess[-1] <= 0.0)
+
+    @property
+    def _turned(self) -> Array:
+        """N(s) D(-s) at s = i w: real coefficients of w, ascending; the even ones are the real part's."""
         mirrored = self.loops.den * (-1.0) ** np.arange(self.loops.den.size - 1, -1, -1)
-        odd = column_products(self.loops.num, mirrored)[::-1][1::2]  # of N(s) D(-s): imaginary on the axis
-        roots, lost = polynomial_roots((odd * ((-1.0) ** np.arange(odd.shape[0]))[:, None])[::-1])
+        ascending = column_products(self.loops.num, mirrored)[::-1]
+        return np.asarray(ascending * ((-1.0) ** (np.arange(ascending.shape[0]) // 2))[:, None])
+
+    def _may_have_roots_beyond(self, rows: Array) -> Flags:
+        """Return which polynomials in w^2, ascending coefficients in columns, may have a root beyond the grid."""
+        roots, lost = polynomial_roots(rows[::-1])
         near = (roots.real > 0.9 * self._scan.w[-1] ** 2) & (np.abs(roots.imag) <= 0.5 * roots.real)
         return np.asarray(near.any(axis=0) | lost)
 

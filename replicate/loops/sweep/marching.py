@@ -1,9 +1,9 @@
 """The method of steps for many loops of one plant at once: one matrix product for each piece of all responses.
 
 The map of a piece (`replicate.loops.time_domain.method_of_steps`) does not contain the gains, so that it is the same
-for all loops; the control law acts column by column; without dead time each loop has a map of its own. A loop leaves
-the block when its response has come to rest, or when what is left is one mode (`replicate.loops.sweep.last_mode`),
-whose rest is known in closed form.
+for all loops; the control law acts column by column. A loop leaves the block when its response has come to rest, or
+when what is left is one mode (`replicate.loops.sweep.last_mode`), whose rest is known in closed form. Without dead time
+each loop has a map of its own, and pieces are made longer as soon as all that is quick has decayed.
 """
 
 from __future__ import annotations
@@ -31,9 +31,12 @@ AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with
 RESOLVED = 1e-12  # size of the last coefficients of the plant's input, relative to its largest value
 STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
+ROUNDED = 1e-14  # of a horizon: what is shorter is no piece
 FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
 AT_ONCE = 64  # pieces for which there is memory at once: many small pieces of it would be asked for again and again
 WORTH = 0.1  # share of loops that must have left before the others move together
+PATIENCE = 24  # pieces after which longer ones are tried, without dead time
+ENOUGH = 0.5  # share of loops for which longer ones must do: the others are marched again by themselves
 
 
 @dataclass(frozen=True)
@@ -73,8 +76,8 @@ class Responses:
 
     Attributes
     ----------
-    length
-        Length of a piece; the last one may be cut to a ``share``.
+    lengths
+        Length of each piece.
     final
         Final values.
     pieces
@@ -91,9 +94,8 @@ class Responses:
         Whether each is followed until it has settled.
     """
 
-    length: float
+    lengths: Array
     final: Array
-    share: float
     pieces: list[Piece]
     ends: NDArray[np.intp]
     modes: LastModes
@@ -153,46 +155,45 @@ class _March:
 
     def run(self, splits: int) -> Responses:
         """Step through the pieces, of which ``splits`` make a dead time."""
-        count, most, share = len(self.loops), MOST_PIECES, 1.0
+        count, until = len(self.loops), np.inf if self.until is None else self.until
         failed = ~(np.isfinite(self.final_control) & (self.final >= 0.0)) | (
             (self.final == 0.0) & (self.setpoint != 0.0)
         )
-        if self.until is not None:
-            pieces = self.until * splits * (1.0 - 1e-14)
-            if pieces > MOST_PIECES:
-                failed[:] = True
-            else:
-                most = max(int(np.ceil(pieces)), 1)
-                share = min(1.0, self.until * splits - (most - 1))
-        found = Responses(
-            1.0 / splits, self.final, share, [], np.zeros(count, dtype=np.intp), LastModes.none(count),
-            LastModes.none(count), np.zeros(count, dtype=bool), failed, self.until is None,
-        )  # fmt: skip
+        if self.until is not None and self.loops.delay and until * splits > MOST_PIECES:
+            failed[:] = True
         state = _Moving(self, splits, np.nonzero(~failed)[0])
-        look = FIRST_LOOK
-        for index in range(most):
-            if state.columns.size == 0:
-                break
-            found.pieces.append(state.advance(index))
-            if self.until is not None or (index + 1) % splits or index < 3 * splits:
+        found = Responses(
+            np.zeros(0), self.final, [], np.zeros(count, dtype=np.intp), LastModes.none(count), LastModes.none(count),
+            np.zeros(count, dtype=bool), failed, self.until is None,
+        )  # fmt: skip
+        look, ends = FIRST_LOOK, [0.0]
+        while state.columns.size and len(found.pieces) < MOST_PIECES and ends[-1] < until * (1.0 - ROUNDED):
+            found.pieces.append(state.advance())
+            done = len(found.pieces)
+            # of equal pieces the ends are multiples: no sum of roundings
+            ends.append(done / splits if self.loops.delay else ends[-1] + state.length)
+            if not self.loops.delay and done % PATIENCE == 0:
+                state.lengthen(found)
+            if self.until is not None or done % splits or done <= 3 * splits:
                 continue
             leaving = state.at_rest()
             # without dead time the unit is short beside slow modes: over it two of them pass for one
-            if self.loops.delay and (index + 1) // splits >= look:
+            if self.loops.delay and done // splits >= look:
                 look = int(np.ceil(look * LOOKS))
-                modes = state.last_modes((index + 1) / splits)
+                modes = state.last_modes(ends[-1])
                 modes.found &= ~(leaving | state.left)
-                found.modes.put(state.columns, modes, (index + 1) / splits)
+                found.modes.put(state.columns, modes, ends[-1])
                 leaving |= modes.found
-            gone = state.leave(leaving, found, index + 1)
+            gone = state.leave(leaving, found)
             if gone.sum() > WORTH * gone.size:
                 state.keep(np.nonzero(~gone)[0], found)
-        if self.until is not None:
-            found.ends[state.columns] = most
-            state.left[:] = True
+        if ends[-1] >= until * (1.0 - ROUNDED):
+            state.leave(np.ones(state.columns.size, dtype=bool), found)
         state.keep(np.zeros(0, dtype=np.intp), found)
-        if share < 1.0 and found.pieces:
-            found.pieces[-1] = found.pieces[-1].cut(share)
+        if ends[-1] > until:
+            found.pieces[-1] = found.pieces[-1].cut((until - ends[-2]) / (ends[-1] - ends[-2]))
+            ends[-1] = until
+        found.lengths = np.diff(ends)
         if self.control:
             with np.errstate(all="ignore"):
                 found.control_modes = found.modes.times(-self.loops.feedback(found.modes.pole))
@@ -204,7 +205,7 @@ class _Moving:
 
     What enters a piece is one array: the plant's input one dead time ago at the nodes, the state, the set-point. Those
     of the pieces of a dead time wait in ``entering``; as soon as one has been used, its rows of the plant's input are
-    overwritten with those that leave.
+    overwritten with those that leave. Pieces are ``longer`` than at first by this factor.
     """
 
     def __init__(self, march: _March, splits: int, columns: Places) -> None:
@@ -214,8 +215,8 @@ class _Moving:
         self.law: PieceLaw | ClosedLaw = (PieceLaw if self.loops.delay else ClosedLaw).of(
             self.loops, chain, 1.0 / splits, march.setpoint, march.load
         )
-        self.final, self.band = march.final[columns], march.band[columns]
-        self.state = np.repeat(chain.start[:, None] * march.setpoint, columns.size, axis=1)
+        self.band, self.count, self.longer = march.band[columns], 0, 1.0
+        self.state = self.law.begun(np.repeat(chain.start[:, None] * march.setpoint, columns.size, axis=1))
         self.entering = deque(np.zeros((POINTS + chain.e.size + 1, columns.size)) for _ in range(splits))
         for inputs in self.entering:
             inputs[-1] = march.setpoint
@@ -225,21 +226,24 @@ class _Moving:
         self.left = np.zeros(columns.size, dtype=bool)
         self.room: list[Array] = []
 
-    def advance(self, index: int) -> Piece:
+    @property
+    def length(self) -> float:
+        """Length of the next piece."""
+        return self.longer / self.splits
+
+    def advance(self) -> Piece:
         """Compute the next piece."""
         march, chain, inputs = self.march, self.march.chain, self.entering.popleft()
-        if index >= self.splits and index % self.splits == 0 and self.impulse.any():
+        if self.count >= self.splits and self.count % self.splits == 0 and self.impulse.any():
             self.state += chain.b * self.impulse
             self.impulse = self.impulse * self.law.gains[3] * chain.wv[3, 0]
+        self.count += 1
         inputs[POINTS:-1] = self.state
-        v = inputs[:POINTS]
-        y, self.state, area, tail = self.law.apply(inputs, v)
+        v, values = inputs[:POINTS], self._room()
+        self.state, area, tail = self.law.apply(inputs, v, values)
         self.entering.append(inputs)
-        values = np.subtract(y, self.final, out=self._room())
-        piece = Piece(
-            self.columns, values, values.min(axis=0), values.max(axis=0), area - 2.0 * self.final,
-            v - march.load if march.control else None,
-        )  # fmt: skip
+        control = v - march.load if march.control else None
+        piece = Piece(self.columns, values, values.min(axis=0), values.max(axis=0), area, control)
         self.recent.append(values)
         np.maximum(self.high, piece.high, out=self.high)
         np.maximum(self.size, np.maximum(piece.high, -piece.low), out=self.size)
@@ -253,15 +257,27 @@ class _Moving:
             self.room = list(np.empty((AT_ONCE, POINTS, self.columns.size)))
         return self.room.pop()
 
+    def lengthen(self, found: Responses) -> None:
+        """Make pieces twice as long if that does for enough of the loops; the others are not resolved."""
+        assert isinstance(self.law, ClosedLaw)  # noqa: S101  -- with dead time its pieces are what they are
+        law = self.law.doubled()
+        resolved = law.resolves(self.state) | self.left
+        if resolved.mean() >= ENOUGH:
+            self.law, self.longer = law, 2.0 * self.longer
+            self.tail[~resolved] = np.inf
+            self.keep(np.nonzero(resolved & ~self.left)[0], found)
+
     def at_rest(self) -> Flags:
         """Return which loops deviate no more, as seen over the last dead time, in output and in the plant's input."""
-        resting = np.abs(self.recent[-1][-1]) <= AT_REST * self.size
+        # the slower the mode that is left, the more a deviation adds to integrals over time, and to their moments
+        limit = AT_REST / self.longer**2 * self.size
+        resting = np.abs(self.recent[-1][-1]) <= limit
         places = np.nonzero(resting)[0]
         if places.size:
             final = self.march.final_control[self.columns[places]] + self.march.load
             quiet = np.ones(places.size, dtype=bool)
             for values in list(self.recent)[-self.splits :]:
-                quiet &= np.abs(values[:, places]).max(axis=0) <= AT_REST * self.size[places]
+                quiet &= np.abs(values[:, places]).max(axis=0) <= limit[places]
             for inputs in self.entering:
                 quiet &= np.abs(inputs[:POINTS, places] - final).max(axis=0) <= AT_REST * self.input_size[places]
             resting[places] = quiet
@@ -270,10 +286,10 @@ class _Moving:
     def last_modes(self, elapsed: float) -> LastModes:
         return last_modes(self.loops, list(self.recent), elapsed, self.size, self.band, self.high)
 
-    def leave(self, leaving: Flags, found: Responses, end: int) -> Flags:
-        """Note which loops leave after ``end`` pieces; return all that have left but still move along."""
+    def leave(self, leaving: Flags, found: Responses) -> Flags:
+        """Note which loops leave now; return all that have left but still move along."""
         newly = leaving & ~self.left
-        found.ends[self.columns[newly]] = end
+        found.ends[self.columns[newly]] = self.count
         self.left |= newly
         return self.left
 
@@ -286,7 +302,7 @@ class _Moving:
         found.unresolved[self.columns[unresolved]] = True
         found.failed[self.columns[unusable]] = True
         self.columns, self.loops, self.law = self.columns[stay], self.loops.take(stay), self.law.take(stay)
-        for name in ("final", "band", "impulse", "size", "high", "input_size", "tail", "left"):
+        for name in ("band", "impulse", "size", "high", "input_size", "tail", "left"):
             setattr(self, name, getattr(self, name)[stay])
         self.state, self.room = self.state.take(stay, axis=1), []
         self.entering = deque(inputs.take(stay, axis=1) for inputs in self.entering)

@@ -34,6 +34,7 @@ class PieceLaw:
     measures_output: bool  # whether the filtered output is the output itself
     gains: Array  # shape (4, n)
     constant: Array  # what set-point and load add to the plant's input by themselves
+    final: Array  # output at rest
     result: Array  # the map's values for one piece
 
     @classmethod
@@ -48,31 +49,40 @@ class PieceLaw:
         parts = [fixed.output, *(fixed.basis[w] for w in used)]
         blocks = np.concatenate([*parts, *(LAST_ROWS @ part for part in parts), fixed.state, [WEIGHTS @ fixed.output]])
         constant = gains[0] * (setpoint * chain.wr[0]) if direct else np.zeros(len(loops))
-        return cls(blocks, tuple(used), plain, gains, constant + load, np.empty((blocks.shape[0], len(loops))))
+        final, _ = loops.final(setpoint, load)
+        result = np.empty((blocks.shape[0], len(loops)))
+        return cls(blocks, tuple(used), plain, gains, constant + load, final, result)
 
     def take(self, columns: Places) -> PieceLaw:
         """Return the law of some of the columns."""
         result = np.empty((self.blocks.shape[0], columns.size))
-        return replace(self, gains=self.gains[:, columns], constant=self.constant[columns], result=result)
+        constant, final = self.constant[columns], self.final[columns]
+        return replace(self, gains=self.gains[:, columns], constant=constant, final=final, result=result)
 
-    def apply(self, inputs: Array, leaving: Array) -> tuple[Array, Array, Array, Array]:
-        """Return output, state at the end, integral of the output and last coefficients of the plant's input.
+    def begun(self, state: Array) -> Array:
+        """Return the states with which the first piece is entered."""
+        return state
 
-        ``leaving`` is filled with the plant's input. The arrays returned hold until the next piece.
+    def apply(self, inputs: Array, leaving: Array, values: Array) -> tuple[Array, Array, Array]:
+        """Return state at the end, integral of the output's deviation and last coefficients of the plant's input.
+
+        ``leaving`` is filled with the plant's input, ``values`` with the output's deviation from its final value. The
+        arrays returned hold until the next piece.
         """
         parts = len(self.used) + 1
         result = np.matmul(self.blocks, inputs, out=self.result)
-        values, rest = result[: parts * POINTS].reshape(parts, POINTS, -1), result[parts * POINTS :]
+        signals, rest = result[: parts * POINTS].reshape(parts, POINTS, -1), result[parts * POINTS :]
         tails = rest[: parts * TAIL].reshape(parts, TAIL, -1)
         tail = np.zeros_like(tails[0])
         if self.measures_output:
-            np.multiply(values[0], self.gains[1], out=leaving)
+            np.multiply(signals[0], self.gains[1], out=leaving)
             tail += tails[0] * self.gains[1]
         else:
             leaving[:] = 0.0
         leaving += self.constant
         for place, row in enumerate(self.used, start=1):
-            values[place] *= self.gains[row]
-            leaving += values[place]
+            signals[place] *= self.gains[row]
+            leaving += signals[place]
             tail += tails[place] * self.gains[row]
-        return values[0], rest[parts * TAIL : -1].copy(), rest[-1], tail
+        np.subtract(signals[0], self.final, out=values)
+        return rest[parts * TAIL : -1].copy(), rest[-1] - 2.0 * self.final, tail

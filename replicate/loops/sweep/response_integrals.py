@@ -32,7 +32,7 @@ class ResponseIntegrals(ResponsePieces):
         areas = np.zeros((len(self.pieces), self.count))
         for index, piece in enumerate(self.pieces):
             areas[index, piece.columns] = piece.area
-        return np.asarray(np.where(self._exists, areas, 0.0) * (0.5 * self._lengths())[:, None])
+        return np.asarray(np.where(self._exists, areas, 0.0) * (0.5 * self.responses.lengths)[:, None])
 
     def ie(self) -> Array:
         """Return the integrated error, for a load response the integrated deviation."""
@@ -48,7 +48,7 @@ class ResponseIntegrals(ResponsePieces):
         squares = np.zeros((len(self.pieces), self.count))
         for index, piece in enumerate(self.pieces):
             squares[index, piece.columns] = weights @ (matrix @ piece.values) ** 2
-        squares = np.where(self._exists, squares, 0.0) * (0.5 * self._lengths())[:, None]
+        squares = np.where(self._exists, squares, 0.0) * (0.5 * self.responses.lengths)[:, None]
         modes = self.responses.modes
         found = squares.sum(axis=0) + modes.square_integral()
         return self._require_sure(np.abs(modes.coefficient) / self._decay, found)
@@ -57,7 +57,7 @@ class ResponseIntegrals(ResponsePieces):
         """Return the integrated squared error, weighted with the time from the step."""
         points, weights = chebyshev.gauss_legendre(DEGREE + 2)
         matrix = chebyshev.basis(points, DEGREE).T @ chebyshev.values_to_coefficients(DEGREE)
-        half, middle = 0.5 * self._lengths(), self._middles()
+        half, middle = 0.5 * self.responses.lengths, self._middles()
         total = np.zeros((len(self.pieces), self.count))
         for index, piece in enumerate(self.pieces):
             times = middle[index] + half[index] * points
@@ -73,13 +73,13 @@ class ResponseIntegrals(ResponsePieces):
         piece, column = self._crossing(total, np.ones(len(self.pieces)))
         if piece.size:
             (area,) = _absolute(self._gathered(piece, column), _area_up_to())
-            total[piece, column] = area * (0.5 * self._lengths()[piece])
+            total[piece, column] = area * (0.5 * self.responses.lengths[piece])
         found = total.sum(axis=0) + self.responses.modes.absolute_integral()
         return self._require_sure(1.0 / self._decay, found)
 
     def itae(self) -> Array:
         """Return the integrated absolute error, weighted with the time from the step."""
-        half, middle = 0.5 * self._lengths(), self._middles()
+        half, middle = 0.5 * self.responses.lengths, self._middles()
         moment_weights = _moment_up_to().sum(axis=0) @ chebyshev.values_to_coefficients(DEGREE)
         total = np.zeros((len(self.pieces), self.count))
         for index, record in enumerate(self.pieces):
@@ -108,7 +108,7 @@ class ResponseIntegrals(ResponsePieces):
         return total
 
     def _middles(self) -> Array:
-        lengths = self._lengths()
+        lengths = self.responses.lengths
         return np.asarray(np.cumsum(lengths) - 0.5 * lengths)
 
     def _crossing(self, total: Array, weight: Array) -> tuple[Places, Places]:
@@ -116,7 +116,7 @@ class ResponseIntegrals(ResponsePieces):
         (low, high), slack = self._ranges, self._slack
         near = (low < slack) & (high > -slack) & self._exists
         least = MARGIN * NEGLIGIBLE / len(self.pieces) * total.sum(axis=0)
-        near &= slack * (self._lengths() * weight)[:, None] > least
+        near &= slack * (self.responses.lengths * weight)[:, None] > least
         piece, column = np.nonzero(near)
         return piece, column
 

@@ -35,7 +35,7 @@ class ResponsePieces:
     @property
     def end(self) -> float:
         """The end of the longest response."""
-        return float(self._lengths().sum())
+        return float(self.responses.lengths.sum())
 
     @cached_property
     def _ranges(self) -> tuple[Array, Array]:
@@ -71,13 +71,9 @@ class ResponsePieces:
         return values
 
     def _time(self, piece: Places, x: Array) -> Array:
-        length = np.where(piece == len(self.pieces) - 1, self.responses.share, 1.0)
-        return np.asarray(self.responses.length * (piece + 0.5 * (x + 1.0) * length))
-
-    def _lengths(self) -> Array:
-        lengths = np.full(len(self.pieces), self.responses.length)
-        lengths[-1] *= self.responses.share
-        return lengths
+        lengths = self.responses.lengths
+        starts = np.cumsum(lengths) - lengths
+        return np.asarray(starts[piece] + 0.5 * (x + 1.0) * lengths[piece])
 
 
 def summits(values: Array, candidates: Flags) -> Flags:

@@ -32,7 +32,7 @@ System = tuple[Plant, Plant | None, PID]
 Pieces = tuple[Array, Array, Array]  # breaks, and the Chebyshev coefficients of output and control signal
 
 SETTLED = 34.0  # time constants of a mode until it has decayed to rounding, exp(-34) = 2e-15
-GAP = 1e4  # least ratio of the rates of fast and slow modes: with less, a march takes few pieces
+GAP = 30.0  # least ratio of the rates of fast and slow modes: with less, a march takes few pieces, and errs little
 REACH = 4.0  # length of a piece, in units of one over the largest modulus of a mode that is left
 CIRCLE_RADIUS, CIRCLE_POINTS = 0.3, 32  # of the distance of the nearest pole; the rule's error is 0.3^32
 CLOSE = 0.5  # deviation from rest, relative to it, that is small

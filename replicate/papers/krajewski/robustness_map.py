@@ -28,6 +28,7 @@ def draw_map(axes: Axes, tau: float) -> None:
     x, y = np.meshgrid(np.linspace(1e-6, a[1], 401), np.linspace(*b, 401))
     design = np.array([x, y, np.full_like(x, tau)])
     up = 1.0 + SPREAD
+    # phase margin and crossover are closed forms of a, b and τ: no loop has to be computed
     shorter, longer = (changed(design, up, up, T).phase_margin for T in (1.0 - SPREAD, up))
     difference = np.ma.masked_where(phase_margin(x, y, tau) < 30.0, shorter - longer)
     axes.contourf(x, y, difference, levels=[-1e3, 0.0, 1e3], colors=["C1", "C0"], alpha=0.25)

@@ -9,7 +9,7 @@ import numpy as np
 
 from replicate.exhibits import Finding
 from replicate.exhibits.evidence import listed, number
-from replicate.loops import PI, Loop, design_pi
+from replicate.loops import PI, Loop, design_pi, sweep
 from replicate.papers.panagopoulos import paper
 from replicate.papers.panagopoulos.part_1.designs import (
     BOUNDS,
@@ -93,9 +93,10 @@ def circle_criterion() -> Finding:
     for plant in SIX:
         for ms in BOUNDS:
             found = design(plant, ms)
-            for factor in np.linspace(ms / (ms + 1.0), ms / (ms - 1.0), 9):
-                tried += 1
-                unstable += not Loop(PLANTS[plant], PI(factor * found.k, factor * found.ki)).is_stable()
+            factors = np.linspace(ms / (ms + 1.0), ms / (ms - 1.0), 9)
+            stable = sweep(PLANTS[plant], np.outer(factors, [found.k, found.ki]), "stable")["stable"]
+            tried += stable.size
+            unstable += int(np.sum(~stable))
     return Finding(
         "holds" if unstable == 0 else "fails",
         unstable,
