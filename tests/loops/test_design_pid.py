@@ -11,13 +11,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.optimize import Bounds, brentq, differential_evolution, nnls
 
 from replicate.loops import PI, Constraint, Loop, LoopError, PIDDesign, Plant, design_pi, design_pid, search_range
-from replicate.loops.design import pid_search
+from replicate.loops.design import gain_map, pid_search
+from replicate.loops.design.gain_map import Summit
 
 LAG = np.array([1.0, 1.0])
 
@@ -234,8 +236,12 @@ def test_the_optimum_of_a_lightly_damped_plant_is_found() -> None:
 def test_what_a_fine_map_shows_is_an_optimum_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     # the resonance is so narrow that the circle is touched between the frequencies of the coarse grid
     climbs = []
-    ascend = pid_search.ascend
-    monkeypatch.setattr(pid_search, "ascend", lambda *given: climbs.append(given) or ascend(*given))
+
+    def ascend(*given: Any) -> Summit:
+        climbs.append(given)
+        return gain_map.ascend(*given)
+
+    monkeypatch.setattr(pid_search, "ascend", ascend)
     resonant = Plant([9.0], np.polymul([1.0, 1.0], [1.0, 0.1, 9.0]))
     found = design_pid(resonant, ms=2.0)
     assert found.status == "optimal"

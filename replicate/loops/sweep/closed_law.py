@@ -110,4 +110,4 @@ class ClosedLaw:
 
 def _product(left: Array, right: Array) -> Array:
     """Return products of matrices, column by column."""
-    return np.einsum("...ijn,...jkn->...ikn", left, right)
+    return np.asarray(np.einsum("...ijn,...jkn->...ikn", left, right))

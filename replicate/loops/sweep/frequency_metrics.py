@@ -176,7 +176,7 @@ class FrequencyMetrics:
         excess = 2.0 * self._turned[::2]  # (|1 + L|^2 - 1) |D|^2 = |N|^2 + 2 Re(N conj(D))
         size = squared_magnitude(self.loops.num)[::-1]
         excess[: size.shape[0]] += size
-        return self._may_have_roots_beyond(excess) | (excess[-1] <= 0.0)
+        return np.asarray(self._may_have_roots_beyond(excess) | (excess[-1] <= 0.0))
 
     @property
     def _turned(self) -> Array:
