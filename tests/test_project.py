@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from replicate.errors import ProjectError, UnknownPaperError
+from replicate.errors import PaperDefinitionError, ProjectError, UnknownPaperError
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
 from replicate.resources import templates_dir
@@ -87,6 +87,34 @@ def test_two_projects_with_a_paper_of_one_name(tmp_path: Path) -> None:
         file = tmp_path / name / "papers" / "gauss" / "__init__.py"
         file.write_text(file.read_text().replace("TODO: title of the paper", name))
         assert Library(find_project(tmp_path / name)).paper("gauss").title == name
+
+
+@pytest.mark.parametrize(
+    "folders",
+    [
+        ("mine/papers/gauss",),
+        ("mine/papers", "mine/papers/gauss"),
+        ("mine/papers/gauss", "mine/papers"),
+        ("copy/papers",),
+    ],
+)
+def test_folders_that_overlap_with_the_project_or_hide_its_papers(tmp_path: Path, folders: tuple[str, ...]) -> None:
+    for name in ("mine", "copy"):
+        made(tmp_path / name, "gauss", "euler")
+    library = Library(find_project(tmp_path / "mine"), [tmp_path / folder for folder in folders])
+    for name in ("euler", "gauss", *ids(library)):
+        paper = library.paper(name)
+        assert list(paper.exhibits) == ["table-1", "fig-1", "claims"]
+        assert str(paper.folder()).startswith(str(tmp_path / Path(folders[0]).parts[0]))
+    assert not library.broken
+
+
+def test_two_folders_with_a_paper_of_one_name_are_refused(tmp_path: Path) -> None:
+    for name in ("one", "other"):
+        new_paper("gauss", tmp_path / name)
+    library = Library(folders=[tmp_path / "one", tmp_path / "other"])
+    with pytest.raises(PaperDefinitionError, match=r"^other/gauss: the paper 'gauss' is already defined in one/gauss;"):
+        library.papers()
 
 
 def test_a_paper_with_the_name_of_a_library_is_refused(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ those that come with this package. A paper that is named is looked for in all of
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -42,7 +41,7 @@ class Library:
     folders: Sequence[Path] = ()
     bundled: bool = False
     broken: list[str] = field(default_factory=list)
-    _looked_into: dict[Path, list[Found]] = field(default_factory=dict)
+    _packages: dict[Path, Found | None] = field(default_factory=dict)
 
     @cached_property
     def meant(self) -> list[Found]:
@@ -51,7 +50,7 @@ class Library:
         if self.bundled:
             found += self._bundled
         if self.folders or self.bundled or self.project is None:
-            return found
+            return _once(found)
         found += [one for folder in self.project.papers for one in self._in(folder)]
         if self.project.bundled:
             found += self._bundled
@@ -63,13 +62,10 @@ class Library:
                 msg = f"{place}: papers: there is neither a folder nor an installed paper '{name}'; installed: {listed}"
                 raise ProjectError(msg)
             found += known
-        return found
+        return _once(found)
 
     def _in(self, folder: Path) -> list[Found]:
-        place = Path(os.path.realpath(folder))  # of links in a circle, too
-        if place not in self._looked_into:
-            self._looked_into[place] = papers_in(folder)
-        return self._looked_into[place]
+        return papers_in(folder, self._packages)
 
     @cached_property
     def _bundled(self) -> list[Found]:
@@ -84,9 +80,10 @@ class Library:
         """Every paper within reach, those that a bare command means first, each package once."""
         found = list(self.meant)
         if self.project is not None and (self.folders or self.bundled):
-            found += [one for folder in self.project.papers for one in self._in(folder)]
+            named = {package.name for package in self._packages}  # of two packages of one name, one can be imported
+            found += [one for folder in self.project.papers for one in papers_in(folder, self._packages, named)]
         found += [*self._bundled, *self._installed]
-        return list({one.where: one for one in reversed(found)}.values())[::-1]
+        return _once(found)
 
     def ids(self) -> list[str]:
         """Return the ids of the usable papers within reach, in alphabetical order."""
@@ -194,3 +191,8 @@ class Library:
         except ReplicateError as error:
             self.broken.append(str(error))
             return None
+
+
+def _once(found: Iterable[Found]) -> list[Found]:
+    """Return each of what was found once, at its first place: folders overlap."""
+    return list({id(one): one for one in found}.values())

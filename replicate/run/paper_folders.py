@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import importlib.util
 import sys
+from collections.abc import Container
 from pathlib import Path
 
 from replicate.errors import UnknownPaperError
@@ -20,11 +21,18 @@ _MARKS = ("ledger.toml", "printed", "notes.md")
 _added: set[str] = set()
 
 
-def papers_in(folder: Path) -> list[Found]:
+def papers_in(folder: Path, known: dict[Path, Found | None], hidden: Container[str] = ()) -> list[Found]:
     """Return the papers in a folder, which may also be the folder of one paper.
 
     A distribution in the folder (``pyproject.toml`` and beside it, or in ``src``, the paper's package) is looked into.
-    The papers are imported anew, whatever an earlier call has imported.
+
+    Parameters
+    ----------
+    known
+        What was found before, by the folder of each package, and is not imported again; what is found is added.
+        Everything else is imported anew, whatever this process has imported from there.
+    hidden
+        Names of packages that are left alone, unless they are known: others of these names are meant.
 
     Raises
     ------
@@ -34,9 +42,11 @@ def papers_in(folder: Path) -> list[Found]:
     if not folder.is_dir():
         msg = f"there is no folder {folder}"
         raise UnknownPaperError(msg)
-    packages = _packages(folder.resolve())
-    _forget(packages)
-    return [found for package in packages if (found := _look_into(package)) is not None]
+    packages = [package for package in _packages(folder.resolve()) if package in known or package.name not in hidden]
+    fresh = [package for package in packages if package not in known]
+    _forget(fresh, {str(package.parent) for package in known})
+    known.update((package, _look_into(package)) for package in fresh)
+    return [found for package in packages if (found := known[package]) is not None]
 
 
 def _packages(folder: Path) -> list[Path]:
@@ -54,10 +64,14 @@ def _packages(folder: Path) -> list[Path]:
     return packages
 
 
-def _forget(packages: list[Path]) -> None:
-    """Forget what was imported from these folders, and from other folders of papers that have one of the same name."""
+def _forget(packages: list[Path], in_use: set[str]) -> None:
+    """Forget what was imported from these folders, and from other folders of papers that have one of the same name.
+
+    Folders that are in use are forgotten only where they have a package of the same name.
+    """
     names, roots = {package.name for package in packages}, {str(package.parent) for package in packages}
     others = {root for root in _added - roots if any((Path(root) / name).is_dir() for name in names)}
+    roots -= in_use
     for name, module in list(sys.modules.items()):
         file = Path(getattr(module, "__file__", None) or "")
         root = next((root for root in _added if file.is_relative_to(root)), None)
