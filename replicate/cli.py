@@ -8,6 +8,7 @@ the commands, so that ``replicate --help`` answers at once.
 from __future__ import annotations
 
 import io
+import os
 import signal
 import sys
 import threading
@@ -84,6 +85,7 @@ def _run() -> NoReturn:
 def _prepare() -> None:
     """Let a terminal without Unicode show what it can, and a terminated run tidy up first."""
     isolate_matplotlib()
+    os.environ.pop("SOURCE_DATE_EPOCH", None)  # numpy reads a number in it; nothing of ours has a date
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")

@@ -315,3 +315,23 @@ def test_an_output_folder_that_cannot_be_written(replicate: Run) -> None:
     status, _, err = replicate("report", "lab", "--out", "file/build")
     assert status == 2
     assert err.startswith("replicate: file/build: cannot be written: ")
+
+
+@pytest.mark.parametrize("command", [("report", "lab", "--out"), ("accept", "lab", "--reason", "x", "--accepted")])
+def test_nothing_is_written_where_everything_lies(
+    replicate: Run, command: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    monkeypatch.setenv("USERPROFILE" if os.name == "nt" else "HOME", str(home))
+    for folder, what in ((home.anchor, "the root of a disk"), (home / ".." / "home", "the user's home")):
+        status, _, said = replicate(*command, str(folder))
+        assert status == 2
+        assert f"is {what}, where nothing is written; name a folder in it, such as" in said
+    assert list(home.iterdir()) == []
+
+
+def test_a_date_of_a_build_that_is_no_number_stops_no_library(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "x")  # numpy's own f2py reads it on import
+    assert replicate("list")[0] == 0
+    assert "SOURCE_DATE_EPOCH" not in os.environ

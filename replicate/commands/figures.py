@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from replicate.commands.options import BROKEN, DIFFERS, Jobs
+from replicate.commands.options import BROKEN, DIFFERS, Jobs, not_shared
 from replicate.errors import ReplicateError
 from replicate.terminal.streams import echo
 
@@ -20,7 +20,9 @@ if TYPE_CHECKING:
 app = typer.Typer(help="Compare and accept the figures of plotting scripts.", no_args_is_help=True)
 
 Patterns = Annotated[list[str], typer.Argument(metavar="PATTERN", help="Scripts, folders, or patterns with *.")]
-AcceptedFigures = Annotated[Path, typer.Option("--accepted", help="Folder of the accepted figures.", file_okay=False)]
+AcceptedFigures = Annotated[
+    Path, typer.Option("--accepted", help="Folder of the accepted figures.", file_okay=False, callback=not_shared)
+]
 Timeout = Annotated[float, typer.Option("--timeout", metavar="SECONDS", help="Stop a script that takes longer.")]
 
 _FOLDER, _OUT = Path("figures"), Path("build/figures-diff")
@@ -30,7 +32,9 @@ _FOLDER, _OUT = Path("figures"), Path("build/figures-diff")
 def diff(
     patterns: Patterns,
     accepted: AcceptedFigures = _FOLDER,
-    out: Annotated[Path, typer.Option("--out", help="Folder for the page and its data.", file_okay=False)] = _OUT,
+    out: Annotated[
+        Path, typer.Option("--out", help="Folder for the page and its data.", file_okay=False, callback=not_shared)
+    ] = _OUT,
     comment: Annotated[
         Path | None,
         typer.Option("--comment", help="Also write the text of a comment on the pull request here.", dir_okay=False),

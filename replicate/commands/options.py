@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from replicate.errors import AcceptedStateError, ProjectError
+from replicate.errors import AcceptedStateError, OutputError, ProjectError
 from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
@@ -67,9 +68,27 @@ def library(folders: list[Path] | None = None, bundled: bool = False) -> Library
 
 def output_folder(papers: Library, out: Path | None) -> Path:
     """Return where a run leaves what it makes: the folder named, the project's, or ``build`` here."""
-    if out is not None:
-        return out
-    return shortest(papers.project.out) if papers.project is not None else BUILD
+    if out is None:
+        out = shortest(papers.project.out) if papers.project is not None else BUILD
+    return not_shared(out)
+
+
+def not_shared(folder: Path) -> Path:
+    """Return a folder that a command may fill.
+
+    Raises
+    ------
+    OutputError
+        If everything else lies in it: the root of a disk, or the user's home.
+    """
+    place = folder.resolve()
+    shared = {Path(place.anchor): "the root of a disk"}
+    with suppress(RuntimeError):  # a user whom the system does not know
+        shared[Path.home().resolve()] = "the user's home"
+    if place in shared:
+        msg = f"{folder}: is {shared[place]}, where nothing is written; name a folder in it, such as {folder / BUILD}"
+        raise OutputError(msg)
+    return folder
 
 
 def accepted_folder(papers: Library, chosen: Sequence[Paper], folder: Path | None, *, writing: bool = False) -> Path:
@@ -84,6 +103,8 @@ def accepted_folder(papers: Library, chosen: Sequence[Paper], folder: Path | Non
 
     if folder is None:
         folder = _accepted_folder(papers, chosen, writing=writing)
+    if writing:
+        not_shared(folder)
     finish_interrupted(folder)
     return folder
 
