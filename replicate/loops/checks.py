@@ -18,6 +18,8 @@ from replicate.loops.numerics.polynomials import trimmed
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+PROBE = np.array([1.0 + 1.0j, 2.0 + 1.0j, 3.0 + 1.0j])  # any points at all
+
 
 def real(value: object) -> float:
     """Return a real number as a float; ``ValueError`` for anything else, ``nan`` and ``inf`` are let through."""
@@ -52,6 +54,24 @@ def non_negative(name: str, value: object, *, allowed: str = "a finite number >=
     return _within(name, value, allowed, 0.0, closed=True)
 
 
+def at_least(least: float, name: str, value: object) -> float:
+    """Return a finite number that is not below another as a float; LoopError otherwise."""
+    return _within(name, value, f"a finite number >= {least:g}", least, closed=True)
+
+
+def settling_band(band: object) -> float:
+    """Return half the width of a settling band as a float; LoopError unless it is a positive fraction."""
+    return positive("the settling band", band, allowed="a positive fraction")
+
+
+def nonzero(name: str, value: object, *, allowed: str = "a finite number other than 0") -> float:
+    """Return a finite number other than 0 as a float; LoopError otherwise."""
+    number = finite(name, value, allowed=allowed)
+    if not number:
+        raise LoopError(_message(name, value, allowed))
+    return number
+
+
 def instance(name: str, value: object, kind: type, allowed: str) -> None:
     """Check what kind of thing an argument is; LoopError otherwise."""
     if not isinstance(value, kind):
@@ -60,16 +80,24 @@ def instance(name: str, value: object, kind: type, allowed: str) -> None:
 
 
 def function(name: str, value: object) -> None:
-    """Check that an argument can be called; LoopError otherwise."""
+    """Check that an argument maps complex arrays to numbers, one for each; LoopError otherwise."""
+    allowed = "callable with a complex array s, with a number for each of its elements"
     if not callable(value):
-        raise LoopError(_message(name, value, "callable with a complex array s"))
-
-
-def triple(name: str, value: object, allowed: str) -> tuple[Any, Any, Any]:
-    """Return three things as a tuple; LoopError otherwise."""
-    if not isinstance(value, tuple | list) or len(value) != 3:
         raise LoopError(_message(name, value, allowed))
-    return value[0], value[1], value[2]
+    try:
+        with np.errstate(all="ignore"):  # where it has values is another question
+            found = value(PROBE)
+        np.broadcast_to(points("its value", found), PROBE.shape)
+    except Exception as error:
+        msg = f"{_message(name, value, allowed)}: {type(error).__name__}: {shown(error)}"
+        raise LoopError(msg) from error
+
+
+def exactly(count: int, name: str, value: object, allowed: str) -> tuple[Any, ...]:
+    """Return so many things as a tuple; LoopError otherwise."""
+    if not isinstance(value, tuple | list) or len(value) != count:
+        raise LoopError(_message(name, value, allowed))
+    return tuple(value)
 
 
 def several(name: str, values: object, allowed: str) -> list[Any]:

@@ -76,10 +76,9 @@ class PID(ControllerViews):
         self._set("derivative_filter", lag)
         for name in ("measurement_filter", "setpoint_filter"):
             self._set(name, _checked_filter(name, getattr(self, name)))
-        if self.measurement_filter_order not in (1, 2):
-            msg = (
-                f"the order of the measurement filter must be 1 or 2, not {checks.shown(self.measurement_filter_order)}"
-            )
+        order = self.measurement_filter_order
+        if not np.isscalar(order) or order not in (1, 2):
+            msg = f"the order of the measurement filter must be 1 or 2, not {checks.shown(order)}"
             raise LoopError(msg)
 
     def _set(self, name: str, value: object) -> None:

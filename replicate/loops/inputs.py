@@ -8,10 +8,13 @@ response.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 
 __all__ = ["Input", "PiecewisePolynomial", "Pulse", "Ramp", "Sine", "Step"]
@@ -19,16 +22,11 @@ __all__ = ["Input", "PiecewisePolynomial", "Pulse", "Ramp", "Sine", "Step"]
 Event = tuple[float, int, float]  # time, order n of the derivative that jumps, height of the jump
 
 
-def _checked(name: str, value: object, *, at_least: float = -math.inf) -> float:
-    try:
-        number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        number = math.nan
-    if isinstance(value, str) or not (at_least <= number < math.inf):
-        allowed = "a finite number" if math.isinf(at_least) else f"a finite number >= {at_least:g}"
-        msg = f"{name} must be {allowed}, not {value!r}"
-        raise LoopError(msg)
-    return number
+def _as_floats(item: object, kind: str, **fields: Callable[[str, object], float]) -> None:
+    """Replace fields of an input by what the check of each returns, a float."""
+    for field, check in fields.items():
+        name = f"the {'time' if field == 'at' else field} of a {kind}"
+        object.__setattr__(item, field, check(name, getattr(item, field)))
 
 
 @dataclass(frozen=True)
@@ -39,12 +37,11 @@ class Step:
     at: float = 0.0
 
     def __post_init__(self) -> None:
-        _checked("the height of a step", self.height)
-        _checked("the time of a step", self.at, at_least=0.0)
+        _as_floats(self, "step", height=checks.finite, at=checks.non_negative)
 
     def events(self) -> list[Event]:
         """Return the jumps of the derivatives."""
-        return [(float(self.at), 0, float(self.height))]
+        return [(self.at, 0, self.height)]
 
 
 @dataclass(frozen=True)
@@ -56,15 +53,11 @@ class Pulse:
     at: float = 0.0
 
     def __post_init__(self) -> None:
-        _checked("the height of a pulse", self.height)
-        _checked("the time of a pulse", self.at, at_least=0.0)
-        if _checked("the duration of a pulse", self.duration) <= 0.0:
-            msg = f"the duration of a pulse must be > 0, not {self.duration!r}"
-            raise LoopError(msg)
+        _as_floats(self, "pulse", height=checks.finite, duration=checks.positive, at=checks.non_negative)
 
     def events(self) -> list[Event]:
         """Return the jumps of the derivatives."""
-        return [(float(self.at), 0, float(self.height)), (float(self.at + self.duration), 0, -float(self.height))]
+        return [(self.at, 0, self.height), (self.at + self.duration, 0, -self.height)]
 
 
 @dataclass(frozen=True)
@@ -76,16 +69,14 @@ class Ramp:
     duration: float = math.inf
 
     def __post_init__(self) -> None:
-        _checked("the slope of a ramp", self.slope)
-        _checked("the time of a ramp", self.at, at_least=0.0)
-        if self.duration != math.inf and _checked("the duration of a ramp", self.duration) <= 0.0:
-            msg = f"the duration of a ramp must be > 0, not {self.duration!r}"
-            raise LoopError(msg)
+        _as_floats(self, "ramp", slope=checks.finite, at=checks.non_negative)
+        if not np.isscalar(self.duration) or self.duration != math.inf:
+            _as_floats(self, "ramp", duration=checks.positive)
 
     def events(self) -> list[Event]:
         """Return the jumps of the derivatives."""
-        start: list[Event] = [(float(self.at), 1, float(self.slope))]
-        return start if math.isinf(self.duration) else [*start, (self.at + self.duration, 1, -float(self.slope))]
+        start: list[Event] = [(self.at, 1, self.slope)]
+        return start if math.isinf(self.duration) else [*start, (self.at + self.duration, 1, -self.slope)]
 
 
 @dataclass(frozen=True)
@@ -109,13 +100,17 @@ class PiecewisePolynomial:
     pieces: Sequence[tuple[float, Sequence[float]]]
 
     def __post_init__(self) -> None:
-        starts = [_checked("the start of a piece", start, at_least=0.0) for start, _ in self.pieces]
+        pieces = []
+        for piece in checks.several("the pieces", self.pieces, "a list of (start, coefficients)"):
+            start, coefficients = checks.exactly(2, "each piece", piece, "(start, coefficients)")
+            listed = checks.several("the coefficients of a piece", coefficients, "a list of numbers, constant first")
+            at = checks.non_negative("the start of a piece", start)
+            pieces.append((at, tuple(checks.finite("a coefficient of a piece", c) for c in listed)))
+        starts = [start for start, _ in pieces]
         if not starts or any(b <= a for a, b in pairwise(starts)):
             msg = f"the pieces must have ascending starts, at least one, not {starts}"
             raise LoopError(msg)
-        for _, coefficients in self.pieces:
-            for c in coefficients:
-                _checked("a coefficient", c)
+        object.__setattr__(self, "pieces", tuple(pieces))
 
     def events(self) -> list[Event]:
         """Return the jumps of the derivatives, those of height zero left out."""
@@ -123,11 +118,11 @@ class PiecewisePolynomial:
         before: list[float] = []  # derivatives of the piece before, at the start of this one
         start = 0.0
         for index, (at, coefficients) in enumerate(self.pieces):
-            after = [math.factorial(n) * float(c) for n, c in enumerate(coefficients)]
+            after = [math.factorial(n) * c for n, c in enumerate(coefficients)]
             before = _shifted(before, at - start) if index else []
             size = max(len(before), len(after))
             left, right = (part + [0.0] * (size - len(part)) for part in (before, after))
-            found += [(float(at), n, right[n] - left[n]) for n in range(size) if right[n] != left[n]]
+            found += [(at, n, right[n] - left[n]) for n in range(size) if right[n] != left[n]]
             before, start = after, at
         return found
 
@@ -148,12 +143,8 @@ class Sine:
     at: float = 0.0
 
     def __post_init__(self) -> None:
-        _checked("the amplitude of a sine", self.amplitude)
-        _checked("the phase of a sine", self.phase)
-        _checked("the time of a sine", self.at, at_least=0.0)
-        if _checked("the frequency of a sine", self.frequency) <= 0.0:
-            msg = f"the frequency of a sine must be > 0, not {self.frequency!r}"
-            raise LoopError(msg)
+        _as_floats(self, "sine", amplitude=checks.finite, frequency=checks.positive)
+        _as_floats(self, "sine", phase=checks.finite, at=checks.non_negative)
 
 
 Input = Step | Pulse | Ramp | PiecewisePolynomial | Sine

@@ -189,7 +189,7 @@ class Loop(LoopViews, SetOnce):
             If the loop is unstable.
         """
         self._require_stable("closest approach")
-        center = checks.positive("center", center, allowed="a number >= 1")
+        center = checks.at_least(1.0, "center", center)
         return self._peak(sensitivity.sensitivity_peak(self._transfer, self._landmarks, center))
 
     def complementary_peak(self) -> FrequencyPeak:

@@ -63,7 +63,8 @@ class Plant(PlantViews, SetOnce):
         if top.size > bottom.size:
             msg = f"the plant must be proper: numerator degree {top.size - 1} exceeds denominator degree {bottom.size - 1}"  # noqa: E501
             raise LoopError(msg)
-        self._set(top / bottom[0], bottom / bottom[0], checks.non_negative("the dead time", dead_time))
+        with np.errstate(over="ignore", under="ignore"):  # looked for below
+            self._set(top / bottom[0], bottom / bottom[0], checks.non_negative("the dead time", dead_time))
         if not (np.isfinite(self.num).all() and np.isfinite(self.den).all() and self.num.any()):
             msg = "the plant's coefficients, divided by the leading one of the denominator, exceed the range of floats"
             raise LoopError(msg)
@@ -159,7 +160,9 @@ class Plant(PlantViews, SetOnce):
         from replicate.loops.plants.sum_plant import sum_of
 
         given = checks.several("the terms of a plant", terms, "a list of (num, den, dead_time)")
-        return sum_of([Plant(*checks.triple("each term of a plant", term, "(num, den, dead_time)")) for term in given])
+        return sum_of(
+            [Plant(*checks.exactly(3, "each term of a plant", term, "(num, den, dead_time)")) for term in given]
+        )
 
     # ---- what kind of plant it is ---------------------------------------------------------------------------------
 
@@ -293,6 +296,7 @@ class Plant(PlantViews, SetOnce):
         gain
             The new unit of the gain, in the old one; a negative one changes the sign.
         """
+        time, gain = checks.positive("the unit of time", time), checks.nonzero("the unit of gain", gain)
         shift = time ** np.arange(self.den.size, dtype=float)
         offset = self.den.size - self.num.size
         scaled = Plant.__new__(Plant)
@@ -308,11 +312,14 @@ class Plant(PlantViews, SetOnce):
         from replicate.loops.plants.sum_plant import product_of
 
         if not isinstance(other, Plant):
-            factor = checks.finite("the factor of a plant", other)
-            return self.rescaled(1.0, 1.0 / factor) if factor else _no_plant()
+            other = Plant([checks.nonzero("the factor of a plant", other)], [1.0])
         return product_of(self, other)
 
     __rmul__ = __mul__
+
+    def __truediv__(self, divisor: float) -> Plant:
+        """Return the plant with its gain divided by a number."""
+        return self.rescaled(1.0, checks.nonzero("the divisor of a plant", divisor))
 
     def __add__(self, other: Plant | float) -> Plant:
         """Return the plants in parallel; a number is a static gain."""
@@ -333,8 +340,3 @@ class Plant(PlantViews, SetOnce):
 
     def __repr__(self) -> str:
         return f"Plant({self.num.tolist()}, {self.den.tolist()}, dead_time={checks.exact(self.dead_time)})"
-
-
-def _no_plant() -> Plant:
-    msg = "the factor of a plant must not be zero"
-    raise LoopError(msg)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.records import Record
 from replicate.loops.time_domain.total_variation import total_variation
@@ -127,6 +128,7 @@ class LoopSummary(Record):
 
 def summarize_signal(signal: Signal, band: float = 0.02) -> SignalSummary:
     """Return all metrics of a response, with the given settling band."""
+    band = checks.settling_band(band)
 
     def get(metric: Callable[[], float]) -> float:
         try:

@@ -24,7 +24,7 @@ from replicate.loops import (
     sweep,
     tune,
 )
-from replicate.loops.inputs import Step
+from replicate.loops.inputs import PiecewisePolynomial, Pulse, Ramp, Sine, Step
 
 PLANT = Plant.foptd(1.0, 1.0, 1.0)
 LOOP = Loop(PLANT, PI(0.6, 0.5))
@@ -44,6 +44,15 @@ NUMBERS: dict[str, Callable[[Any], Any]] = {
     "tune.simc": lambda v: tune.simc(PLANT, v),
     "tune.lambda_": lambda v: tune.lambda_(PLANT, v),
     "Step": Step,
+    "Pulse, duration": lambda v: Pulse(1.0, v),
+    "Ramp, duration": lambda v: Ramp(1.0, duration=v),
+    "Sine, frequency": lambda v: Sine(1.0, v),
+    "PiecewisePolynomial, start": lambda v: PiecewisePolynomial([(v, [1.0])]),
+    "Plant.__truediv__": lambda v: PLANT / v,
+    "Plant.rescaled, time": lambda v: PLANT.rescaled(v, 1.0),
+    "Plant.rescaled, gain": lambda v: PLANT.rescaled(1.0, v),
+    "Signal.summary": Y.summary,
+    "Circle": lambda v: Circle(v, 1.0),
 }
 OPTIONAL = {"tune.simc", "tune.lambda_", "Loop.respond_to, until"}
 
@@ -157,7 +166,7 @@ def test_what_is_added_to_a_plant_or_multiplied_with_it_is_a_number() -> None:
     for wrong in (None, "", [], True):
         with pytest.raises(LoopError, match="must be a finite number, not"):
             PLANT + wrong
-        with pytest.raises(LoopError, match="must be a finite number, not"):
+        with pytest.raises(LoopError, match="must be a finite number other than 0, not"):
             PLANT * wrong
     with pytest.raises(LoopError, match="must be at least 1 and whole, not True"):
         Loop(PLANT, PI(0.2)).poles(True)
@@ -171,3 +180,57 @@ def test_complex_times_and_frequencies_are_refused_and_the_past_is_at_rest() -> 
         y(np.complex128(0.5))
     with pytest.raises(LoopError, match="frequencies must be positive finite numbers"):
         loop.bode(np.complex128(0.5))
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: LOOP.closest_approach(0.5), "center must be a finite number >= 1, not 0.5"),
+        (lambda: PLANT / 0, "the divisor of a plant must be a finite number other than 0, not 0"),
+        (lambda: PLANT.rescaled(0.0, 1.0), "the unit of time must be a finite number > 0"),
+        (lambda: PLANT.rescaled(1.0, 0.0), "the unit of gain must be a finite number other than 0"),
+        (lambda: Plant([1e308, 1.0], [1e-308, 1.0]), "exceed the range of floats"),
+        (lambda: PI(1.0, measurement_filter_order=np.array([1, 2])), "measurement filter must be 1 or 2"),  # type: ignore[arg-type]
+        (lambda: tune.simc(1.0), "the plant of a tuning rule must be a Plant, not float"),  # type: ignore[arg-type]
+        (lambda: Y.summary(-1.0), "the settling band must be a positive fraction"),
+        (lambda: PiecewisePolynomial(5), "the pieces must be a list of"),  # type: ignore[arg-type]
+        (lambda: PiecewisePolynomial([1.0]), "each piece must be"),  # type: ignore[list-item]
+        (lambda: PiecewisePolynomial([(0.0, 1.0)]), "the coefficients of a piece must be"),  # type: ignore[list-item]
+    ],
+)  # fmt: skip
+def test_what_is_not_allowed_is_named(call: Callable[[], object], message: str) -> None:
+    with pytest.raises(LoopError, match=message):
+        call()
+
+
+@pytest.mark.parametrize(
+    "function",
+    [lambda _: "a", lambda _: None, lambda _: [1.0, 2.0], lambda s: abs(s) if s == 0 else s, lambda s: complex(s) + 1],
+    ids=["text", "nothing", "another shape", "a branch on s", "one number only"],
+)
+def test_a_function_of_an_array_has_a_number_for_each_of_its_elements(function: Callable[[Any], Any]) -> None:
+    with pytest.raises(LoopError, match="the plant's function must be callable with a complex array") as caught:
+        Plant.from_function(function)
+    assert "\n" not in str(caught.value)
+
+
+def test_inputs_are_floats_whatever_kind_of_number_is_given() -> None:
+    half: Any = Fraction(1, 2)
+    two: Any = Decimal(2)
+    assert Pulse(two, two, half) == Pulse(2.0, 2.0, 0.5)
+    assert Pulse(two, two, half).events() == [(0.5, 0, 2.0), (2.5, 0, -2.0)]
+    assert Ramp(half, duration=two).events() == [(0.0, 1, 0.5), (2.0, 1, -0.5)]
+    assert PiecewisePolynomial([(half, [two])]) == PiecewisePolynomial(((0.5, (2.0,)),))
+    exact = LOOP.respond_to(setpoint=Sine(two, half), until=5.0)
+    np.testing.assert_array_equal(exact.output(3.0), LOOP.respond_to(setpoint=Sine(2.0, 0.5), until=5.0).output(3.0))
+
+
+@pytest.mark.parametrize("factor", [49, 103, 0.11, -0.45])
+def test_a_gain_is_multiplied_and_divided_to_the_last_digit(factor: float) -> None:
+    assert PLANT * factor == factor * PLANT == Plant([factor], [1.0, 1.0], 1.0)
+    assert PLANT / factor == Plant([1.0 / factor], [1.0, 1.0], 1.0)
+
+
+def test_a_response_is_added_to_a_response() -> None:
+    with pytest.raises(TypeError, match="unsupported operand"):
+        Y + 1.0  # type: ignore[operator]

@@ -25,6 +25,10 @@ class Circle:
     center: float
     radius: float
 
+    def __post_init__(self) -> None:
+        for name in ("center", "radius"):
+            object.__setattr__(self, name, checks.positive(f"the circle's {name}", getattr(self, name)))
+
     @classmethod
     def of(cls, ms: float | None = None, mp: float | None = None) -> Circle:
         r"""Return the circle that bounds \|S\| by ``ms``, \|T\| by ``mp``, or both at once.

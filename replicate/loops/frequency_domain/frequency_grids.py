@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import cache
 from math import log10
 
@@ -26,6 +27,7 @@ AROUND_CORNER = 30.0, 0.1, 12  # widest and least offset, in half-widths of a re
 AROUND_POLE = 10.0, 0.03, 12  # around a peak that a closed-loop pole makes,
 AROUND_FUNCTION = 20.0, 0.1, 10  # and around a function's pole
 NARROWEST, NARROWEST_OF_PLANTS = 1e-12, 1e-9  # least half-width of a resonance, relative to its frequency
+MOST_BANDS, WIDER = 40, 1.5  # beyond the band of a loop, and the ratio of the ends of each
 RESONANT = 0.3  # largest damping of one
 
 
@@ -58,6 +60,16 @@ def peak_grid(transfer: LoopTransfer, end: float, poles: ComplexArray, start: fl
     near = _around(poles[poles.imag > 0.0], _two_sided(*AROUND_POLE), narrowest=0.0)
     w = np.unique(np.concatenate([w, *near, [start, end]]))  # both ends, so that bands that overlap leave no gap
     return w[(w > 0.0) & (w >= start) & (w <= end)]
+
+
+def bands_beyond(transfer: LoopTransfer, end: float) -> Iterator[tuple[float, float]]:
+    """Yield band after band beyond a frequency, as long as a grid resolves the turns of the dead time."""
+    last = 2.0 * np.pi * MOST_POINTS / (PER_TURN * transfer.longest_dead_time) if transfer.longest_dead_time else np.inf
+    for _ in range(MOST_BANDS):
+        if end > last:
+            return
+        yield end, WIDER * end
+        end *= WIDER
 
 
 def wide_grid(transfer: LoopTransfer, end: float, poles: ComplexArray, decades: int) -> Array:

@@ -25,13 +25,15 @@ from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
-from replicate.loops.frequency_domain.frequency_grids import wide_grid
+from replicate.loops.frequency_domain.frequency_grids import bands_beyond, peak_grid, wide_grid
+from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.frequency_domain.sensitivity import highest_peak
 from replicate.loops.loop import Loop
 from replicate.loops.numerics.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 DECADES = 6  # how far the search goes beyond the corners of the loop, towards both limits
 FAR = 1e12  # where a limit at zero or infinite frequency is evaluated, relative to the search band
@@ -164,19 +166,44 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
         )
         return float(change[0])
 
+    def bound(w: Array) -> Array:
+        """Return what the magnitude may be whatever the phase of L."""
+        value = transfer(1j * w)
+        with np.errstate(divide="ignore"):
+            return np.asarray(magnitude(w) * np.abs(1.0 + value) / np.maximum(1.0 - np.abs(value), 0.0))
+
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = wide_grid(transfer, end, poles, DECADES)
     best = highest_peak(magnitude, slope, w)
-    for frequency, name in ((w[0] / FAR, 0.0), (w[-1] * FAR, float("inf"))):
-        with np.errstate(over="ignore", invalid="ignore"):
-            limit = float(magnitude(np.array([frequency]))[0])
-            if name and transfer.dead_time and transfer.feedthrough:  # 1 + L keeps turning: take its smallest modulus
-                limit *= abs(1.0 + complex(transfer(1j * frequency))) / (1.0 - transfer.feedthrough)
+    at_rest, at_infinity = (_limit(magnitude, at) for at in (w[0] / FAR, w[-1] * FAR))
+    if transfer.limit_curve.delayed.size:
+        scale = 1.0 if weight is None else float(weight.magnitude(w[-1:] * FAR)[0])
+        at_infinity = _neutral_limit(transfer, abs(complex(controller.feedback(1j * w[-1] * FAR))) / scale)
+    ahead = np.geomspace(1.0, 10.0**DECADES, 20 * DECADES)
+    for start, stop in bands_beyond(transfer, end):
+        if np.max(bound(start * ahead)) <= max(best.value, at_infinity) * (1.0 + ROUNDING):
+            break
+        best = max(best, highest_peak(magnitude, slope, peak_grid(transfer, stop, poles, start)))
+    for limit, name in ((at_rest, 0.0), (at_infinity, float("inf"))):
         if np.isfinite(limit) and limit < best.value * (1.0 - ROUNDING):
             continue
         grows = not np.isfinite(limit) or limit > UNBOUNDED * best.value
         best = FrequencyPeak(float("inf") if grows else limit, name)
     return best
+
+
+def _limit(magnitude: Callable[[Array], Array], frequency: float) -> float:
+    with np.errstate(over="ignore", invalid="ignore"):
+        return float(magnitude(np.array([frequency]))[0])
+
+
+def _neutral_limit(transfer: LoopTransfer, gc: float) -> float:
+    """Return the largest singular value at infinite frequency, where L keeps turning, and with it G, but not Gc/W."""
+
+    def magnitude(value: ComplexArray) -> Array:
+        return np.asarray(np.hypot(1.0, gc) * np.hypot(1.0, np.abs(value) / gc) / np.abs(1.0 + value))
+
+    return transfer.limit_curve.highest(magnitude)
 
 
 def stability_margin(plant: Plant, controller: PID, weight: Weight | None = None) -> float:

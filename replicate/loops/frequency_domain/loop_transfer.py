@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
+from replicate.loops.frequency_domain.limit_curve import LimitCurve
 from replicate.loops.numerics import polynomials
 from replicate.loops.numerics.polynomials import (
     horner,
@@ -179,6 +180,16 @@ class LoopTransfer:
         if self.num.size < self.den.size:
             return 0.0
         return float(abs(self.num[0] / self.den[0])) if self.num.size else 0.0
+
+    @cached_property
+    def limit_curve(self) -> LimitCurve:
+        """What L(i w) approaches at infinite frequency."""
+        limit = float(self.num[0] / self.den[0]) if self.feedthrough else 0.0
+        return LimitCurve.of(np.array([limit]), np.array([self.dead_time]))
+
+    def off_limit(self, w: float) -> float:
+        """Return how far |L| exceeds its limit at most beyond a frequency that `beyond` has returned."""
+        return max(float(abs(self(1j * w))) - self.feedthrough, 0.0)
 
     @property
     def infinite_at_rest(self) -> bool:

@@ -7,14 +7,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from replicate.loops.frequency_domain.frequency_grids import loop_grid
+from replicate.loops.frequency_domain.frequency_grids import bands_beyond, loop_grid
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.numerics.bracketed import bracketed_root
 from replicate.loops.records import Record
 
 Array = NDArray[np.float64]
+ComplexArray = NDArray[np.complex128]
 
 MORE = 2.5 * np.pi  # rad of the dead time, one full turn and more, so that a crossover below one is always included
+SAME = 1e-12  # relative difference of two gain margins that is rounding
 SMALL = 1e-6  # |L| beyond which no crossover without dead time matters
 
 
@@ -75,21 +77,21 @@ def margins(transfer: LoopTransfer) -> Margins:
     above, below = factors > 1.0, factors < 1.0
     gain, gain_at = _extreme(factors[above], phase_crossovers[above], np.argmin, float("inf"))
     reduction, reduction_at = _extreme(factors[below], phase_crossovers[below], np.argmax, 0.0)
-    if not transfer.dead_time and transfer.feedthrough and transfer.is_polynomial:
-        limit = _algebraic_limit(transfer)
+    # at infinite frequency a neutral loop loses stability, and an algebraic one its solution, where L tends to -1
+    for value in transfer.limit_curve.real_values:
+        limit = float(-1.0 / value) if value < 0.0 else float("nan")
         if 1.0 < limit < gain:
             gain, gain_at = limit, float("inf")
         elif reduction < limit < 1.0:
             reduction, reduction_at = limit, float("inf")
-    elif transfer.feedthrough and 1.0 / transfer.feedthrough < gain:
-        # the tail of a neutral loop loses stability when |L(i inf)| reaches one
-        gain, gain_at = 1.0 / transfer.feedthrough, float("inf")
+    if not transfer.is_rational and np.isfinite(gain):
+        gain, gain_at = _lower_beyond(transfer, gain, gain_at)
 
     w = transfer.gain_crossovers
     lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
     phase, phase_at = _extreme(np.degrees(lag), w, np.argmin, float("inf"))
     delay, delay_at = _extreme(lag / w if w.size else lag, w, np.argmin, float("inf"))
-    if not transfer.dead_time and transfer.feedthrough >= 1.0:  # with any dead time the loop is neutral and unstable
+    if transfer.limit_curve.size >= 1.0:  # with any more dead time the loop is neutral and unstable
         delay, delay_at = 0.0, float("inf")
     return Margins(
         gain, reduction, phase, delay, gain_at, reduction_at, phase_at, delay_at,
@@ -104,37 +106,55 @@ def _extreme(values: Array, frequencies: Array, select: object, empty: float) ->
     return float(values[index]), float(frequencies[index])
 
 
-def _algebraic_limit(transfer: LoopTransfer) -> float:
-    """Return the factor on L at which a loop without dead time is no longer well posed; ``inf`` if there is none."""
-    direct = transfer.num[0] / transfer.den[0]
-    return float(-1.0 / direct) if direct < 0.0 else float("inf")
-
-
 def _phase_crossovers(transfer: LoopTransfer) -> Array:
     """Return all frequencies with L real and negative, up to where |L| only falls."""
     if transfer.num.size == 0:
         return np.empty(0)
-    if transfer.is_polynomial:
-        corners = np.abs(transfer.corner_frequencies)
-        end = 2.0 * max([*transfer.real_frequencies.tolist(), *corners.tolist()], default=1.0)
-    else:
-        end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
-    if transfer.dead_time:
-        end += MORE / transfer.dead_time
-    elif not transfer.is_polynomial:
-        end = transfer.beyond(SMALL)
-    w = loop_grid(transfer, end, per_decade=80)
+    w = loop_grid(transfer, _end(transfer), per_decade=80)
     value = transfer(1j * w)
-    turned = value.imag[:-1] * value.imag[1:] < 0.0
-    negative = value.real[:-1] + value.real[1:] < 0.0
     exact = w[(value.imag == 0.0) & (value.real < 0.0)]
-
-    def imaginary(x: float) -> float:
-        return float(complex(transfer(1j * x)).imag)
-
-    found = [bracketed_root(imaginary, w[i], w[i + 1]) for i in np.nonzero(turned & negative)[0]]
+    found = [_polished(transfer, w, i) for i in _turning_negative(value)]
     roots = np.sort(np.concatenate([np.array(found), exact]))
     roots = roots[transfer(1j * roots).real < 0.0] if roots.size else roots
     # without integral action the curve starts on the real axis, where a pole can pass through s = 0
     starts_negative = bool(transfer.den[-1]) and float(complex(transfer(0.0)).real) < 0.0
     return np.concatenate([[0.0], roots]) if starts_negative else roots
+
+
+def _end(transfer: LoopTransfer) -> float:
+    """Return the end of the band in which all phase crossovers are looked for."""
+    if transfer.is_polynomial:
+        corners = np.abs(transfer.corner_frequencies)
+        return 2.0 * max([*transfer.real_frequencies.tolist(), *corners.tolist()], default=1.0)
+    if not transfer.dead_time:
+        return transfer.beyond(SMALL)
+    return transfer.beyond(0.5 * (1.0 + transfer.feedthrough)) + MORE / transfer.dead_time
+
+
+def _turning_negative(value: ComplexArray) -> NDArray[np.intp]:
+    """Return after which values the curve crosses the negative real axis."""
+    turned = value.imag[:-1] * value.imag[1:] < 0.0
+    return np.nonzero(turned & (value.real[:-1] + value.real[1:] < 0.0))[0]
+
+
+def _polished(transfer: LoopTransfer, w: Array, i: int) -> float:
+    return bracketed_root(lambda x: float(complex(transfer(1j * x)).imag), float(w[i]), float(w[i + 1]))
+
+
+def _lower_beyond(transfer: LoopTransfer, gain: float, gain_at: float) -> tuple[float, float]:
+    """Return the gain margin and its frequency where |L| may rise again beyond the band of the crossovers."""
+    lowest = transfer.limit_curve.lowest
+    for start, end in bands_beyond(transfer, _end(transfer)):
+        off = transfer.off_limit(start)
+        if off <= SAME or lowest - off >= -1.0 / gain:
+            break
+        w = loop_grid(transfer, end, per_decade=80)
+        w = np.append(start, w[w > start])
+        value = transfer(1j * w)
+        for i in _turning_negative(value):
+            if max(abs(value[i]), abs(value[i + 1])) > 1.0 / gain:
+                at = _polished(transfer, w, i)
+                at_crossover = complex(transfer(1j * at))
+                if at_crossover.real < -(1.0 + SAME) / gain:
+                    gain, gain_at = -1.0 / at_crossover.real, at
+    return gain, gain_at

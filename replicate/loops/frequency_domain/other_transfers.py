@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_domain.frequency_grids import loop_grid
+from replicate.loops.frequency_domain.limit_curve import LimitCurve
 from replicate.loops.frequency_domain.loop_transfer import (
+    EPS,
     ILL_POSED,
     JUST_BEYOND,
     MOST_STEPS,
@@ -29,11 +31,9 @@ ComplexArray = NDArray[np.complex128]
 
 AHEAD = 2.0 ** (np.arange(8 * 12 + 1) / 12)  # where the gain of a plant given by a function has to stay below a level
 PER_DECADE = 200
-SAME = 1e-9  # relative difference of a ratio of dead times from a rational one,
 AT_REST = 1e-9  # of the largest modulus: a root at s = 0
 ABOVE = 1.001  # share of the limit at infinity below which a sum of gains cannot be asked to fall
 REST = 1e-30  # of the lowest corner: a frequency that is zero for a function
-RATIO = 64  # largest denominator of a ratio of two dead times that counts as rational
 
 
 class FunctionTransfer(LoopTransfer):
@@ -112,6 +112,10 @@ class FunctionTransfer(LoopTransfer):
         if level <= gain_at_last < np.inf:
             raise never_falls(level)  # what it tends to is seen at once; the way there would be long
         return self._fall(start, level, AHEAD)
+
+    def off_limit(self, w: float) -> float:
+        """Return how large |L| is at most beyond a frequency: as seen over eight octaves."""
+        return float(np.abs(self(1j * w * AHEAD)).max())
 
 
 @dataclass(frozen=True)
@@ -209,7 +213,9 @@ class SumTransfer(LoopTransfer):
     @property
     def pole_at_rest(self) -> bool:
         """Whether s = 0 is a closed-loop pole, but not one of the common denominator alone."""
-        return 0.0 not in self._removable and not self.den[-1] + sum(num[-1] for num in self.nums if num.size)
+        constants = [float(self.den[-1]), *(float(num[-1]) for num in self.nums if num.size)]
+        rounding = len(constants) * EPS * max(abs(c) for c in constants)
+        return 0.0 not in self._removable and abs(sum(constants)) <= rounding
 
     @property
     def open_loop_poles(self) -> ComplexArray:
@@ -233,24 +239,32 @@ class SumTransfer(LoopTransfer):
     @cached_property
     def feedthrough(self) -> float:
         """The largest |L| in the limit of infinite frequency; 1 or more only if the loop then is unstable or static."""
-        delayed = self.dead_times > 0.0
-        direct = 1.0 + float(self.limits[~delayed].sum())
-        bound = float(np.abs(self.limits[delayed] / direct).sum())
-        if bound < 1.0 or not delayed.any():
+        curve = self.limit_curve
+        delayed = curve.delayed / (1.0 + curve.direct)
+        bound = float(np.abs(delayed).sum())
+        if bound < 1.0 or delayed.size == 1:
             return bound
-        # commensurate dead times: 1 + sum d_i z^n_i = 0 must have no root |z| <= 1
-        shortest = self.dead_times[delayed][0]
-        ratios = self.dead_times[delayed] / shortest
-        for denominator in range(1, RATIO):
-            steps = np.round(ratios * denominator)
-            if np.all(np.abs(ratios * denominator - steps) < SAME * steps):
-                polynomial = np.zeros(int(steps[-1]) + 1)
-                polynomial[-1] = 1.0
-                for step, limit in zip(steps.astype(int), self.limits[delayed] / direct, strict=True):
-                    polynomial[polynomial.size - 1 - step] += limit
-                roots = np.abs(np.roots(polynomial))
-                return float(max(1.0 / roots.min(), 0.0)) ** denominator if roots.size else bound
-        return bound
+        # 1 + sum d_j z^n_j = 0 must have no root |z| <= 1
+        polynomial = np.zeros(int(curve.steps[-1]) + 1)
+        polynomial[-1] = 1.0
+        np.add.at(polynomial, polynomial.size - 1 - curve.steps, delayed)
+        return float(1.0 / np.min(np.abs(np.roots(polynomial)))) ** int(curve.steps[0])
+
+    @cached_property
+    def limit_curve(self) -> LimitCurve:
+        """What L(i w) approaches at infinite frequency."""
+        return LimitCurve.of(self.limits, self.dead_times)
+
+    @cached_property
+    def _rests(self) -> list[Array]:
+        """What each N_i has more than its limit's share of D."""
+        padded = (np.append(np.zeros(self.den.size - num.size), num) for num in self.nums)
+        return [(num - limit * self.den)[1:] for num, limit in zip(padded, self.limits, strict=True)]
+
+    def off_limit(self, w: float) -> float:
+        """Return how far L is at most from its limit curve beyond a frequency that `beyond` has returned."""
+        s = np.array(1j * w)
+        return float(sum(abs(np.polyval(rest, s)) for rest in self._rests) / abs(np.polyval(self.den, s)))
 
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
@@ -266,7 +280,8 @@ class SumTransfer(LoopTransfer):
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which sum |L_i(i w)| provably stays below ``level``."""
-        stationary = [w for num in self.nums if num.size for w in stationary_frequencies(num, self.den).tolist()]
+        numerators = [*self.nums, *self._rests] if self.feedthrough else self.nums
+        stationary = [w for num in numerators if num.any() for w in stationary_frequencies(num, self.den).tolist()]
         start = max([*stationary, *np.abs(self.corner_frequencies).tolist()], default=1.0 / self.dead_times[-1])
         w = start * (1.0 + JUST_BEYOND)
         for _ in range(400):

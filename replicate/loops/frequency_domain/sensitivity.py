@@ -11,10 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from replicate.loops.frequency_domain.frequency_grids import peak_grid
+from replicate.loops.frequency_domain.frequency_grids import bands_beyond, peak_grid
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer, stationary_frequencies
 from replicate.loops.numerics.peaks import FrequencyPeak
 
@@ -23,18 +23,22 @@ ComplexArray = NDArray[np.complex128]
 
 LOW_GAIN = 0.75  # share of the way down from |L| = 1 to its limit, beyond which few loops have their peak
 STEEP = 10.0  # times what a peak stands above its neighbours on the grid: more than polishing adds to it
+ROUNDING = 1e-13  # share by which a bound exceeds a peak without meaning it
 TIE = 1e-9  # a design at two tangencies makes two peaks equal to within its own convergence
 
 
 @dataclass(frozen=True)
 class _Kind:
-    """Magnitude of S or T given L, the slope of its logarithm in w, a bound from |L|, and the ratio that it is."""
+    """S or T: what it is at most for an L that is so close to a value, the slope of its logarithm in w, and so on."""
 
-    magnitude: Callable[[ComplexArray], Array]
+    bound: Callable[[ComplexArray, float], Array]
     slope: Callable[[float], float]
-    bound: Callable[[float], float]
     at_infinite_gain: float
     ratio: tuple[Array, Array]  # of the rational part; the magnitude itself if there is no dead time
+
+    def magnitude(self, value: ComplexArray) -> Array:
+        """Return the magnitude where L has a value."""
+        return self.bound(value, 0.0)
 
 
 def sensitivity_peak(transfer: LoopTransfer, poles: ComplexArray, center: float = 1.0) -> FrequencyPeak:
@@ -49,9 +53,8 @@ def sensitivity_peak(transfer: LoopTransfer, poles: ComplexArray, center: float 
         return float((-1j * value * complex(transfer.log_derivative(1j * w)) / (center + value)).real)
 
     kind = _Kind(
-        lambda value: np.abs(1.0 / (center + value)),
+        lambda value, off: _ratio(1.0, np.abs(center + value) - off),
         slope,
-        lambda gain: 1.0 / (center - gain),
         0.0,
         (transfer.den, np.asarray(np.polyadd(center * transfer.den, transfer.num), dtype=float)),
     )
@@ -66,29 +69,35 @@ def complementary_peak(transfer: LoopTransfer, poles: ComplexArray) -> Frequency
         return float((1j * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
 
     closed = (transfer.num, np.asarray(np.polyadd(transfer.den, transfer.num), dtype=float))
-    return _peak(
-        transfer,
-        poles,
-        _Kind(lambda value: np.abs(value / (1.0 + value)), slope, lambda gain: gain / (1.0 - gain), 1.0, closed),
-    )
+    kind = _Kind(lambda value, off: _ratio(np.abs(value) + off, np.abs(1.0 + value) - off), slope, 1.0, closed)
+    return _peak(transfer, poles, kind)
+
+
+def _ratio(top: ArrayLike, bottom: Array) -> Array:
+    """Return a bound top/bottom, ``inf`` where there is none."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(top / np.maximum(bottom, 0.0))
 
 
 def _peak(transfer: LoopTransfer, poles: ComplexArray, kind: _Kind) -> FrequencyPeak:
     if transfer.num.size == 0:  # no feedback at all
-        return FrequencyPeak(kind.bound(0.0), 0.0)
+        return FrequencyPeak(float(kind.magnitude(np.zeros(1, dtype=complex))[0]), 0.0)
     if transfer.feedthrough and transfer.is_polynomial:
         return _rational_peak(transfer, poles, kind)
     end = transfer.beyond(1.0 - LOW_GAIN * (1.0 - transfer.feedthrough))
     best = _highest_on(transfer, kind, *_curve(transfer, poles, end))
     # Extend the band until the bound on the rest is below the best peak, or the limit at infinity is the supremum.
-    limit = kind.bound(transfer.feedthrough)
-    for _ in range(40):
-        if kind.bound(float(abs(transfer(1j * end)))) <= max(best.value, limit):
+    limit = transfer.limit_curve.highest(kind.magnitude)
+    for start, stop in bands_beyond(transfer, end):
+        if _bound_beyond(transfer, kind, start) <= max(best.value, limit) * (1.0 + ROUNDING):
             break
-        wider = end * 1.5
-        best = _highest(best, _highest_on(transfer, kind, *_curve(transfer, poles, wider, start=0.98 * end)))
-        end = wider
+        best = _highest(best, _highest_on(transfer, kind, *_curve(transfer, poles, stop, start)))
     return _with_ends(transfer, kind, best, limit)
+
+
+def _bound_beyond(transfer: LoopTransfer, kind: _Kind, w: float) -> float:
+    off = transfer.off_limit(w)
+    return transfer.limit_curve.highest(lambda value: kind.bound(value, off))
 
 
 def _rational_peak(transfer: LoopTransfer, poles: ComplexArray, kind: _Kind) -> FrequencyPeak:
@@ -97,9 +106,7 @@ def _rational_peak(transfer: LoopTransfer, poles: ComplexArray, kind: _Kind) -> 
     stationary = stationary_frequencies(*kind.ratio)
     end = 2.0 * max([*stationary.tolist(), *np.abs(transfer.corner_frequencies).tolist()], default=1.0)
     best = _highest_on(transfer, kind, *_curve(transfer, poles, end))
-    num, den = kind.ratio
-    limit = float(abs(num[0] / den[0])) if num.size == den.size else 0.0
-    return _with_ends(transfer, kind, best, limit)
+    return _with_ends(transfer, kind, best, transfer.limit_curve.highest(kind.magnitude))
 
 
 def _with_ends(transfer: LoopTransfer, kind: _Kind, best: FrequencyPeak, limit: float) -> FrequencyPeak:

@@ -61,6 +61,8 @@ def unstable_poles(transfer: LoopTransfer) -> int:
         return int(np.sum(roots.real >= -ON_AXIS * np.abs(roots)))
     if transfer.is_rational:
         return _from_crossovers(transfer)
+    if transfer.pole_at_rest:
+        return 1
     end = transfer.beyond(0.5 * (1.0 + transfer.feedthrough))
     w = loop_grid(transfer, end)
     axis = np.asarray(1j * w[1:], dtype=complex)

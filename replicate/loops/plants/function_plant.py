@@ -119,6 +119,7 @@ class FunctionPlant(Plant):
 
     def rescaled(self, time: float, gain: float) -> FunctionPlant:
         """Return the plant in another unit of time, its gain divided by ``gain``."""
+        time, gain = checks.positive("the unit of time", time), checks.nonzero("the unit of gain", gain)
         plant: FunctionPlant = self
         dead_time = self.dead_time / time
         if isinstance(self.function, Rescaled):

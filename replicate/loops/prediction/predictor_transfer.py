@@ -112,3 +112,8 @@ class PredictorTransfer(LoopTransfer):
         """
         each = level / (1.0 + level)
         return max(self.outer.beyond(each), self.inner.beyond(each))
+
+    def off_limit(self, w: float) -> float:
+        """Return how large |L| is at most beyond a frequency that `beyond` has returned for a level below 1."""
+        largest = max(self.outer.off_limit(w), self.inner.off_limit(w))
+        return largest / (1.0 - largest)

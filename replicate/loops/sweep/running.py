@@ -83,7 +83,7 @@ def sweep(
     'the loop is unstable'
     """
     names = checked_metrics(metrics)
-    band = checks.positive("the settling band", band, allowed="a positive fraction")
+    band = checks.settling_band(band)
     if until is not None:
         until = checks.positive("the horizon until", until, allowed="a finite time > 0")
     if pairing not in (GRID, PAIRWISE):

@@ -159,6 +159,8 @@ class Piecewise(SetOnce):
 
     def __add__(self, other: Self) -> Self:
         """Superpose two responses on the common part of their horizons."""
+        if not isinstance(other, Piecewise):
+            return NotImplemented
         end = min(self.horizon, other.horizon)
         breaks = np.union1d(self.breaks, other.breaks)
         breaks = breaks[breaks < end * (1.0 - BEFORE)]

@@ -104,7 +104,7 @@ class Signal(SignalViews, Piecewise):
             If the response is outside the band at the end of its horizon.
         """
         self._require_stable("settling time")
-        band = checks.positive("the settling band", band, allowed="a positive fraction")
+        band = checks.settling_band(band)
         width = band * (abs(self.final) if self.final else 1.0)
         error = np.abs(self._samples - self.final)
         if error[-1, -1] > width:

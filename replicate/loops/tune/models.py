@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
 
@@ -51,6 +52,7 @@ def lag_model(plant: Plant) -> LagModel:
     LoopError
         If the plant is not rational, has complex or unstable poles, or zeros in the left half-plane.
     """
+    checks.instance("the plant of a tuning rule", plant, Plant, "a Plant")
     if not plant.is_rational:
         msg = f"tuning rules are made for a rational plant with one dead time, not for {plant!r}"
         raise LoopError(msg)
