@@ -36,6 +36,8 @@ from replicate.loops.units import Units
 
 Array = NDArray[np.float64]
 
+SAME = 1e-7  # relative difference of the integral gains of two solutions that are one
+PLAUSIBLE = 3.0  # factor between a maximum on the grid and the tangency that polishing makes of it
 VERIFIED = 1e-9  # largest relative violation of the circle that is rounding and not a violation
 
 
@@ -83,7 +85,7 @@ def _design(plant: Plant, circle: Circle) -> PIDesign:
         if maximum.open_end is not None and problem.is_stable(*maximum.open_end):
             return _none("unbounded")
         polished = problem.polished(maximum)
-        if polished is not None and not any(abs(polished.ki - s.ki) <= 1e-7 * s.ki for s in solutions):
+        if polished is not None and not any(abs(polished.ki - s.ki) <= SAME * s.ki for s in solutions):
             solutions.append(polished)
     if not solutions:
         return _none("no-controller")
@@ -160,7 +162,7 @@ class _Problem:
 
 
 def _plausible(design: PIDesign, found: Maximum) -> bool:
-    return 0.3 * found.ki < design.ki < 3.0 * found.ki
+    return found.ki / PLAUSIBLE < design.ki < PLAUSIBLE * found.ki
 
 
 def _none(status: Status) -> PIDesign:

@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 GAIN_POINTS = 96
+LINEAR = 0.01  # of the typical vertex: gains below it are spread evenly, larger ones by their logarithm,
+FARTHEST = 1e8  # up to this many times as much
 TOGETHER = 44  # gains looked at together
 NO_GAP = 1e-12  # relative width below which a gap is none
 
@@ -74,8 +76,8 @@ def _forbidden(across: Array, s: Array, scale: Array, radius: float) -> tuple[Ar
 def _gain_grid(loci: Array, r: Array) -> Array:
     """Return gains dense where the vertices of the ellipses are, on an asinh scale."""
     half = r[: max(1, r.size // 2)]
-    unit = 0.01 / float(np.sort(half)[half.size // 2])
-    finite = loci[np.isfinite(loci) & (np.abs(loci) < 1e8 * unit)]
+    unit = LINEAR / float(np.sort(half)[half.size // 2])
+    finite = loci[np.isfinite(loci) & (np.abs(loci) < FARTHEST * unit)]
     mapped = np.unique(np.arcsinh(finite / unit))
     even = np.linspace(mapped[0], mapped[-1], GAIN_POINTS // 2)
     quantiles = mapped[np.linspace(0, mapped.size - 1, GAIN_POINTS // 2).astype(int)]

@@ -23,6 +23,10 @@ from replicate.loops.plants.jets import value_and_slope
 Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
+APART = 1e-6  # relative distance of two frequencies that are two tangencies and not one
+SMALLEST_GAIN = 1e-3  # of ki/w: size that a vanishing k has, so that it can be scaled
+SOLVED, ROUNDING = 1e-9, 1e-15  # residual of the equations that is a solution, and what Newton's method is asked for
+
 
 def smooth_condition(plant: Plant, circle: Circle, w: Array) -> Array:
     """Evaluate h(w) / (2 R) of (18); a smooth optimum is a root of it."""
@@ -74,9 +78,9 @@ def closest_frequencies(value: ComplexArray, circle: Circle, w: Array, k: float,
 
 def corner_optimum(plant: Plant, circle: Circle, k: float, ki: float, w1: float, w2: float) -> PIDesign | None:
     """Solve the four equations (15) for two tangencies by Newton's method, all unknowns scaled to one."""
-    if not (w2 > w1 * (1.0 + 1e-6) and ki > 0.0):
+    if not (w2 > w1 * (1.0 + APART) and ki > 0.0):
         return None
-    scale = np.array([max(abs(k), 1e-3 * ki / w2), ki, w1, w2])
+    scale = np.array([max(abs(k), SMALLEST_GAIN * ki / w2), ki, w1, w2])
 
     def equations(x: Array) -> Array:
         gain, integral, *frequencies = x * scale
@@ -90,11 +94,11 @@ def corner_optimum(plant: Plant, circle: Circle, k: float, ki: float, w1: float,
         return np.array(result)
 
     with np.errstate(all="ignore"):  # a start that is not a corner may wander off; the residual tells
-        solution = root(equations, np.array([k, ki, w1, w2]) / scale, method="hybr", options={"xtol": 1e-15})
-    if not np.max(np.abs(solution.fun)) <= 1e-9:
+        solution = root(equations, np.array([k, ki, w1, w2]) / scale, method="hybr", options={"xtol": ROUNDING})
+    if not np.max(np.abs(solution.fun)) <= SOLVED:
         return None
     gain, integral, first, second = (float(v) for v in solution.x * scale)
-    if integral <= 0.0 or first <= 0.0 or second <= 0.0 or abs(first / second - 1.0) < 1e-6:
+    if integral <= 0.0 or first <= 0.0 or second <= 0.0 or abs(first / second - 1.0) < APART:
         return None
     first, second = sorted((first, second))
     return PIDesign(gain, integral, float("nan"), first, (first, second), "corner", "optimal")

@@ -31,6 +31,12 @@ TOUCHING_FIRST = 100.0  # weight of a constraint's value against its gradient wh
 LOST = 0.02  # of ki, between a point on the grid and the optimum near it
 FEASIBLE = 2e-9
 ZOOMS, FINER = 5, np.linspace(0.0, 1.0, 17)  # steps and points between two frequencies in which a minimum is found
+TOUCHES = 5e-3  # value of a constraint that may be active at an optimum between the grid frequencies,
+VALLEY = 0.05  # and one that may be violated there
+AT_EDGE = 2e-3  # of the largest kd: distance from it at which infinite frequency may be a touching point
+UNEXPLAINED = 0.3  # of the gradient of ki: what the active constraints must not leave over
+NO_WEIGHT = 1e-6  # multiplier of a constraint that is not active
+SMALLEST_GAIN = 1e-6  # of ki: size that a vanishing gain has, so that it can be scaled
 SAME_TOUCH = 0.06  # touches closer than this relative distance in frequency are one
 
 
@@ -118,23 +124,22 @@ class GridProblem:
         for index, grid in enumerate(grids):
             value, gradient = self.values(index, x, grid)
             edge = np.concatenate([[np.inf], value, [np.inf]])
-            low = np.nonzero((value <= edge[:-2]) & (value <= edge[2:]) & (value < 5e-3))[0]
+            low = np.nonzero((value <= edge[:-2]) & (value <= edge[2:]) & (value < TOUCHES))[0]
             candidates += [(index, float(grid.w[i]), gradient[i], abs(float(value[i]))) for i in low]
-        if abs(x[2]) > self.largest_kd * (1.0 - 2e-3):
+        if abs(x[2]) > self.largest_kd * (1.0 - AT_EDGE):
             value_at_edge, gradient_at_edge = self.at_infinity(x)
             candidates.append((0, float("inf"), gradient_at_edge, abs(value_at_edge)))
         if not candidates:
             return []
-        scale = np.array([max(abs(x[0]), 1e-6 * x[1]), x[1], max(abs(x[2]), 1e-6 * x[1])])
-        matrix = np.array([[*(gradient * scale), preference * value] for _, _, gradient, value in candidates]).T
+        matrix = np.array([[*(gradient * _size(x)), preference * value] for _, _, gradient, value in candidates]).T
         # at a maximum the gradient of ki is minus a positive combination of the active gradients
         multipliers, residual = nnls(matrix, np.array([0.0, -1.0, 0.0, 0.0]))
-        if residual > 0.3:
+        if residual > UNEXPLAINED:
             return []
         active: list[ActiveConstraint] = []
         for (index, touch, *_), multiplier in zip(candidates, multipliers, strict=True):
             kind, frequency, weight = self.constraints[index].kind, touch, float(multiplier)
-            if weight <= 1e-6:
+            if weight <= NO_WEIGHT:
                 continue
             if (
                 active
@@ -151,10 +156,9 @@ class GridProblem:
 
     def _newton(self, x: Array, active: list[ActiveConstraint]) -> tuple[Array, tuple[ActiveConstraint, ...]] | None:
         """Solve the optimality system from a grid optimum; unknowns are gains, touching frequencies and multipliers."""
-        size = np.array([max(abs(x[0]), 1e-6 * x[1]), x[1], max(abs(x[2]), 1e-6 * x[1])])
         by_kind = {constraint.kind: constraint for constraint in self.constraints}
         touches = [Touch(by_kind[part.kind], part.frequency, part.multiplier) for part in active]
-        found = OptimalitySystem(self.plant, self.circle, self.edge, touches, size).solved(x)
+        found = OptimalitySystem(self.plant, self.circle, self.edge, touches, _size(x)).solved(x)
         if found is None:
             return None
         gains, frequencies, multipliers = found
@@ -189,7 +193,9 @@ class GridProblem:
         constraint, w = self.constraints[index], self.grids[index].w
         values = self.grids[index].values(constraint.kind, self.circle, x, constraint.margin)[0]
         lowest = float(values.min())
-        inner = np.nonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]) & (values[1:-1] < 0.05))[0] + 1
+        inner = (
+            np.nonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:]) & (values[1:-1] < VALLEY))[0] + 1
+        )
         left, right = np.log(w[inner - 1]), np.log(w[inner + 1])
         for _ in range(ZOOMS if inner.size else 0):
             # all valleys at once: the lowest of some points, and from there between its neighbours
@@ -208,3 +214,9 @@ class GridProblem:
         b = pid_setpoint_weight(PID(k, ki, kd), peak.frequency, peak.value)
         touching = [part.frequency for part in active if part.kind == "sensitivity"]
         return PIDDesign(k, ki, kd, b, min(touching, default=float("nan")), active, status)
+
+
+def _size(x: Array) -> Array:
+    """Return the scales of k, ki and kd."""
+    k, ki, kd = x
+    return np.array([max(abs(k), SMALLEST_GAIN * ki), ki, max(abs(kd), SMALLEST_GAIN * ki)])
