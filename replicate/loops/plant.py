@@ -312,10 +312,13 @@ class Plant(PlantViews, SetOnce):
         from replicate.loops.plants.sum_plant import product_of
 
         if not isinstance(other, Plant):
-            other = Plant([checks.nonzero("the factor of a plant", other)], [1.0])
+            return self._times(checks.nonzero("the factor of a plant", other))
         return product_of(self, other)
 
     __rmul__ = __mul__
+
+    def _times(self, factor: float) -> Plant:
+        return Plant(self.num * factor, self.den, self.dead_time)
 
     def __truediv__(self, divisor: float) -> Plant:
         """Return the plant with its gain divided by a number."""

@@ -127,6 +127,9 @@ class FunctionPlant(Plant):
         function = plant.function if time == gain == 1.0 else Rescaled(plant, time, gain)
         return FunctionPlant(function, dead_time)
 
+    def _times(self, factor: float) -> Plant:
+        return self.rescaled(1.0, 1.0 / factor)
+
     @property
     def integrators(self) -> int:
         """0: a function's behaviour at s = 0 is its own."""

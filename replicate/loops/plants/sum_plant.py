@@ -173,6 +173,9 @@ class SumPlant(Plant):
         """Return the plant in another unit of time, its gain divided by ``gain``."""
         return SumPlant([part.rescaled(time, gain) for part in self.parts])
 
+    def _times(self, factor: float) -> Plant:
+        return SumPlant([part * factor for part in self.parts])
+
     def state_space(self) -> tuple[Array, Array, Array, float]:
         """Refuse: the plant has an input for each dead time; LoopError always."""
         raise LoopError(_SEVERAL)
