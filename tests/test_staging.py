@@ -17,7 +17,7 @@ from pathlib import Path
 import pytest
 
 from replicate.errors import OutputError
-from replicate.staging import finish_interrupted, replace_files, staged
+from replicate.staging import finish_interrupted, locked_folder, replace_files, staged
 
 Run = Callable[..., tuple[int, str, str]]
 posix = pytest.mark.skipif(os.name == "nt", reason="as POSIX has it")
@@ -418,3 +418,18 @@ def test_a_folder_that_nobody_can_make_is_named_and_not_waited_for(
     monkeypatch.setattr(Path, "mkdir", refuse)
     with pytest.raises(OutputError, match="cannot be written: No such file or directory"), staged(tmp_path / "out"):
         pass
+
+
+@posix
+def test_what_lies_behind_a_link_of_the_hidden_folder_s_name_is_not_thrown_away(tmp_path: Path) -> None:
+    mine, out = tmp_path / "mine", tmp_path / "out"
+    (mine / "new").mkdir(parents=True)
+    (mine / "new/thesis.tex").write_text("mine")
+    out.mkdir()
+    (out / ".replicate").symlink_to(mine)
+    with pytest.raises(OutputError, match="is a symbolic link, which no run made; remove it"):
+        write(out, {"results.csv": "new"})
+    with pytest.raises(OutputError, match="is a symbolic link"), locked_folder(out):
+        pass
+    assert (mine / "new/thesis.tex").read_text() == "mine"
+    assert list(out.iterdir()) == [out / ".replicate"]

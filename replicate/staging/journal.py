@@ -53,6 +53,21 @@ class Journal:
         return (*self.put, *self.remove)
 
 
+def room_of(target: Path) -> Path:
+    """Return the hidden folder of runs.
+
+    Raises
+    ------
+    OutputError
+        If it is a link: what is thrown away would be somebody else's.
+    """
+    room = target / ROOM
+    if room.is_symlink():
+        msg = f"{room}: is a symbolic link, which no run made; remove it; nothing was written"
+        raise OutputError(msg)
+    return room
+
+
 def new_folder(target: Path) -> Path:
     """Return the folder in which a run collects what it will put in place."""
     return target / ROOM / _NEW

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from replicate.errors import OutputError
 from replicate.staging.files import write_safely
-from replicate.staging.journal import ROOM
+from replicate.staging.journal import ROOM, room_of
 from replicate.staging.lock import locked
 from replicate.staging.stage import LOCK, say, unwritable
 
@@ -24,7 +24,7 @@ def locked_folder(folder: Path) -> Iterator[None]:
     """
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        with locked(folder / ROOM / LOCK, say):
+        with locked(room_of(folder) / LOCK, say):
             yield
     except OSError as error:
         raise unwritable(folder, error) from error

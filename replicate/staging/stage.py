@@ -11,7 +11,7 @@ from pathlib import Path
 
 from replicate.errors import OutputError
 from replicate.staging.files import files_below, write
-from replicate.staging.journal import ROOM, finish, is_interrupted, new_folder, swap, throw_away
+from replicate.staging.journal import ROOM, finish, is_interrupted, new_folder, room_of, swap, throw_away
 from replicate.staging.lock import locked
 from replicate.staging.manifest import MANIFEST, Manifest, digest, refuse_foreign
 
@@ -115,7 +115,7 @@ def _room(target: Path) -> Iterator[Path]:
     """Make, lock and finally remove the hidden folder of a run; yield the empty folder for what is new."""
     existed = target.is_dir()
     try:
-        with locked(target / ROOM / LOCK, say):
+        with locked(room_of(target) / LOCK, say):
             done = finish(target)
             if done:
                 say(f"{target}: {done}")
