@@ -67,6 +67,10 @@ class LimitCurve:
         per_turn = PER_TURN if self.delayed.size > 1 else 1
         return np.linspace(0.0, np.pi, per_turn * int(np.max(self.steps, initial=1)) + 1)
 
+    @cached_property
+    def _values(self) -> ComplexArray:
+        return self(self._angles)
+
     @property
     def size(self) -> float:
         """The largest modulus on the curve."""
@@ -79,7 +83,7 @@ class LimitCurve:
 
     def highest(self, magnitude: Callable[[ComplexArray], Array]) -> float:
         """Return the largest value of a magnitude on the curve; on a circle it must be reached on the real axis."""
-        values = magnitude(self(self._angles))
+        values = magnitude(self._values)
         best, last = float(values.max()), values.size - 1
         if not np.isfinite(best) or self.delayed.size <= 1:
             return best
@@ -95,12 +99,15 @@ class LimitCurve:
     @cached_property
     def real_values(self) -> Array:
         """The values at which the curve meets the real axis."""
-        imaginary = self(self._angles).imag
+        imaginary = self._values.imag
         turned = 1 + np.nonzero(imaginary[1:-2] * imaginary[2:-1] < 0.0)[0]  # at both ends it is real by symmetry
         inside = [
             bracketed_root(lambda angle: float(self(angle).imag), self._angles[i], self._angles[i + 1]) for i in turned
         ]
         return np.asarray(self([0.0, *inside, np.pi]).real)
+
+
+VANISHING = LimitCurve(0.0, np.empty(0), np.empty(0, dtype=np.intp))  # of most loops
 
 
 def _multiples(dead_times: Array) -> NDArray[np.intp] | None:

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
-from replicate.loops.frequency_domain.limit_curve import LimitCurve
+from replicate.loops.frequency_domain.limit_curve import VANISHING, LimitCurve
 from replicate.loops.numerics import polynomials
 from replicate.loops.numerics.polynomials import (
     horner,
@@ -184,8 +184,9 @@ class LoopTransfer:
     @cached_property
     def limit_curve(self) -> LimitCurve:
         """What L(i w) approaches at infinite frequency."""
-        limit = float(self.num[0] / self.den[0]) if self.feedthrough else 0.0
-        return LimitCurve.of(np.array([limit]), np.array([self.dead_time]))
+        if not self.feedthrough:
+            return VANISHING
+        return LimitCurve.of(np.array([self.num[0] / self.den[0]]), np.array([self.dead_time]))
 
     def off_limit(self, w: float) -> float:
         """Return how far |L| exceeds its limit at most beyond a frequency that `beyond` has returned."""
