@@ -287,3 +287,18 @@ def test_every_real_number_is_a_limit() -> None:
     limits: Any = (Fraction(0), Fraction(21, 20))
     response = FOPTD.saturated(limits, "clamping", until=5.0)
     assert response.at_limit[0].limit == 1.05
+
+
+@pytest.mark.parametrize("scheme", ["none", "back-calculation", "clamping"])
+def test_a_control_signal_that_ends_on_its_limit_comes_to_rest_there(scheme: Any) -> None:
+    # y = 1 - e^-t while u = 1, its value at rest; without anti-windup v = 2 (1 - y) + (1 - e^-t) = 1 + e^-t
+    response = Loop(Plant([1.0], [1.0, 1.0]), PI(2.0, 1.0)).saturated((0.0, 1.0), scheme)
+    t = np.array([0.1, 0.5, 0.69])  # up to log 2, where clamping lets v fall below the limit
+    np.testing.assert_allclose(response.output(t), 1.0 - np.exp(-t), rtol=1e-12)
+    assert float(response.output(response.output.horizon)) == pytest.approx(1.0, rel=1e-12)
+    if scheme == "none":
+        np.testing.assert_allclose(response.command(t), 1.0 + np.exp(-t), rtol=1e-12)
+        assert response.at_limit[0].end == response.output.horizon
+    delayed = Loop(Plant.foptd(1.0, 2.0, 3.0), PI(0.1, 0.2)).saturated((-1.0, 1.0), scheme)
+    assert delayed.output.overshoot() == 0.0
+    assert float(delayed.output(delayed.output.horizon)) == pytest.approx(1.0, rel=1e-12)

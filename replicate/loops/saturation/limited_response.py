@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, Literal, cast
 
 import numpy as np
 
@@ -27,7 +27,9 @@ from replicate.loops.time_domain.slow_modes import SETTLED
 if TYPE_CHECKING:
     from replicate.loops.loop import Loop
 
+AT_LIMIT = 1e-12  # relative distance of a control signal from its limit that is rounding
 MOST_EXTENSIONS = 40  # of the horizon, before a loop counts as one that never comes to rest
+Place = Literal["within", "at a limit", "beyond"]  # of a control signal at rest
 Given = float | Input | Sequence[Input]
 
 
@@ -141,12 +143,12 @@ class LimitedViews:
             units.time,
         )  # fmt: skip
         last = max([0.0, *(time for time, _ in [*setpoints, *loads])])
-        final_y, final_u, comes_back = _steady_state(loop, setpoints, loads, (low, high))
+        final_y, final_u, place = _steady_state(loop, setpoints, loads, (low, high))
         with np.errstate(over="ignore", invalid="ignore"):
             if until is not None:
                 steps.run(until / units.time)
             else:
-                _run_to_rest(loop, steps, last, units.time, comes_back=comes_back)
+                _run_to_rest(loop, steps, last, units.time, place)
         breaks = np.array(steps.breaks) * units.time
 
         def signal(pieces: list[np.ndarray], unit: float, final: float) -> Signal:
@@ -155,7 +157,7 @@ class LimitedViews:
         return LimitedResponse(
             signal(steps.output, 1.0, final_y),
             signal(steps.control, units.gain, final_u),
-            signal(steps.command, units.gain, final_u if comes_back else float("nan")),
+            signal(steps.command, units.gain, final_u if place == "within" else float("nan")),
             _intervals(steps, breaks.tolist(), (low, high)),
         )
 
@@ -183,32 +185,35 @@ def _jumps(name: str, given: Given, at: float) -> list[Jump]:
 
 def _steady_state(
     loop: Loop, setpoints: list[Jump], loads: list[Jump], limits: tuple[float, float]
-) -> tuple[float, float, bool]:
-    """Return the final output and control signal, and whether the latter is within its limits."""
+) -> tuple[float, float, Place]:
+    """Return the final output and control signal, and where between its limits the latter is."""
     setpoint, load = (jumps[-1][1] if jumps else 0.0 for jumps in (setpoints, loads))
     output, control = loop.steady_state(setpoint, load)
     low, high = limits
+    if any(abs(control - limit) <= AT_LIMIT * abs(limit) for limit in limits if np.isfinite(limit)):
+        return output, control, "at a limit"
     if not control > high and not control < low:
-        return output, control, True
+        return output, control, "within"
     stuck = high if control > high else low
-    return (loop.plant.gain * (stuck + load) if np.isfinite(loop.plant.gain) else float("nan")), stuck, False
+    return (loop.plant.gain * (stuck + load) if np.isfinite(loop.plant.gain) else float("nan")), stuck, "beyond"
 
 
-def _run_to_rest(loop: Loop, steps: LimitedSteps, last: float, unit: float, *, comes_back: bool) -> None:
+def _run_to_rest(loop: Loop, steps: LimitedSteps, last: float, unit: float, place: Place) -> None:
     """March until the loop has been in one mode for as long as its slowest mode needs to decay."""
     settling = loop.horizon()
-    if not comes_back:
-        rates = -loop.plant.poles().real
-        if not np.all(rates > 0.0):
-            msg = "the control signal stays at its limit and the plant does not settle there: give a horizon until=..."
-            raise LoopError(msg)
+    rates = -loop.plant.poles().real
+    may_stay = place != "within" and bool(np.all(rates > 0.0))
+    if place == "beyond" and not may_stay:
+        msg = "the control signal stays at its limit and the plant does not settle there: give a horizon until=..."
+        raise LoopError(msg)
+    if may_stay:
         longest = max(part.dead_time for part in loop.plant.parts)
         settling = max(settling, SETTLED / float(np.min(rates, initial=np.inf)) + longest)
     end = last + settling
     for _ in range(MOST_EXTENSIONS):
         steps.run(end / unit)
         needed = steps.last_change * unit + settling
-        if needed <= end and (steps.mode == FREE or not comes_back):
+        if needed <= end and (steps.mode == FREE or may_stay):
             return
         end = max(needed, end + (settling if steps.mode != FREE else 0.0))
     msg = f"the loop has not come to rest by t = {end:g}: give a horizon until=..."
