@@ -142,13 +142,16 @@ pixels = bytes(canvas.buffer_rgba())
 assert (bytes(canvas.buffer_rgba()), len(canvas.tostring_argb())) == (pixels, len(pixels))
 film = matplotlib.animation.FuncAnimation(fig, lambda frame: curve.set_ydata([frame, 2, 0]), frames=3)
 film.save("film.gif", writer="pillow", dpi=20)
+other = Figure()
+other.add_artist(matplotlib.lines.Line2D([0, 1], [0, 1]))
+matplotlib.animation.FuncAnimation(other, lambda frame: None, frames=2).save("other.gif", writer="pillow", dpi=20)
 """
 
 
 def test_what_a_canvas_writes_or_hands_out_is_captured_once_and_the_frames_of_films_are_not(folder: Folder) -> None:
     folder.write("plot_canvas.py", CANVAS)
     status, _, err = folder.run("accept", "plots/plot_canvas.py", "--reason", "first")
-    assert (status, folder.accepted()) == (0, [f"plots/plot_canvas-{number}" for number in (1, 2, 3)]), err
+    assert (status, folder.accepted()) == (0, [f"plots/plot_canvas-{number}" for number in (1, 2, 3, 4)]), err
 
 
 def test_a_figure_whose_script_is_gone_is_noticed_and_its_absence_can_be_accepted(folder: Folder) -> None:
@@ -172,6 +175,10 @@ FAILING = [
     ("import os\nos._exit(7)\n", ": ended before its end, with status 7"),
     ("import os\nos.abort()\n", ": ended before its end, with status -6"),
     ("import matplotlib.pyplot as plt\nplt.plot([1])\nplt.close()\n", ": draws nothing"),
+    (
+        "import matplotlib.pyplot as plt\nplt.plot([1])\nplt.gca().draw = lambda *_: 1 / [].index('a\\nb')\n",
+        ": a figure cannot be drawn: ValueError: 'a",
+    ),
     (
         "import matplotlib.pyplot as plt\nplt.plot([1])\n(place,) = plt.ginput(1)\n",
         ":3: ValueError: not enough values to unpack",

@@ -10,6 +10,7 @@ import json
 import os
 import runpy
 import sys
+import textwrap
 import traceback
 from collections.abc import Callable
 from functools import partialmethod, wraps
@@ -21,6 +22,8 @@ from replicate.errors import FigureError
 
 #: Methods of canvases that hand the pixels to the script, which may write them as it likes.
 _PIXELS = ("buffer_rgba", "tostring_argb", "tostring_rgb")
+
+_LONGEST = 300
 
 
 class Keeper:
@@ -34,6 +37,7 @@ class Keeper:
         self._last: dict[int, tuple[Any, str]] = {}
         self._busy = False
         self._saving: set[int] = set()
+        self._films: list[Any] = []
 
     def keep(self, figure: Any) -> None:
         """Keep the present state of a figure, unless it is the one that was kept last."""
@@ -45,7 +49,8 @@ class Keeper:
         except FigureError:
             return  # nothing is on it
         except Exception as error:  # noqa: BLE001  -- whatever an artist raises while it is drawn
-            self.problems.append(f"a figure cannot be drawn: {type(error).__name__}: {error}")
+            problem = f"a figure cannot be drawn: {_one_line(error)}"
+            self.problems += [problem] if problem not in self.problems else []
             return
         finally:
             self._busy = False
@@ -73,8 +78,7 @@ class Keeper:
                 result = original(owner, *arguments, **options)
             finally:
                 self._saving.discard(id(figure))
-            if not film:
-                self.keep(figure)
+            self._films.append(figure) if film else self.keep(figure)
             return result
 
         return save
@@ -91,10 +95,13 @@ class Keeper:
                 setattr(canvas, name, self.saving(method))
 
     def keep_open(self) -> None:
-        """Keep every figure that pyplot has open."""
+        """Keep every figure that pyplot has open, and those of films of which nothing else was kept."""
         plt: Any = sys.modules.get("matplotlib.pyplot")
         for number in plt.get_fignums() if plt else ():
             self.keep(plt.figure(number))
+        for figure in self._films:
+            if id(figure) not in self._last:
+                self.keep(figure)
 
 
 def _watch(keeper: Keeper) -> None:
@@ -147,10 +154,14 @@ def run(script: Path, keeper: Keeper) -> str:
     except SyntaxError as error:
         return f"{script.name}:{error.lineno or 1}: {type(error).__name__}: {error.msg}"
     except BaseException as error:  # noqa: BLE001  -- whatever the script raises is its own
-        said = " ".join(str(error).split())
-        return f"{script.name}:{_line(error, script)}: {type(error).__name__}: {said}"
+        return f"{script.name}:{_line(error, script)}: {_one_line(error)}"
     keeper.keep_open()
     return ""
+
+
+def _one_line(error: BaseException) -> str:
+    """Return kind and words of an error, the first of very many."""
+    return textwrap.shorten(f"{type(error).__name__}: {error}", _LONGEST, placeholder=" …")
 
 
 def _line(error: BaseException, script: Path) -> int:
