@@ -6,6 +6,7 @@ Figures are drawn as a paper draws them, and read back; what must be found is kn
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
@@ -39,6 +40,7 @@ def response(t: Array) -> Array:
     return 1.0 - np.exp(-t / 2.0) * np.cos(3.0 * t)
 
 
+@cache  # the figure before a change is that of many tests
 def state(draw: Draw) -> FigureState:
     with plotstyle.style("toy"):
         canvas = Canvas()

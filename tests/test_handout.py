@@ -9,9 +9,11 @@ import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 import synthetic
+from kept_results import kept_results
 from qti_schema import faults
 
 import replicate
@@ -128,15 +130,17 @@ class Made:
     """A real paper with the results that its handout needs, and both editions of it."""
 
     def __init__(self, id: str) -> None:
-        self.outcome = recompute(
-            [Library().paper(id)], [(id, exhibit) for exhibit in ASKED[id]], jobs=1, cache_dir=None
-        )
-        self.documents = {solutions: self.edition(solutions=solutions) for solutions in (False, True)}
+        with kept_results() as kept:
+            self.outcome = recompute([Library().paper(id)], [(id, exhibit) for exhibit in ASKED[id]], cache_dir=kept)
+        shared: dict[str, Any] = {}
+        self.documents = {solutions: self.edition(solutions=solutions, shared=shared) for solutions in (False, True)}
         self.pdfs = {solutions: pdf(document) for solutions, document in self.documents.items()}
 
-    def edition(self, results: Results | None = None, *, solutions: bool) -> Document:
-        outcome = self.outcome
-        return edition(outcome.papers[0], results or outcome.results, outcome.judgement.verdicts, solutions=solutions)
+    def edition(
+        self, results: Results | None = None, *, solutions: bool, shared: dict[str, Any] | None = None
+    ) -> Document:
+        (paper,), verdicts = self.outcome.papers, self.outcome.judgement.verdicts
+        return edition(paper, results or self.outcome.results, verdicts, solutions=solutions, shared=shared)
 
 
 @pytest.fixture(scope="module", params=sorted(ASKED))
