@@ -23,8 +23,8 @@ PROBE = np.array([1.0 + 1.0j, 2.0 + 1.0j, 3.0 + 1.0j])  # any points at all
 
 def real(value: object) -> float:
     """Return a real number as a float; ``ValueError`` for anything else, ``nan`` and ``inf`` are let through."""
-    if type(value) is float or type(value) is int:  # by far the most frequent
-        return float(value)
+    if type(value) is float:  # by far the most frequent
+        return value
     if isinstance(value, str | bytes | bool | np.bool_) or np.iscomplexobj(value) or np.ndim(value):  # type: ignore[arg-type]
         raise ValueError
     try:
@@ -131,11 +131,11 @@ def _converted(name: str, values: object, to: type, allowed: str, *, kinds: str)
     raise LoopError(_message(name, values, allowed))
 
 
-def whole(name: str, value: object) -> int:
-    """Return an integer >= 1; LoopError otherwise."""
-    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < 1:
-        msg = f"{name} must be at least 1 and whole, not {shown(value)}"
-        raise LoopError(msg)
+def whole(name: str, value: object, *, most: float = math.inf) -> int:
+    """Return an integer >= 1, and not above ``most``; LoopError otherwise."""
+    if not isinstance(value, int | np.integer) or isinstance(value, bool) or not 1 <= value <= most:
+        allowed = "at least 1 and whole" if math.isinf(most) else f"whole, from 1 to {most:g}"
+        raise LoopError(_message(name, value, allowed))
     return int(value)
 
 

@@ -152,9 +152,9 @@ class Loop(LoopViews, SetOnce):
     def poles(self, count: int = 4) -> ComplexArray:
         """Return up to ``count`` rightmost closed-loop poles, descending real part, one of each conjugate pair.
 
-        A multiple pole is listed once; of poles with equal real parts the one of the lowest frequency comes first.
+        A multiple pole is listed once; of equal real parts the lowest frequency comes first; 10,000 is the most.
         """
-        count = checks.whole("the number of poles", count)
+        count = checks.whole("the number of poles", count, most=poles.MOST)
         return np.asarray(self._found(count) / self._units.time)
 
     def _require_stable(self, what: str) -> None:

@@ -37,6 +37,7 @@ def step_responses(
     LoopError
         If the controllers are none, or differ in more than k, ki, kd and b.
     """
+    checks.instance("the plant", plant, Plant, "a Plant")
     controllers = checks.several("the controllers", controllers, "a list of PI or PID")
     for controller in controllers:
         checks.instance("each controller", controller, PID, "a PI or PID")

@@ -17,9 +17,12 @@ from replicate.loops import (
     LoopError,
     Plant,
     SmithPredictor,
+    Weight,
     design_pi,
     design_pid,
+    gamma_norm,
     nu_gap,
+    setpoint_weight,
     step_responses,
     sweep,
     tune,
@@ -168,7 +171,7 @@ def test_what_is_added_to_a_plant_or_multiplied_with_it_is_a_number() -> None:
             PLANT + wrong
         with pytest.raises(LoopError, match="must be a finite number other than 0, not"):
             PLANT * wrong
-    with pytest.raises(LoopError, match="must be at least 1 and whole, not True"):
+    with pytest.raises(LoopError, match="must be whole, from 1 to 10000, not True"):
         Loop(PLANT, PI(0.2)).poles(True)
 
 
@@ -192,6 +195,14 @@ def test_complex_times_and_frequencies_are_refused_and_the_past_is_at_rest() -> 
         (lambda: Plant([1e308, 1.0], [1e-308, 1.0]), "exceed the range of floats"),
         (lambda: PI(1.0, measurement_filter_order=np.array([1, 2])), "measurement filter must be 1 or 2"),  # type: ignore[arg-type]
         (lambda: tune.simc(1.0), "the plant of a tuning rule must be a Plant, not float"),  # type: ignore[arg-type]
+        (lambda: PI(10**400), "the controller's k must be a finite number"),
+        (lambda: LOOP.poles(10**9), "the number of poles must be whole, from 1 to 10000"),
+        (lambda: gamma_norm(PLANT, LOOP.controller, 3.0), "the weight must be a Weight, not float"),  # type: ignore[arg-type]
+        (lambda: Weight.constant("a"), "a constant weight must be a positive number"),  # type: ignore[arg-type]
+        (lambda: setpoint_weight(PLANT, "a", 1.0), "the controller's k must be a finite number"),  # type: ignore[arg-type]
+        (lambda: tune.gain_phase_margins(1.0), "the plant of a tuning rule must be a Plant"),  # type: ignore[arg-type]
+        (lambda: tune.half_rule(PLANT, 1.5), "the order of a model must be at least 1 and whole"),  # type: ignore[arg-type]
+        (lambda: step_responses([PLANT], [PI(1.0)], 5.0), "the plant must be a Plant, not list"),  # type: ignore[arg-type]
         (lambda: Y.summary(-1.0), "the settling band must be a positive fraction"),
         (lambda: PiecewisePolynomial(5), "the pieces must be a list of"),  # type: ignore[arg-type]
         (lambda: PiecewisePolynomial([1.0]), "each piece must be"),  # type: ignore[list-item]

@@ -42,6 +42,7 @@ STRIP, MOST_STRIPS = (
     0.7,
     12,
 )  # width of a strip in which further poles are looked for, in units of 1/L, and their number
+MOST = 10_000  # poles that may be asked for
 MOST_TURNS = 3000.0  # rad of the longest dead time up to which poles are counted,
 MANY_TURNS = 30_000.0  # and where more than a few are asked for
 TIE = 1e-9  # relative difference of real parts that are equal

@@ -25,12 +25,13 @@ def setpoint_weight(plant: Plant, k: float, ki: float, *, at: tuple[float, float
     at
         (frequency, |T| there); by default the peak of the complementary sensitivity, as the paper's text says (24).
     """
-    if k * ki <= 0.0:
+    controller = PI(k, ki)
+    if controller.k * controller.ki <= 0.0:
         return 0.0
     if at is None:
-        peak = Loop(plant, PI(k, ki)).complementary_peak()
+        peak = Loop(plant, controller).complementary_peak()
         at = (peak.frequency, peak.value)
-    return pid_setpoint_weight(PI(k, ki), *at)
+    return pid_setpoint_weight(controller, *at)
 
 
 def pid_setpoint_weight(controller: PID, frequency: float, peak: float) -> float:

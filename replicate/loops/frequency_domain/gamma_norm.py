@@ -23,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.loops import checks
 from replicate.loops.controller import PID
-from replicate.loops.errors import LoopError
 from replicate.loops.frequency_domain.frequency_grids import bands_beyond, peak_grid, wide_grid
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.frequency_domain.sensitivity import highest_peak
@@ -70,9 +70,7 @@ class Weight:
         LoopError
             If the value is not a positive finite number.
         """
-        if not (np.isfinite(value) and value > 0.0):
-            msg = f"a constant weight must be a positive number, not {value}"
-            raise LoopError(msg)
+        value = checks.positive("a constant weight", value, allowed="a positive number")
         return cls(lambda w: np.full_like(w, value), np.zeros_like)
 
     @classmethod
@@ -97,6 +95,14 @@ class Weight:
         return cls(magnitude, log_slope)
 
 
+def magnitude_of(weight: Weight | None, w: Array) -> Array:
+    """Return |W| at frequencies; 1 without a weight."""
+    if weight is None:
+        return np.ones_like(w)
+    checks.instance("the weight", weight, Weight, "a Weight")
+    return weight.magnitude(w)
+
+
 def singular_value(plant: Plant, controller: PID, w: Array, weight: Weight | None = None) -> Array:
     """Return the nonzero singular value of the closed loop's transfer matrix at frequencies ``w`` > 0.
 
@@ -107,8 +113,8 @@ def singular_value(plant: Plant, controller: PID, w: Array, weight: Weight | Non
     weight
         Default: none (W = 1).
     """
-    w = np.asarray(w, dtype=float)
-    scale = np.ones_like(w) if weight is None else weight.magnitude(w)
+    w = checks.times("w", w)
+    scale = magnitude_of(weight, w)
     g, gc = plant(1j * w), controller.feedback(1j * w)
     return np.asarray(np.hypot(1.0, np.abs(gc) / scale) * np.hypot(1.0, np.abs(g) * scale) / np.abs(1.0 + g * gc))
 
@@ -177,7 +183,7 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
     best = highest_peak(magnitude, slope, w)
     at_rest, at_infinity = (_limit(magnitude, at) for at in (w[0] / FAR, w[-1] * FAR))
     if transfer.limit_curve.delayed.size:
-        scale = 1.0 if weight is None else float(weight.magnitude(w[-1:] * FAR)[0])
+        scale = float(magnitude_of(weight, w[-1:] * FAR)[0])
         at_infinity = _neutral_limit(transfer, abs(complex(controller.feedback(1j * w[-1] * FAR))) / scale)
     ahead = np.geomspace(1.0, 10.0**DECADES, 20 * DECADES)
     for start, stop in bands_beyond(transfer, end):

@@ -22,7 +22,7 @@ from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.frequency_domain import stability
 from replicate.loops.frequency_domain.frequency_grids import plants_grid
-from replicate.loops.frequency_domain.gamma_norm import Weight
+from replicate.loops.frequency_domain.gamma_norm import Weight, magnitude_of
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.frequency_domain.sensitivity import highest_peak
 from replicate.loops.numerics.peaks import FrequencyPeak
@@ -91,8 +91,8 @@ def chordal_distance(first: Plant, second: Plant, w: Array, weight: Weight | Non
     weight
         Multiplies both plants; default: none.
     """
-    w = np.asarray(w, dtype=float)
-    scale = np.ones_like(w) if weight is None else weight.magnitude(w)
+    w = checks.times("w", w)
+    scale = magnitude_of(weight, w)
     g1, g2 = first(1j * w) * scale, second(1j * w) * scale
     return np.asarray(np.abs(g1 - g2) / (np.hypot(1.0, np.abs(g1)) * np.hypot(1.0, np.abs(g2))))
 

@@ -48,6 +48,7 @@ def gain_phase_margins(plant: Plant, gain_margin: float = 3.0, phase_margin: flo
     >>> round(margins.gain, 9), round(margins.phase, 9)
     (3.0, 60.0)
     """
+    checks.instance("the plant of a tuning rule", plant, Plant, "a Plant")
     gain_margin, phase_margin = (
         checks.finite(name, value) for name, value in (("gain_margin", gain_margin), ("phase_margin", phase_margin))
     )

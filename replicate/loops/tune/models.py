@@ -91,7 +91,7 @@ def half_rule(plant: Plant, order: int = 1) -> LagModel:
     LagModel(gain=2.0, time_constants=(4.5,), dead_time=1.5, integrators=0)
     """
     model = lag_model(plant)
-    room = order - model.integrators
+    room = checks.whole("the order of a model", order) - model.integrators
     if room < 0:
         msg = f"a model of order {order} cannot hold the plant's {model.integrators} integrators"
         raise LoopError(msg)
