@@ -31,10 +31,17 @@ function text(node) {
 const csvField = (value) => (/[",\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value);
 const csv = (rows) => rows.map((row) => row.map((cell) => csvField(cell.replaceAll("−", "-"))).join(",")).join("\n");
 
-const GREEK = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi mathrm{o} pi rho varsigma sigma tau upsilon phi chi psi omega";
-const TEX = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "−": "$-$", "→": "$\\to$", "≈": "$\\approx$", "≠": "$\\ne$", "∈": "$\\in$", "∞": "$\\infty$", "±": "$\\pm$", "×": "$\\times$", "√": "$\\surd$", "²": "\\textsuperscript{2}", "³": "\\textsuperscript{3}" };
-GREEK.split(" ").forEach((name, place) => (TEX[String.fromCharCode(0x3b1 + place)] = `$\\${name}$`));
-const tex = (value) => value.replace(/(.)\u0305|[\\~^−→≈≠∈∞±×√²³α-ω&%#_{}$]/gu, (sign, lined) => (lined ? `$\\overline{${lined}}$` : (TEX[sign] ?? `\\${sign}`)));
+const MATH = { "−": "-", "→": "\\to", "≈": "\\approx", "≠": "\\ne", "≤": "\\le", "≥": "\\ge", "∈": "\\in", "∞": "\\infty", "±": "\\pm", "×": "\\times", "⋅": "\\cdot", "√": "\\surd", "∑": "\\sum", "⋆": "\\star", "′": "'", "ϕ": "\\phi", "ϵ": "\\epsilon" };
+const TEX = { "\\": "\\textbackslash{}", "~": "\\textasciitilde{}", "^": "\\textasciicircum{}", "²": "\\textsuperscript{2}", "³": "\\textsuperscript{3}", "\u00a0": "~", "\u2061": " " };
+const ACCENTS = { "\u0302": "hat", "\u0305": "overline" };
+const letters = (first, names) => names.split(" ").forEach((name, place) => (MATH[String.fromCodePoint(first.codePointAt() + place)] = `\\${name}`));
+letters("α", "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi mathrm{o} pi rho varsigma sigma tau upsilon phi chi psi omega");
+letters("Γ", "Gamma Delta mathrm{E} mathrm{Z} mathrm{H} Theta mathrm{I} mathrm{K} Lambda mathrm{M} mathrm{N} Xi mathrm{O} Pi mathrm{P} mathrm{} Sigma mathrm{T} Upsilon Phi mathrm{X} Psi Omega");
+const tex = (value) =>
+  value.replace(/(.)([\u0302\u0305])|[\\~^&%#_{}$]|[^\0-~]/gu, (sign, base, accent) => {
+    if (accent) return `$\\${ACCENTS[accent]}{${MATH[base] ?? base}}$`;
+    return MATH[sign] ? `$${MATH[sign]}$` : (TEX[sign] ?? (sign > "~" ? sign : `\\${sign}`));
+  });
 const tabular = (rows) => {
   const lines = rows.map((row) => `  ${row.map(tex).join(" & ")} \\\\`);
   return [`\\begin{tabular}{l${"r".repeat(rows[0].length - 1)}}`, lines[0], "  \\hline", ...lines.slice(1), "\\end{tabular}"].join("\n");
@@ -265,6 +272,7 @@ function curveTools(drawing, svg) {
       for (const part of parts) part.classList.toggle("off", !on);
     });
     toggle.append(...written.cloneNode(true).childNodes);
+    toggle.setAttribute("aria-label", text(written)); // a formula has no part in the name of what holds it
     toggle.setAttribute("aria-pressed", "true");
     for (const part of parts) if (part.dataset.legend) part.addEventListener("click", () => toggle.click());
     tools.append(toggle);

@@ -15,6 +15,10 @@ _FORMULA = re.compile(
 _BESIDE = re.compile(
     '(?P<opens>[(\\[“‘]?)(?P<formula><math display="inline"[^>]*>.*?</math>)(?P<ends>[-,.;:!?)\\]”’%]*)', re.DOTALL
 )
+_CALLED = re.compile(r"<(a|h[1-6]|th|summary|label)\b[^>]*>.*?</\1>", re.DOTALL)
+_SHOWN = re.compile(
+    r'<math(?P<attributes>(?: (?!alttext)[^ >]*| alttext="(?P<said>[^"]*)")*)>(?P<content>.*?)</math>', re.DOTALL
+)
 _BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space|table)\\b")
 _LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
 _VERY_LONG = 34
@@ -49,17 +53,28 @@ def without_operators(text: str) -> str:
     return OPERATORS.sub(" ", text)
 
 
-def tied(page: str) -> str:
-    """Return a page on which no line ends between a formula and the punctuation beside it.
+def in_place(page: str) -> str:
+    """Return a page whose formulas fit what is around them.
 
-    To a browser a formula is like a picture: a comma after it may begin the next line.
+    To a browser a formula is like a picture: a comma after it may begin the next line, so that it is tied to its
+    punctuation; and what is called by its content, as a link or a heading is, is called without it, unless it has a
+    name.
 
     Examples
     --------
-    >>> tied('(<math display="inline"><mi>k</mi></math>, that is')
+    >>> in_place('(<math display="inline"><mi>k</mi></math>, that is')
     '<span class="tied">(<math display="inline"><mi>k</mi></math>,</span> that is'
+    >>> in_place('<a href="#k">its <math display="inline"><mi>k</mi></math></a>')
+    '<a href="#k">its <math aria-label="k" display="inline"><mi>k</mi></math></a>'
     """
-    return _BESIDE.sub(lambda found: _tied(*found.groups()), page)
+    page = _BESIDE.sub(lambda found: _tied(*found.groups()), page)
+    return _CALLED.sub(lambda found: _SHOWN.sub(_named, found[0]), page)
+
+
+def _named(match: re.Match[str]) -> str:
+    attributes, said, content = match.groups()
+    name = said or re.sub("<[^>]*>|&#[0-9]+;", "", content).replace('"', "&quot;")
+    return f'<math aria-label="{name}"{attributes}>{content}</math>'
 
 
 def _tied(opens: str, formula: str, ends: str) -> str:

@@ -14,7 +14,7 @@ from typing import Literal
 
 from markupsafe import Markup
 
-from replicate.display.formulas import formulas, tied, without_operators
+from replicate.display.formulas import formulas, in_place, without_operators
 from replicate.display.keeping import Keep, made_anew
 from replicate.display.numbers import minus_signs
 from replicate.display.pandoc import PandocError, SlowTextError, convert, refusal
@@ -116,7 +116,7 @@ class MarkdownBatch:
             inline = text.removeprefix("<p>").removesuffix("</p>") if text.count("<p>") == 1 else text
             return inline if match[1] == "inline" else html.escape(strip_elements(inline))
 
-        return tied(_TOKEN.sub(replacement, page))
+        return in_place(_TOKEN.sub(replacement, page))
 
     def _convert(self) -> list[str]:
         if not self._texts:

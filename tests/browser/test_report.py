@@ -362,6 +362,15 @@ def test_curves_are_called_what_the_legend_calls_them(report: Path, browser: Any
         assert not re.search(r"tau|[$\\_]", page.locator("#IV-fig-2 .curves").inner_text())
 
 
+def test_a_name_holds_its_formulas(report: Path, browser: Any) -> None:
+    """Browsers leave formulas out of what a link, a heading or a button is called."""
+    with Sight(browser, report / "khan.html") as page:
+        assert page.locator(":is(a, h2, h3, th, summary) math:not([aria-label])").count() == 0
+        assert page.locator(".wrong").get_by_role("link", name=re.compile(r"\(7a\), KP ?: a")).count() == 1
+    with Sight(browser, report / "panagopoulos-IV.html") as page:
+        assert page.get_by_role("button", name="τg/τe=0.5").count() == 1
+
+
 def test_tables_sort_and_copy(report: Path, browser: Any) -> None:
     with Sight(browser, report / "khan.html") as page:
         table = page.locator("#table-2 table.values").first
