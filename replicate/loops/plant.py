@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops import checks
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
+from replicate.loops.numerics.controller_form import controller_form
 from replicate.loops.numerics.polynomials import horner, horner_with_slope, roots_of, taylor
 from replicate.loops.plant_views import PlantViews
 from replicate.loops.plants.function_resonances import NARROW
@@ -269,17 +270,8 @@ class Plant(PlantViews, SetOnce):
         LoopError
             If the plant is given by a function.
         """
-        order = self.den.size - 1
-        padded = np.concatenate([np.zeros(self.den.size - self.num.size), self.num])
-        feedthrough = float(padded[0])
-        a = np.zeros((order, order))
-        b = np.zeros(order)
-        c = padded[1:] - feedthrough * self.den[1:]
-        if order:
-            a[0] = -self.den[1:]
-            a[1:, :-1] += np.eye(order - 1)
-            b[0] = 1.0
-        if order > 1:
+        a, b, c, feedthrough = controller_form(self.num, self.den)
+        if b.size > 1:
             _, (scale, _) = scipy.linalg.matrix_balance(a, permute=False, separate=True)
             a, b, c = a * scale[None, :] / scale[:, None], b / scale, c * scale
         return a, b, c, feedthrough

@@ -154,6 +154,14 @@ def test_before_the_step_everything_is_at_rest() -> None:
     assert PROBLEMS["dead-time"].loop.step(until=2.0)(np.array([-1.0, -1e-9, 0.0, 0.999])).tolist() == [0, 0, 0, 0]
 
 
+def test_a_filter_with_a_leading_coefficient_of_next_to_nothing_is_the_one_without_it() -> None:
+    plant, t = Plant([1.0], [1.0, 1.0], dead_time=1.0), np.linspace(0.0, 12.0, 41)
+    odd = PID(k=0.5, ki=0.4, setpoint_filter=((1e-16, 1.0), (0.7, 1.0)), measurement_filter=((1e-16, 1.0), (0.3, 1.0)))
+    plain = PID(k=0.5, ki=0.4, setpoint_filter=0.7, measurement_filter=0.3)
+    responses = [Loop(plant, controller).step(until=12.0)(t) for controller in (odd, plain)]
+    assert np.abs(responses[0] - responses[1]).max() < 1e-13
+
+
 def test_pure_differentiators_are_refused() -> None:
     with pytest.raises(ImproperLoopError):
         Loop(Plant([1.0, 1.0], [1.0, 2.0], dead_time=1.0), PID(k=1.0, ki=0.1, kd=0.1))

@@ -17,12 +17,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import scipy.linalg
-import scipy.signal
 from numpy.typing import NDArray
 
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.kept import Kept
+from replicate.loops.numerics.controller_form import controller_form
 from replicate.loops.plant import Plant
 from replicate.loops.plants.sum_plant import SumPlant
 
@@ -152,7 +152,7 @@ def _built(controller: PID, integral: bool, derivative: bool, space: tuple[Array
     n_filter = controller.measurement_filter_polynomials()[1].size - 1
     n_integral = 1 if integral else 0
     n_lag = 1 if derivative and controller.derivative_filter else 0
-    fa, fb, fc, fd = _state_space(*controller.setpoint_filter_polynomials())
+    fa, fb, fc, fd = controller_form(*controller.setpoint_filter_polynomials())
     i_filter = n_plant
     i_integral = i_filter + n_filter
     i_lag = i_integral + n_integral
@@ -228,7 +228,7 @@ def _measured(controller: PID, y: _Row, own: slice, a: Array, b: Array) -> tuple
     n, inputs = b.shape
     lag = controller.measurement_filter
     if isinstance(lag, tuple):
-        fa, fb, fc, fd = _state_space(*controller.measurement_filter_polynomials())
+        fa, fb, fc, fd = controller_form(*controller.measurement_filter_polynomials())
         a[own], b[own] = np.outer(fb, y.x), np.outer(fb, y.v)
         a[own, own] = fa
         measured = _Row(fd * y.x, fd * y.v, 0.0)
@@ -258,10 +258,3 @@ def _plant_state_space(plant: Plant) -> tuple[Array, Array, Array, Array]:
         return plant.state_space_by_dead_time()
     a, b, c, d = plant.state_space()
     return a, b[:, None], c, np.array([d])
-
-
-def _state_space(num: Array, den: Array) -> tuple[Array, Array, Array, float]:
-    if den.size == 1:
-        return np.zeros((0, 0)), np.zeros(0), np.zeros(0), float(num[-1] / den[0])
-    a, b, c, d = scipy.signal.tf2ss(num, den)
-    return np.asarray(a), np.asarray(b)[:, 0], np.asarray(c)[0], float(np.asarray(d).item())
