@@ -20,6 +20,7 @@ from replicate.handout.printout import markup
 ROOT = Path(__file__).parents[1]
 EXAMPLE = ROOT / "examples" / "exercises"
 TEXT = "## Title\nWhat is ${{ inputs['x'] }}$?\n\n::: solution\n${{ answer['answer'] }}$\n:::\n"
+FIGURE = "from replicate.exhibits.variants import VariedFigure\n"
 PROGRAM = """from replicate.exhibits.variants import Answer
 
 
@@ -124,6 +125,23 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
         (('inputs["x"] / 7', 'inputs["y"]'), r"mine/exercise\.py:9: answers\(inputs\) fails: KeyError: 'y'"),
         (('{"x": rng.randint(20, 90)}', '{"x": [1]}'), r"mine/exercise\.py:4: variant\(rng\) fails: .*'x' is \[1\]"),
         (("Answer(inputs", "dict(ki=inputs"), r"mine/exercise\.py:8: answers\(inputs\) fails|mine/exercise\.py:9"),
+        (("rng.randint(20, 90)", "1, 3: 4"), r"mine/exercise\.py:4: variant\(rng\) fails: .* names a field 3, allowed"),
+        (
+            ("def variant", "requires = {'a': print, 'b': 1}\n\n\ndef variant"),
+            r"mine/exercise\.py:4: 'requires' is \{'a': <built-in function print>, 'b': 1\}, allowed",
+        ),
+        (
+            ("def variant", "requires = {'a': lambda x: 1, 'b': 1}\n\n\ndef variant"),
+            r"mine/exercise\.py:4: 'requires' is \{'a': <function <lambda>>, 'b': 1\}, allowed",
+        ),
+        (
+            ("def variant", f"{FIGURE}figures = {{'f': VariedFigure('A', '', print)}}\n\n\ndef variant"),
+            r"mine/exercise\.py:5: .* figure 'A': alt is empty",
+        ),
+        (
+            ("def variant", f"{FIGURE}figures = {{'f': VariedFigure('A', 'B', print, (3,))}}\n\n\ndef variant"),
+            r"mine/exercise\.py:5: .* figure 'A': size is \(3,\); expected",
+        ),
         (("def variant", "stated = 3\n\n\ndef variant"), r"mine/exercise\.py:4: 'stated' is 3, allowed: a text"),
         (("def variant", "requires = 3\n\n\ndef variant"), r"mine/exercise\.py:4: 'requires' is 3, allowed: a dict"),
         (("def variant", "1 / 0\n\n\ndef variant"), r"mine/exercise\.py:4: the program fails: ZeroDivisionError"),
@@ -147,6 +165,16 @@ def test_what_is_wrong_in_the_program_is_one_line(tmp_path: Path, change: tuple[
         ("## T\n\nOf {{ inputs['y'] }}\n", r"mine/exercise\.md:3: .*'y'"),
         ("## T\n\n$\\unheardof{x}$\n", r"mine/exercise\.md:3: pandoc cannot convert"),
         ("## T\n\n::: other\nx\n:::\n", r"mine/exercise\.md:3: no block 'other'; allowed: exercise, key, lead, sol"),
+        (
+            "## T\n\nAs\n{{ figure('fig-1') }}\nshows\n",
+            r"mine/exercise\.md:4: a figure or table must begin a paragraph",
+        ),
+        ("## T\n\n- {{ figure('fig-1') }}\n", r"mine/exercise\.md:3: a figure or table must begin a paragraph"),
+        (
+            "## T\n\nx\n[y](javascript:z)\n",
+            r"mine/exercise\.md:4: the link leads to javascript:z, allowed: http, https",
+        ),
+        ("## T {points=3}\n\nx\n", r"exercise 4 has points=\.\.\., allowed: tool, vary, fixed, plot"),
         ("## T\n\n<b>x</b>\n", r"mine/exercise\.md:3: raw text"),
         ("## T\n\n```{.python .run}\nx = 1\ny = 1 / 0\n```\n", r"mine/exercise\.md:5: the program fails"),
         ("## T\n\n::: solution\nx\n", r"mine/exercise\.md:\d: pandoc cannot read"),

@@ -50,10 +50,15 @@ _SCHEMES = ("http", "https", "mailto", "doi")
 _STRAY = re.compile(rf"\s*[/\\]{{2}}|(?!({'|'.join(_SCHEMES)}):)[^/?#]*:", re.IGNORECASE)
 
 
+def strays(address: str) -> bool:
+    """Say whether a link neither names one of the schemes nor stays in the report."""
+    return bool(_STRAY.match(address))
+
+
 def _kept(tag: str, attribute: str, value: str) -> str | None:
-    """Return an attribute's value, none for a link that neither names one of the schemes nor stays in the report."""
+    """Return an attribute's value, none for a link that strays."""
     del tag
-    return None if attribute == "href" and _STRAY.match(value) else value
+    return None if attribute == "href" and strays(value) else value
 
 
 _CLEANER = nh3.Cleaner(

@@ -14,6 +14,7 @@ from numbers import Real
 from typing import Any
 
 from replicate.errors import PaperDefinitionError
+from replicate.exhibits.definitions import check_function, check_size, check_texts
 
 Inputs = Mapping[str, float | str]
 
@@ -162,6 +163,16 @@ class VariedFigure:
     draw: Callable[..., None]
     size: tuple[float, float] = (6.4, 3.0)
     in_key: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the types that Python does not, and that there are words for those who cannot see it."""
+        what = f"figure '{self.title}'"
+        check_texts(what, title=self.title, alt=self.alt)
+        check_size(what, self.size)
+        check_function(what, "what draws it", self.draw)
+        if not self.alt.strip():
+            msg = f"{what}: alt is empty; expected: what it shows, in words"
+            raise PaperDefinitionError(msg)
 
 
 @dataclass(frozen=True)

@@ -65,7 +65,7 @@ class Wanted:
         found = variation.figures[self.figure]
         inputs = variation.drawn(self.draw) if self.draw else variation.original
         draw = partial(found.draw, inputs=inputs)
-        with said_by(f"figure('{self.figure}')"):
+        with said_by(f"exercise '{self.exercise}': figure('{self.figure}')"):
             figure = Figure(self.id, "figure", self.title, draw, alt=found.alt, size=self.size)
             made: tuple[bytes, ...] = _drawing().drawn_as(self.owner, figure, self.kinds)
             return made

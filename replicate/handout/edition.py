@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
@@ -156,7 +157,7 @@ def editions(
         with_heads([block for part in parts for block in part], source, placing.exercises, sheet)
         done: Blocks = []
         for part, text in zip(parts, texts, strict=True):
-            placed = _placed(part, placing)
+            placed = _placed(part, placing, text.lines[number], text.source)
             done += placed if only_read else run_programs(placed, text.lines[number], text.source, shared)
         found.append((title, selected(done, sheet)))
     formulas = [formulas_in(blocks) for _, blocks in found]
@@ -245,8 +246,14 @@ def _title(blocks: Blocks, source: str) -> tuple[str, Blocks]:
     return text_of(blocks[0]["c"][2]), transform(blocks[1:], raised, texts=False)
 
 
-def _placed(blocks: Blocks, placing: Placing) -> Blocks:
-    """Put tables and figures where their marks are; the rest of the paragraph is the caption."""
+def _placed(blocks: Blocks, placing: Placing, lines: Lines, source: str) -> Blocks:
+    """Put tables and figures where their marks are; the rest of the paragraph is the caption.
+
+    Raises
+    ------
+    TemplateError
+        If one stands elsewhere than at the begin of a paragraph; with its line.
+    """
 
     def changed(element: Element) -> list[Element] | None:
         if element["t"] != "Para" or not element["c"] or element["c"][0]["t"] != "Str":
@@ -265,6 +272,10 @@ def _placed(blocks: Blocks, placing: Placing) -> Blocks:
         return [div([thing.table, *caption], "exhibit", name=thing.exhibit)]
 
     placed: Blocks = transform(blocks, changed, texts=False)
+    if lost := _MARK.search(json.dumps(placed, ensure_ascii=False)):
+        line = next((number for text, number in lines if lost[0] in text), 1)
+        msg = f"{source}:{line}: a figure or table must begin a paragraph of its own; leave a line blank before it"
+        raise TemplateError(msg)
     return placed
 
 

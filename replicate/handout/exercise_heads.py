@@ -13,6 +13,7 @@ from replicate.handout.tree import Blocks, Element, classes, elements, string, t
 
 _FENCE = re.compile(r"^:{3,}[ \t]*(?:exercise\b|\{[^}\n]*\.exercise\b)", re.MULTILINE)
 _LOOP = re.compile(r"\{%-?\s*for\b")
+_ATTRIBUTES = ("tool", "vary", "fixed", "plot")
 _LEVEL = 2  # below the section that they stand in, whatever the text writes
 
 
@@ -26,7 +27,7 @@ def with_heads(blocks: Blocks, source: str, exercises: Exercises, sheet: Sheet) 
     Raises
     ------
     TemplateError
-        If an exercise has no heading, or varies under a name that there is not.
+        If an exercise has no heading, one with an unknown attribute, or varies under a name that there is not.
     ReplicateError
         If one is selected that there is not, or the points are not as many as the exercises.
     """
@@ -38,6 +39,9 @@ def with_heads(blocks: Blocks, source: str, exercises: Exercises, sheet: Sheet) 
             msg = f"{source}: exercise {number} does not begin with a heading"
             raise TemplateError(msg)
         given = dict(heading["c"][1][2])
+        if unknown := [key for key in given if key not in _ATTRIBUTES]:
+            msg = f"{source}: exercise {number} has {unknown[0]}=..., allowed: {', '.join(_ATTRIBUTES)}"
+            raise TemplateError(msg)
         name = given.get("vary", "")
         if name and name not in exercises.variations:
             known = listed(exercises.variations)

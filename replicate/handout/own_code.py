@@ -23,6 +23,7 @@ from replicate.run.guarded import Place, watched
 
 LONGEST_RUN = 60.0  # seconds
 
+_ADDRESS = re.compile(r" at 0x[0-9A-Fa-f]+")
 _FILE_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]*")
 
 
@@ -126,11 +127,14 @@ def _same(line: int, _: str) -> int:
 
 def _inputs(value: Any) -> Inputs:
     if not isinstance(value, Mapping) or not value:
-        msg = f"returns {_named(value)}, allowed: a dictionary of numbers or texts"
+        msg = f"returns {as_said(value)}, allowed: a dictionary of numbers or texts"
         raise TypeError(msg)
     for key, one in value.items():
+        if not isinstance(key, str):
+            msg = f"names a field {as_said(key)}, allowed: a text"
+            raise TypeError(msg)
         if not isinstance(one, str | Real) or (isinstance(one, Real) and not math.isfinite(one)):
-            msg = f"the field '{key}' is {_named(one)}, allowed: a finite number or a text"
+            msg = f"the field '{key}' is {as_said(one)}, allowed: a finite number or a text"
             raise TypeError(msg)
     return MappingProxyType(dict(value))  # that no later function changes
 
@@ -138,11 +142,11 @@ def _inputs(value: Any) -> Inputs:
 def _answers(value: Any) -> Answers:
     found = {"answer": value} if isinstance(value, Answer) else value
     if not isinstance(found, Mapping) or not found:
-        msg = f"returns {_named(value)}, allowed: an Answer, or a dictionary of them"
+        msg = f"returns {as_said(value)}, allowed: an Answer, or a dictionary of them"
         raise TypeError(msg)
     for key, one in found.items():
         if not isinstance(one, Answer):
-            msg = f"the field '{key}' is {_named(one)}, allowed: an Answer"
+            msg = f"the field '{key}' is {as_said(one)}, allowed: an Answer"
             raise TypeError(msg)
         if not isinstance(key, str):
             msg = f"names an answer {key!r}, allowed: a text"
@@ -168,27 +172,28 @@ def _not_a_formula(tex: str) -> str:
     return ""
 
 
-def _named(value: Any) -> str:
-    """Return a value as a message shows it: an object without a text of its own by its type, not by its address."""
-    return type(value).__name__ if f"{id(value):x}" in repr(value) else repr(value)
+def as_said(value: Any) -> str:
+    """Return a value as a message shows it: an object without a text of its own by its type, none by its address."""
+    text = repr(value)
+    return type(value).__name__ if f"{id(value):x}" in text else _ADDRESS.sub("", text)
 
 
 def _values(value: Any) -> Values:
     if not isinstance(value, Mapping):
-        msg = f"returns {_named(value)}, allowed: a dictionary of numbers or texts"
+        msg = f"returns {as_said(value)}, allowed: a dictionary of numbers or texts"
         raise TypeError(msg)
     return value
 
 
 def _files(value: Any) -> Mapping[str, str]:
     if not isinstance(value, Mapping):
-        msg = f"returns {_named(value)}, allowed: a dictionary of texts"
+        msg = f"returns {as_said(value)}, allowed: a dictionary of texts"
         raise TypeError(msg)
     for name, text in value.items():
         if not isinstance(name, str) or not _FILE_NAME.fullmatch(name):
             msg = f"names a file {name!r}, allowed: letters, digits, '.', '_' and '-', say 'data.csv'"
             raise ValueError(msg)
         if not isinstance(text, str):
-            msg = f"the file '{name}' is {_named(text)}, allowed: a text"
+            msg = f"the file '{name}' is {as_said(text)}, allowed: a text"
             raise TypeError(msg)
     return value

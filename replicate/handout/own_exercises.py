@@ -19,7 +19,7 @@ from typing import Any
 from replicate.errors import PaperDefinitionError, ReplicateError
 from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.variants import Variation, VariedFigure
-from replicate.handout.own_code import OwnCode
+from replicate.handout.own_code import OwnCode, as_said
 from replicate.plain_text import read_text
 
 TEXT, PROGRAM = "exercise.md", "exercise.py"
@@ -134,7 +134,9 @@ def own_variation(program: Path, name: str) -> Variation:
     values = {field: defined.get(field, default) for field, (default, _, _) in _OPTIONAL.items()}
     for field, (_, holds, allowed) in _OPTIONAL.items():
         if not holds(values[field]):
-            msg = f"{source}:{code.line_of(_defining(field))}: '{field}' is {values[field]!r}, allowed: {allowed}"
+            msg = (
+                f"{source}:{code.line_of(_defining(field))}: '{field}' is {as_said(values[field])}, allowed: {allowed}"
+            )
             raise ReplicateError(msg)
     for field in ("variant", "answers"):
         if not callable(defined.get(field)):

@@ -10,6 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from replicate.display.pandoc import PandocError, convert
+from replicate.display.safe_html import strays
 from replicate.errors import TemplateError
 from replicate.handout.formulas import line_of
 from replicate.handout.tree import Blocks, Element, classes, elements
@@ -108,6 +109,9 @@ def _check(blocks: Blocks, lines: Lines, source: str) -> None:
     for element in elements(blocks):
         if element["t"] in _FOREIGN:
             raise _refused(element, lines, source)
+        if element["t"] == "Link" and strays(address := element["c"][2][0]):
+            msg = f"{source}:{line_of(address, lines)}: the link leads to {address}, allowed: http, https, mailto, doi"
+            raise TemplateError(msg)
         if element["t"] == "Div" and not set(BLOCKS).intersection(classes(element)):
             name = " ".join(classes(element))
             line = next((number for text, number in lines if re.match(rf":::.*\b{re.escape(name)}\b", text)), 1)

@@ -44,7 +44,6 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
     """
     with style(hashsalt=f"{paper}/{exhibit.id}"):
         canvas = _drawn(exhibit)
-        _check_drawn(canvas)
         record = record_of(canvas)
         svg, png = pictures(canvas, exhibit.title, ("svg", "png"))
         return FigureResult(
@@ -59,7 +58,7 @@ def capture(paper: str, exhibit: Figure) -> FigureResult:
 
 
 def _drawn(exhibit: Figure) -> Canvas:
-    """Let an exhibit draw; what is too large is refused, crowds of marks become pixels."""
+    """Let an exhibit draw; what is empty or too large is refused, crowds of marks become pixels."""
     canvas = Canvas(figsize=exhibit.size)
     draw: Callable[..., Any] = exhibit.draw
     made = draw(canvas)
@@ -72,6 +71,7 @@ def _drawn(exhibit: Figure) -> Canvas:
         msg = "the function returns a figure of its own; expected: something drawn on the figure given"
         raise PaperDefinitionError(msg)
     within_limits(canvas)
+    _check_drawn(canvas)
     return canvas
 
 
@@ -99,8 +99,8 @@ def drawn_as(paper: str, exhibit: Figure, kinds: Sequence[Kind]) -> tuple[bytes,
 
     Raises
     ------
-    Exception
-        Whatever the exhibit's own function raises.
+    PaperDefinitionError, Exception
+        As `capture`.
     """
     with style(hashsalt=f"{paper}/{exhibit.id}"):
         return pictures(_drawn(exhibit), exhibit.title, kinds)
