@@ -194,7 +194,7 @@ def _limits(axis: str, before: Axes, after: Axes) -> Iterator[str]:
 
 def _end(value: float, axis: str, axes: Axes) -> str:
     if axis == "x" and "polar" in axes:
-        return f"{math.degrees(value):.9g}°"
+        return f"{math.degrees(value):.6g}°"
     return on_axis(value, axes, axis) if axes.get(f"{axis}kind") == "date" else _shown(value)
 
 

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 _STEP = 2e-3
 _CHUNK = 64
 # So far out of view a marker may still reach into it.
-_REACH = 0.02
+_REACH = 0.1
 
 
 def nearest(points: Points, targets: Points) -> tuple[Array, NDArray[np.intp]]:

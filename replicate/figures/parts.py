@@ -123,7 +123,12 @@ class Namer:
         chain
             Who draws: from the child of the panel down to the artist itself.
         """
-        part = self._part(chain, drawn)
+        key = self._key(self._part(chain, drawn))
+        self.parts[key].drawn.append(drawn)
+        return key
+
+    def _key(self, part: Part) -> str:
+        """Return the name of a part that no other one has, and keep the part if it is new."""
         key = self._given.get((id(part.owner), part.name))
         if key is None:
             self._numbers[part.name] = count = self._numbers.get(part.name, 0) + 1
@@ -131,7 +136,6 @@ class Namer:
             self._given[id(part.owner), part.name] = key
             part.name = key
             self.parts[key] = part
-        self.parts[key].drawn.append(drawn)
         return key
 
     def _part(self, chain: tuple[Artist, ...], drawn: Drawn) -> Part:
@@ -184,12 +188,14 @@ class Namer:
     def _of_legend(self, legend: Legend, chain: tuple[Artist, ...]) -> Part:
         first = legend is getattr(self.owner, "legend_", legend)
         name = "legend" if first else self._name(legend)
+        whole = Part(name, legend, placed=False, properties=_legend_properties(legend))
         packer: Any = next((artist for artist in reversed(chain) if isinstance(artist, PackerBase)), None)
         if packer is None:
-            return Part(name, legend, placed=False, properties=_legend_properties(legend))
+            return whole
+        self._key(whole)  # whether it has a frame or not
         said = [_shortened(text.get_text()) for text in _texts_in(packer)]
         if packer is getattr(legend, "_legend_box", None):
-            return Part(f"title of the {name}", legend, placed=False)
+            return Part(f"title of the {name}", packer, placed=False)
         return Part(f"{name} entry '{said[0] if said else ''}'", packer, told=first, placed=False)
 
     def _of_text(self, text: Text, chain: tuple[Artist, ...], drawn: Drawn) -> Part:

@@ -211,7 +211,7 @@ def _differ(one: Part, other: Part, frame: Frame, *, follows: bool) -> Iterator[
     marks = one["marks"], other["marks"]
     if follows:
         marks = _anywhere(marks[0]), _anywhere(marks[1])
-    if shows(one) or shows(other):
+    if (shows(one) or shows(other)) and all(marks):  # a legend without a frame has none
         yield from mark_words(*marks, frame, loose=loose)
 
 

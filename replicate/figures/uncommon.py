@@ -86,6 +86,10 @@ def _of_legend(legend: Legend) -> dict[str, Any]:
         found["mode"] = "expanded"
     if abs(legend.labelspacing - _LABEL_SPACING) > 1e-9:
         found["spacing"] = round(float(legend.labelspacing), 3)
+    if legend.get_alignment() != "center":
+        found["alignment"] = str(legend.get_alignment())
+    if not legend.get_frame_on():
+        return found | {"frame": "none"}
     frame = type(legend.get_frame().get_boxstyle()).__name__  # type: ignore[attr-defined]
     return found | ({"frame": frame} if frame != _FRAME else {})
 

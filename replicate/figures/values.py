@@ -26,6 +26,7 @@ WINDOW = 3.0 * THINNING
 # What lies further outside the axes than this is not seen, and equal whatever it is.
 _MARGIN = 0.02
 _LEAST_WIDTH = 1e-3
+_BESIDE = 1.01
 
 
 @dataclass(frozen=True)
@@ -85,7 +86,9 @@ def compare_values(
     (left, right), (bottom, top) = np.array([[0.0, 1.0], [0.0, 1.0]]) if view is None else view
     pieces = [_pieces(points) for points in (old, new)]
     knots = np.concatenate([piece[:, 0] for piece in (*pieces[0], *pieces[1])])
-    grid = np.unique(np.concatenate([knots, knots - window, knots + window, [left, right]]))
+    ends = np.concatenate([piece[[0, -1], 0] for piece in (*pieces[0], *pieces[1])])  # beside them a gap begins
+    places = (knots, knots - window, knots + window, ends - _BESIDE * window, ends + _BESIDE * window)
+    grid = np.unique(np.concatenate([*places, [left, right]]))
     grid = grid[(grid >= left) & (grid <= right)]
     sides = np.repeat(grid, 2)
     bounds = (bottom - _MARGIN, top + _MARGIN)
