@@ -139,7 +139,7 @@ def _sentence(words: str, names: Sequence[str], curves: frozenset[str]) -> str:
 
 def _plural(name: str) -> bool:
     what, of, _ = name.partition(" of the ")
-    return (bool(of) and what.endswith(_PLURALS)) or name.startswith("arrow heads of ")
+    return (bool(of) and what.endswith(_PLURALS)) or name.startswith(("arrow heads of ", "contours"))
 
 
 def _come_and_gone(
