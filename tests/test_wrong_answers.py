@@ -109,6 +109,7 @@ def replaced(file: Path, old: str, new: str) -> None:
         ),
         ("table_1.py", FRAME, f'return pd.concat({{"x": {FRAME[7:]}}})', "the reading returns the row '('x', 'A')'; a"),
         ("table_1.py", FRAME, f"{FRAME} > 0", "row 'A', column 'mean' holds bool (True); expected: a number"),
+        ("table_1.py", FRAME, f"{FRAME}.map(lambda x: (None, x))", "row 'A', column 'mean' holds tuple ((None, 3.80"),
         ("table_1.py", FRAME, f"{FRAME} / [0, 1]", "a wrong cell: row 'A', column 'mean' holds the number inf; exp"),
         ("fig_1.py", "fig: Figure", "", "TypeError: fig_1() takes 0 positional arguments but 1 was given (gauss/fig_1"),
         ("fig_1.py", "def fig_1", "async def fig_1", "gauss/fig_1.py:9: the function is asynchronous, so nothing was "),

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from numbers import Real
 from typing import TYPE_CHECKING
 
 from replicate.exhibits.printed import Key, PrintedValue
-from replicate.exhibits.statements import given_text
+from replicate.exhibits.statements import as_float, given_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -102,23 +102,17 @@ def read_frame(frame: pd.DataFrame) -> FrameCells:
 
 
 def _read(cells: FrameCells, key: Key, value: object) -> None:
-    import numpy as np
     import pandas as pd
 
     if value is None or value is pd.NA or value is pd.NaT:
         cells.numbers[key] = None
-    elif isinstance(value, bool | np.bool_) or not isinstance(value, Real):
+    elif (number := as_float(value)) is not None:
+        cells.numbers[key] = None if math.isnan(number) else number
+    else:
+        beyond = isinstance(value, int) and not isinstance(value, bool)
         kind = "text" if isinstance(value, str) else type(value).__name__
         cells.words[key] = given_text(value) or str(value)
-        cells.wrong[key] = f"{kind} ({value!r})"
-    else:
-        try:
-            number = float(value)
-        except OverflowError:
-            cells.words[key] = str(value)
-            cells.wrong[key] = "an integer beyond the largest number"
-        else:
-            cells.numbers[key] = None if number != number else number  # noqa: PLR0124  -- NaN
+        cells.wrong[key] = "an integer beyond the largest number" if beyond else f"{kind} ({value!r})"
 
 
 def _twice(kind: str, keys: Iterable[str]) -> frozenset[tuple[str, str]]:

@@ -6,6 +6,7 @@ import datetime as dt
 from collections.abc import Callable
 from dataclasses import replace
 from decimal import Decimal
+from numbers import Real
 from typing import Literal
 
 from replicate.exhibits.notation import Statement
@@ -20,18 +21,35 @@ _KINDS: tuple[Agreement, ...] = ("equal", "near", "differs")
 _INFINITE = {"inf": "above", "-inf": "below"}  # beyond which bounds it lies
 
 
-def given_text(given: object) -> str | None:
-    """Return a word, a date or a pair as text; ``None`` if it is none of these.
+def as_float(given: object) -> float | None:
+    """Return a real number of any kind as a float; ``None`` if it is none, or beyond the largest float.
 
     Examples
     --------
-    >>> given_text(dt.date(2003, 5, 17)), given_text((1.25, 3.5)), given_text("n.s.")
-    ('2003-05-17', '1.25 3.5', 'n.s.')
+    >>> as_float(Decimal("0.5")), as_float(3), as_float(True), as_float("3"), as_float(10**400)
+    (0.5, 3.0, None, None, None)
+    """
+    if isinstance(given, bool) or not isinstance(given, Real | Decimal):
+        return None
+    try:
+        return float(given)
+    except (OverflowError, ValueError):  # too large, or a NaN that signals
+        return None
+
+
+def given_text(given: object) -> str | None:
+    """Return a word, a date or a pair of numbers as text; ``None`` if it is none of these.
+
+    Examples
+    --------
+    >>> given_text(dt.date(2003, 5, 17)), given_text((1.25, 3.5)), given_text("n.s."), given_text(("a", 3.5))
+    ('2003-05-17', '1.25 3.5', 'n.s.', None)
     """
     if isinstance(given, dt.date):  # a pandas Timestamp is one, too
         return given.isoformat()[:10]
     if isinstance(given, tuple | list) and len(given) == 2:
-        return " ".join(f"{float(end):.12g}" for end in given)
+        ends = [number for end in given if (number := as_float(end)) is not None]
+        return " ".join(f"{end:.12g}" for end in ends) if len(ends) == len(given) else None
     return given if isinstance(given, str) else None
 
 

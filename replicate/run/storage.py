@@ -11,12 +11,12 @@ import base64
 import json
 import re
 from collections.abc import Callable, Iterable
-from numbers import Integral, Real
+from numbers import Integral
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from replicate.exhibits import ClaimVerdict, Finding
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
-from replicate.exhibits.statements import given_text
+from replicate.exhibits.statements import as_float, given_text
 from replicate.exhibits.trials import TableTrials, Trial
 from replicate.run.stored_ranges import ranges_from_data, ranges_to_data
 
@@ -170,17 +170,16 @@ def number(value: Any, head: str) -> int | float:
     >>> number(np.float64(0.1), "the value is"), number(np.int64(3), "the value is")
     (0.1, 3)
     """
-    if isinstance(value, bool) or not isinstance(value, Real):
+    found = as_float(value)
+    if found is None and isinstance(value, int) and not isinstance(value, bool):
+        msg = f"{head} an integer beyond the largest floating-point number, 1.8e308"
+        raise TypeError(msg)
+    if found is None:
         kind = "text" if isinstance(value, str) else type(value).__name__
         shown = _ADDRESS.sub("", repr(value))[:_MOST_SHOWN]
         msg = f"{head} {kind} ({shown}); expected: a number"
         raise TypeError(msg)
-    try:
-        as_float = float(value)
-    except OverflowError:
-        msg = f"{head} an integer beyond the largest floating-point number, 1.8e308"
-        raise TypeError(msg) from None
-    return int(value) if isinstance(value, Integral) else as_float
+    return int(value) if isinstance(value, Integral) else found
 
 
 def _frame(frame: pd.DataFrame) -> dict[str, Any]:
