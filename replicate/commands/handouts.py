@@ -49,7 +49,9 @@ def handout(
     points: Annotated[
         str,
         typer.Option(
-            "--points", metavar="4,6,2", help="Points for the exercises of the sheet; one number is for each."
+            "--points",
+            metavar="4,6,2",
+            help="Points for the exercises, in the order of --select; one number is for each.",
         ),
     ] = "",
     title: Annotated[str, typer.Option("--title", help="Title in place of the handout's own.")] = "",
@@ -104,7 +106,7 @@ def handout(
         raise ReplicateError(msg)
     project = run.within.project
     words = language_of(language) if language else project.language if project else language_of()
-    sheet = Sheet(title, date, read_points(points) if points else (), selected, words)
+    sheet = Sheet(title, date, read_points(points, select) if points else (), selected, words)
     given = [*(papers or ()), *([again.paper] if again and again.paper not in (papers or ()) else [])]
     file_format = checked_format(file_format)
     chosen = with_handout(run.within.papers(given), all_needed=bool(given), file_format=file_format)

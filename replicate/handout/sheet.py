@@ -53,8 +53,13 @@ class Sheet:
         return self.points[place if len(self.points) > 1 else 0]
 
 
-def read_points(text: str) -> tuple[float, ...]:
-    """Return points as written on the command line.
+def read_points(text: str, select: str = "") -> tuple[float, ...]:
+    """Return points as written on the command line, in the order of the handout.
+
+    Parameters
+    ----------
+    select
+        A selection that `read_selection` accepts; its exercises have the points in the order in which it names them.
 
     Raises
     ------
@@ -63,14 +68,18 @@ def read_points(text: str) -> tuple[float, ...]:
 
     Examples
     --------
-    >>> read_points("4, 2.5")
-    (4.0, 2.5)
+    >>> read_points("4, 2.5"), read_points("4, 2.5", select="5,2")
+    ((4.0, 2.5), (2.5, 4.0))
     """
     parts = [part.strip() for part in text.split(",")]
     if not all(re.fullmatch(r"\d{1,4}(\.\d{1,2})?", part) and float(part) > 0 for part in parts):
         msg = f"--points is '{text}', allowed: positive numbers separated by commas, say 4,6,2.5"
         raise ReplicateError(msg)
-    return tuple(float(part) for part in parts)
+    points = tuple(float(part) for part in parts)
+    named = [int(number) for number in select.split(",")] if select else []
+    if len(named) != len(points):
+        return points
+    return tuple(dict(sorted(zip(named, points, strict=True))).values())
 
 
 def read_selection(text: str) -> tuple[int, ...]:
