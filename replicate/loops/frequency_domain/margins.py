@@ -42,7 +42,8 @@ class Margins(Record):
     phase_crossovers
         Frequencies with arg L = -180 degrees (modulo 360), ascending. With dead time there are infinitely many: these
         are all that matter, up to one full turn of the dead time beyond the last frequency at which |L| reaches one
-        half (for a loop whose |L| tends to d > 0, half way between d and one).
+        half (for a loop whose |L| tends to d > 0, half way between d and one). With several dead times |L| may rise
+        again: the gain margin may belong to a later one.
     """
 
     gain: float
