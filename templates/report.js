@@ -105,17 +105,18 @@ function headNames(table) {
   return names;
 }
 
-// A table as it is seen: hidden rows, cards and signs are left out.
+// A table as it is seen: hidden rows, cards and signs are left out. What a reading computes is named with its row.
 function tableRows(table) {
   const rows = [headNames(table)];
   for (const row of [...table.tBodies].flatMap((body) => [...body.rows])) {
     if (!row.checkVisibility()) continue;
-    rows.push(
-      [...row.cells].flatMap((cell) => {
-        const own = cell.tagName === "TD" ? [...cell.childNodes].filter((node) => node.nodeType === 3) : [cell];
-        return [own.map(text).join(" ").trim(), ...Array(cell.colSpan - 1).fill("")];
-      }),
-    );
+    const [head, ...cells] = row.cells;
+    const names = row.matches(".by") ? [row.parentElement.rows[0].cells[0], head] : [head];
+    const values = cells.flatMap((cell) => {
+      const own = [...cell.childNodes].filter((node) => node.nodeType === 3);
+      return [own.map(text).join(" ").trim(), ...Array(cell.colSpan - 1).fill("")];
+    });
+    rows.push([names.map(text).join(", "), ...values]);
   }
   return rows;
 }

@@ -314,6 +314,7 @@ def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: P
         assert [name.endswith("ph=1") for name in names[1:]] == [True] * 4 + [False] * 4
         assert {len(row) for row in rows} == {9}
         assert rows[0][0] == "Proposed (7)"  # not what else stands there, such as links to loops
+        assert rows[1][0] == "Proposed (7), as-written"
         assert page.locator("#table-2 .scroll").evaluate("(region) => region.scrollWidth <= region.clientWidth")
         # what the line above says already is written only once, but copied, and shown where that line is not
         again = page.locator("#table-2 td.again").first
