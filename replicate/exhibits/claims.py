@@ -118,6 +118,15 @@ class Claims:
         ------
         PaperDefinitionError
             If the id is taken.
+
+        Examples
+        --------
+        >>> claims = Claims("claims", "Claims made in the text")
+        >>> @claims.claim("smaller", "The second number is the smaller one.", where="section 2")
+        ... def smaller() -> Finding:
+        ...     return Finding("holds" if 2.0 < 3.0 else "fails", 2.0, "It is 2, the first 3.")
+        >>> claims.claims["smaller"].check().verdict
+        'holds'
         """
 
         def register(check: Callable[[], Finding]) -> Callable[[], Finding]:

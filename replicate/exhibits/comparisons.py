@@ -103,6 +103,14 @@ def rank(table: Table, quantity: str, cases: Sequence[str], says: str, consequen
     ------
     PaperDefinitionError
         If the table does not have such cells, or there are fewer than two.
+
+    Examples
+    --------
+    >>> from replicate.exhibits import Table
+    >>> table = Table("table-1", "table", "Costs", rows=("ZN", "PA"), columns=("IAE", "ISE"))
+    >>> rank(table, "IAE", ("PA", "ZN"), "PA has the smaller IAE")
+    >>> table.comparisons[0].cells
+    (('PA', 'IAE'), ('ZN', 'IAE'))
     """
     cells = _cells(table, quantity, cases)
     _check_words(table, says, consequence)
@@ -137,6 +145,14 @@ def bound(
     ------
     PaperDefinitionError
         If the table does not have such cells, or no end is given.
+
+    Examples
+    --------
+    >>> from replicate.exhibits import Table
+    >>> table = Table("table-1", "table", "Robustness", rows=("ZN", "PA"), columns=("Ms", "Mp"))
+    >>> bound(table, "Ms", table.rows, "Ms is always below 2", below=2.0)
+    >>> table.comparisons[0].reading_of({("ZN", "Ms"): 1.8, ("PA", "Ms"): 2.1})
+    (True, False)
     """
     cells = _cells(table, quantity, cases)
     _check_words(table, says, consequence)

@@ -23,6 +23,13 @@ class Near:
     ------
     PaperDefinitionError
         If one of them is no number, negative or infinite.
+
+    Examples
+    --------
+    Only a unit of the last digit is near:
+
+    >>> Near(units=1, fraction=0.0)
+    Near(units=1, fraction=0.0)
     """
 
     units: float = 2.0
