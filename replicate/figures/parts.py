@@ -194,7 +194,8 @@ class Namer:
             return whole
         self._key(whole)  # whether it has a frame or not
         said = [_shortened(text.get_text()) for text in _texts_in(packer)]
-        if packer is getattr(legend, "_legend_box", None):
+        box: Any = getattr(legend, "_legend_box", None)
+        if packer is box:
             return Part(f"title of the {name}", packer, placed=False)
         return Part(f"{name} entry '{said[0] if said else ''}'", packer, told=first, placed=False)
 
