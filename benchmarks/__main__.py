@@ -14,6 +14,7 @@ from benchmarks.common import REPORT
 INTRODUCTION = """# Benchmarks
 
 Processor time on one core; every ratio was measured in this run, every error is against the exact solution.
+An aim is the ratio that the project asks of itself.
 """
 
 

@@ -188,7 +188,7 @@ def _plant_of_row(row: dict[str, Any]) -> Plant:
     if {"num", "den"} <= names:
         return Plant(row["num"], row["den"], row.get("dead_time", 0.0))
     allowed = " or ".join(", ".join(columns) for columns in PLANT_COLUMNS)
-    msg = f"a data frame of plants has the columns {allowed}, not {', '.join(row)}"
+    msg = f"a table of plants has the columns {allowed}, not {', '.join(row)}"
     raise LoopError(msg)
 
 
@@ -208,7 +208,7 @@ def _controller_of_row(row: dict[str, Any]) -> PID:
         return _controller(row["controller"])
     unknown = [name for name in row if name not in CONTROLLER_COLUMNS]
     if unknown or "k" not in row:
-        wrong = f"no column {', '.join(unknown)}" if unknown else "a column k"
-        msg = f"a data frame of controllers has {wrong}: allowed are {', '.join(CONTROLLER_COLUMNS)}, or controller"
+        wrong = f"has no column {', '.join(unknown)}" if unknown else "needs a column k"
+        msg = f"a table of controllers {wrong}: allowed are {', '.join(CONTROLLER_COLUMNS)}, or controller"
         raise LoopError(msg)
     return PID(**row)
