@@ -444,3 +444,13 @@ def test_two_integrators_leave_no_integrated_error_however_slow_their_last_mode_
     for i, row in enumerate(gains):
         y = Loop(plant, PI(*row)).step()
         np.testing.assert_allclose([found["iae"][0, i], found["itae"][0, i]], [y.iae(), y.itae()], rtol=1e-9)
+
+
+def test_an_oscillation_that_a_dead_time_sees_little_of_has_its_moment() -> None:
+    # over a dead time the last mode turns by a hundredth of a period: a residual moves its coefficient far
+    plant = Plant([0.0035], [1.0, 1.55, 0.5, 0.057, 0.0021], dead_time=0.355)
+    gains = np.column_stack([0.32 * np.linspace(0.98, 1.02, 4), np.full(4, 0.0314)])
+    found = sweep(plant, gains, metrics=["iae", "itae"])
+    for i, row in enumerate(gains):
+        y = Loop(plant, PI(*row)).step()
+        np.testing.assert_allclose([found["iae"][0, i], found["itae"][0, i]], [y.iae(), y.itae()], rtol=1e-9)

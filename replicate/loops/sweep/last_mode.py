@@ -168,14 +168,14 @@ def last_modes(
         for _ in range(3):
             s = s - part.newton_step(s)
         s = np.where(oscillates, s, s.real)
-        c, residual = _fit(s, nodes, middle, newest, oscillates)
+        c, residual, spread = _fit(s, nodes, middle, newest, oscillates)
         envelope = np.abs(c)
         proven = (residual <= PROVEN * size[chosen]) & (s.real < 0.0)
         over = oscillates & ((envelope > 0.99 * band[chosen]) | (envelope > high[chosen]))
         proven &= ~over & (~oscillates | (s.imag > 0.0))
     at = chosen[proven]
     found.found[at], found.pole[at], found.coefficient[at] = True, s[proven], c[proven]
-    found.error[at] = residual[proven] + ROUNDING * elapsed * size[at]
+    found.error[at] = (residual * spread)[proven] + ROUNDING * elapsed * size[at]
     return found
 
 
@@ -207,8 +207,14 @@ def _starts(recent: Sequence[Array], splits: int, size: Array) -> tuple[ComplexA
     return start, pair
 
 
-def _fit(s: ComplexArray, nodes: Array, middle: Array, newest: Array, oscillates: Flags) -> tuple[ComplexArray, Array]:
-    """Return the coefficients at the end of the newest dead time, and the largest residual over the last two."""
+def _fit(
+    s: ComplexArray, nodes: Array, middle: Array, newest: Array, oscillates: Flags
+) -> tuple[ComplexArray, Array, Array]:
+    """Return the coefficients at the end of the newest dead time, and the largest residual over the last two.
+
+    The third array says how far off a coefficient may be for residuals of size one: far if a dead time sees but a small
+    part of an oscillation, which other modes pass for up to the square of that part.
+    """
     mode = np.exp(np.outer(nodes - 1.0, s))
     cosine, sine = mode.real, -mode.imag
     cc, cs, ss = _dot(cosine, cosine), _dot(cosine, sine), _dot(sine, sine)
@@ -220,7 +226,8 @@ def _fit(s: ComplexArray, nodes: Array, middle: Array, newest: Array, oscillates
     residual = np.max(np.abs(newest - a * cosine - b * sine), axis=0)
     earlier = c * np.exp(-s)
     before = np.max(np.abs(middle - earlier.real * cosine - earlier.imag * sine), axis=0)
-    return c, np.maximum(residual, before)
+    spread = np.where(oscillates, nodes.size * (cc + ss) / determinant, np.sqrt(nodes.size / cc))
+    return c, np.maximum(residual, before), spread
 
 
 def _dot(left: Array, right: Array) -> Array:
