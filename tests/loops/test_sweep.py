@@ -325,6 +325,10 @@ NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
     "column": (lambda: sweep(FOPTD, pd.DataFrame({"k": [1.0], "Ti": [2.0]})), "no column Ti: allowed are k, ki"),
     "a mapping": (lambda: sweep({"gain": 1.0}, PI(1.0)), "the plants of a sweep must be"),
     "not asked for": (lambda: sweep(FOPTD, PI(0.5), metrics="ms")["mp"], "the sweep has no metric 'mp'"),
+    "several names": (
+        lambda: sweep(FOPTD, PI(0.5), metrics="ms")[cast("Any", ["ms"])], r"the sweep has no metric \['ms'\]",
+    ),
+    "integral action alone": (lambda: sweep(FOPTD, pd.DataFrame({"ki": [1.0]})), "controllers needs a column k"),
 }  # fmt: skip
 
 
