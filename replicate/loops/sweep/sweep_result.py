@@ -57,7 +57,7 @@ class SweepResult(Record):
 
     def __getitem__(self, metric: str) -> NDArray[Any]:
         """Return the array of one metric; LoopError if it was not asked for."""
-        if not isinstance(metric, str) or metric not in self.values:
+        if metric not in tuple(self.values):  # by equality: a list has no hash
             msg = f"the sweep has no metric {checks.shown(metric)}: it has {', '.join(self.values)}"
             raise LoopError(msg)
         return self.values[metric]
