@@ -13,7 +13,11 @@ BY_COLOURS = ["color-contrast", "link-in-text-block"]
 # same elements with the same classes, one stands for all: thousands of parts would take minutes and find nothing else.
 FOLD = """() => {
   for (const part of document.querySelectorAll("svg[role=img] > :not(title, desc)")) part.remove();
-  for (const one of document.querySelectorAll("math")) one.replaceChildren(); // what it adds to a name is its label
+  for (const one of document.querySelectorAll("math")) {
+    const text = document.createElement("span");
+    text.textContent = one.textContent;
+    one.replaceWith(text);
+  }
   for (const one of document.querySelectorAll("pre > code")) one.textContent = one.textContent;
   const seen = new Set();
   for (const one of document.querySelectorAll("tbody, tbody > tr, .claims > li, .notes > li, .hits > li, .exhibit")) {
