@@ -121,20 +121,24 @@ class LoopJet:
         by two for ``curvature``.
         """
         if kind == "sensitivity":
-            first = second = np.zeros((order + 1, 4, self.w.size), dtype=complex)
-            first[0, 0], first[:, 1:] = circle.center, self.phi[: order + 1]
-        else:
-            n = 0 if kind == "phase" else 1
-            first, second = (np.zeros((order + 1, 4, self.w.size), dtype=complex) for _ in range(2))
-            first[:, 1:], second[:, 1:] = self.phi[n : n + order + 1], 1j * self.phi[n + 1 : n + order + 2]
-        matrices = np.empty((order + 1, 4, 4, self.w.size))
-        for n in range(order + 1):
-            products = [comb(n, j) * first[j][:, None] * np.conj(second[n - j]) for j in range(n + 1)]
-            whole = sum(products).real
-            matrices[n] = whole if first is second else 0.5 * (whole + np.swapaxes(whole, 0, 1))
-        if kind == "sensitivity":
+            offset = self._rows(0, order)
+            offset[0, 0] = circle.center
+            matrices = _hermitian_products(offset, offset)
             matrices[0, 0, 0] -= circle.radius**2
-        return matrices
+            return matrices
+        n = 0 if kind == "phase" else 1
+        return _hermitian_products(self._rows(n, order), 1j * self._rows(n + 1, order))
+
+    def squared_modulus(self, order: int = 0) -> Array:
+        r"""Return the same matrices of \|L\|^2."""
+        loop = self._rows(0, order)
+        return _hermitian_products(loop, loop)
+
+    def _rows(self, n: int, order: int) -> ComplexArray:
+        """Return what (1, k, ki, kd) are multiplied by in the n-th derivative of L, and the derivatives of that."""
+        rows = np.zeros((order + 1, 4, self.w.size), dtype=complex)
+        rows[:, 1:] = self.phi[n : n + order + 1]
+        return rows
 
     def scales(self, kind: Kind, circle: Circle, x: Array) -> Array:
         """Return what the constraint's value is divided by to be dimensionless, shape (n,)."""
@@ -161,3 +165,13 @@ class LoopJet:
 def constraint_slope(plant: Plant, constraint: Constraint, circle: Circle, x: Array, w: float) -> float:
     """Return w times the derivative of a constraint's value with respect to frequency, from the exact third jets."""
     return float(LoopJet.of(plant, np.array([w]), order=3).slopes(constraint.kind, circle, x)[0])
+
+
+def _hermitian_products(first: ComplexArray, second: ComplexArray) -> Array:
+    """Return the symmetric matrices of Re(first conj(second)) and their derivatives with respect to w."""
+    matrices = np.empty((first.shape[0], 4, 4, first.shape[2]))
+    for n in range(first.shape[0]):
+        products = [comb(n, j) * first[j][:, None] * np.conj(second[n - j]) for j in range(n + 1)]
+        whole = sum(products).real
+        matrices[n] = whole if first is second else 0.5 * (whole + np.swapaxes(whole, 0, 1))
+    return matrices

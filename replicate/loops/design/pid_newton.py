@@ -128,7 +128,7 @@ class OptimalitySystem:
         """Return value, gradient and second derivatives of a constraint in (k, ki, kd, w)."""
         value, slope, bend = _of_form(jet.forms(constraint.kind, self.circle, order=2)[..., 0], gains)
         if constraint.margin:  # the value is that of the form, less margin |L'|^3
-            speed = LoopJet(jet.w, jet.phi[1:]).forms("sensitivity", Circle(0.0, 0.0), order=2)[..., 0]
+            speed = LoopJet(jet.w, jet.phi[1:]).squared_modulus(order=2)[..., 0]
             square, turn, twist = _of_form(speed, gains)
             root = np.sqrt(square)
             value -= constraint.margin * square * root
