@@ -438,6 +438,55 @@ def test_a_state_that_an_older_version_accepted_is_read_as_before(accepted: Path
     ]
 
 
+@pytest.mark.parametrize(
+    ("field", "about"),
+    [("title", "title"), ("caption", "caption"), ("alt", "alternative text"), ("stands_for", "stands for")],
+)
+def test_the_words_of_a_figure_are_state(accepted: Path, data: Path, field: str, about: str) -> None:
+    present = outcome(data, figure(png=OTHER_FONTS))
+    setattr(present.papers[0].exhibits["fig-1"], field, "Other\n  words")
+    (change,) = compare_all(present, accepted).changes
+    assert (change.kind, change.where, change.after) == ("words", about, "Other words")
+    assert str(change).startswith(f"toy/fig-1: {about} ")
+    files = {path: path.read_bytes() for path in sorted((accepted / "toy").iterdir())}
+    accept(present, accepted, "in other words")
+    altered = {path.name for path, content in files.items() if path.read_bytes() != content}
+    assert altered == {"fig-1.json", SUMS}
+    assert compare(present, accepted) == []
+    assert len(compare(outcome(data), accepted)) == 1
+
+
+def test_a_figure_that_was_accepted_without_words_is_read_as_before(accepted: Path, data: Path) -> None:
+    path = accepted / "toy/fig-1.json"
+    good = path.read_bytes()
+    edit_json(path, lambda content: content["figure"].pop("words"))
+    (accepted / "toy" / SUMS).unlink()
+    found = compare_all(outcome(data), accepted)
+    assert (found.lines, [diff.exhibit for diff in found.outdated]) == ([], ["fig-1"])
+    accept(outcome(data), accepted, "with words")
+    assert path.read_bytes() == good
+    assert not compare_all(outcome(data), accepted).outdated
+
+
+def test_accepting_words_accepts_no_alteration_beside_them(accepted: Path, data: Path) -> None:
+    present = outcome(data)
+    setattr(present.papers[0].exhibits["fig-1"], "title", "Other words")  # noqa: B010  -- of any kind, to mypy
+    edit_json(accepted / "toy/fig-1.json", less_thinned)
+    (accepted / "toy/fig-1.png").write_bytes(OTHER_FONTS)
+    accept(present, accepted, "in other words")
+    assert "thinned" not in (accepted / "toy/fig-1.json").read_text()
+    assert (accepted / "toy/fig-1.png").read_bytes() != OTHER_FONTS
+    assert compare(present, accepted) == []
+
+
+@pytest.mark.parametrize("words", [None, [], "text", {"title": None}, {"title": ["text"]}])
+def test_damaged_words_of_a_figure_are_named(accepted: Path, data: Path, words: object) -> None:
+    edit_json(accepted / "toy/fig-1.json", lambda content: content["figure"].update(words=words))
+    (line,) = compare(outcome(data), accepted)
+    assert "its accepted state is damaged: toy/fig-1.json: 'words' of the figure are" in line
+    assert line.endswith("; expected: texts by name")
+
+
 def test_accepting_one_exhibit_accepts_no_alteration_of_another(accepted: Path, data: Path) -> None:
     (accepted / "toy/fig-1.png").write_bytes(OTHER_FONTS)
     present = outcome(data, as_written=synthetic.frame(ax=1.5))

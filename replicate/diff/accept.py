@@ -6,7 +6,7 @@ import re
 from collections.abc import Collection, Mapping
 from pathlib import Path
 
-from replicate.diff.accepted import ENDINGS, files_of, is_state, state_files
+from replicate.diff.accepted import ENDINGS, FigureState, files_of, is_state, restated_figure, state_files
 from replicate.diff.checksums import SUMS, checksum, checksums, checksums_text, read_checksums
 from replicate.diff.comparison import Comparison, ExhibitDiff, compare
 from replicate.errors import AcceptedStateError, OutputError, ReplicateError
@@ -23,8 +23,8 @@ _LINES = 40
 def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] | None = None) -> Comparison:
     """Make the present state the accepted one.
 
-    Exhibits that do not differ keep their files, picture included, byte for byte. The reason and what changed
-    are appended to ``CHANGES.md``.
+    Exhibits that do not differ keep their files, picture included, byte for byte; so does a figure of which only the
+    words differ, but for these. The reason and what changed are appended to ``CHANGES.md``.
 
     Parameters
     ----------
@@ -51,8 +51,8 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
         msg = f"nothing was accepted, because an exhibit could not be computed: {outcome.failures[0]}"
         raise ReplicateError(msg)
     comparison = compare(outcome, folder, known)
-    fresh_states = dict.fromkeys((diff.paper, diff.exhibit) for diff in (*comparison.changed, *comparison.outdated))
-    papers = dict.fromkeys([paper for paper, _ in fresh_states] + [diff.paper for diff in comparison.unsigned])
+    stale = {diff.name: diff for diff in (*comparison.changed, *comparison.outdated)}.values()
+    papers = dict.fromkeys(diff.paper for diff in (*stale, *comparison.unsigned))
     if not papers:
         return comparison
     log = _log(folder)
@@ -60,8 +60,12 @@ def accept(outcome: Outcome, folder: Path, reason: str, known: Collection[str] |
         _refuse_foreign(comparison, folder)
     made: dict[str, dict[str, bytes]] = {paper: {} for paper in papers}
     gone: dict[str, list[str]] = {paper: [] for paper in papers}
-    for paper, exhibit in fresh_states:
+    for diff in stale:
+        paper, exhibit = diff.paper, diff.exhibit
         result = outcome.results.get((paper, exhibit))
+        if diff.restated and result is not None and isinstance(diff.before, FigureState):
+            made[paper] |= restated_figure(outcome, result, diff.before)
+            continue
         fresh = state_files(outcome, result) if result is not None else {}
         old = [path for path in files_of(folder / paper, exhibit) if path.name not in fresh]
         if old and not fresh and not is_state(folder / paper, exhibit):

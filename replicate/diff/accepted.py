@@ -2,9 +2,9 @@
 
 In the accepted folder, for each paper: ``<exhibit>.csv`` holds the computed values and verdicts of a table
 (``row,column,reading,computed,printed,verdict``), of the claims (``row,verdict,computed``), or the curves of
-a figure (``panel,curve,x,y``). Beside it ``<exhibit>.json`` has what is said of a table or of claims, or the axes of a
-figure. A figure also has a picture for people in ``<exhibit>.png``, small and never compared. Numbers have nine
-significant digits. ``SHA256SUMS`` says how each file was when it was accepted.
+a figure (``panel,curve,x,y``). Beside it ``<exhibit>.json`` has what is said of the exhibit, and the axes of a figure.
+A figure also has a picture for people in ``<exhibit>.png``, small and never compared. Numbers have nine significant
+digits. ``SHA256SUMS`` says how each file was when it was accepted.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from replicate.diff.accepted_files import CURVE_COLUMNS, keyed, read_cells, read_curves, read_record
-from replicate.diff.words import Words, read_words, words_of, words_text
+from replicate.diff.words import Words, read_words, with_words, without_words, words_of, words_text
 from replicate.display.csv_text import csv_text, curves_text, number_text
 from replicate.errors import AcceptedStateError
 from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
@@ -46,7 +46,7 @@ class TableState:
 
 @dataclass(frozen=True)
 class FigureState:
-    """A figure: points by (panel, curve), the description of every panel and of the whole.
+    """A figure: points by (panel, curve), the description of every panel and of the whole, and what is said of it.
 
     `version` is that of the accepted file, as in `replicate.figures.record`.
     """
@@ -55,6 +55,7 @@ class FigureState:
     axes: Sequence[Mapping[str, Any]]
     figure: Mapping[str, Any] = field(default_factory=dict)
     version: int = VERSION
+    words: Words | None = None  # if none were accepted
 
     @property
     def record(self) -> Record:
@@ -68,7 +69,7 @@ State = TableState | FigureState
 def present_state(outcome: Outcome, result: Result) -> State:
     """Return what a run computed, as it would be read back after accepting it."""
     if isinstance(result, FigureResult):
-        return figure_state(result.curves, result.axes, result.figure)
+        return replace(figure_state(result.curves, result.axes, result.figure), words=_words(outcome, result))
     columns, rows = _rows(outcome, result)
     return TableState(dict(keyed(columns, row) for row in rows), _words(outcome, result))
 
@@ -104,7 +105,8 @@ def read_state(folder: Path, paper: str, exhibit: str, kind: type[Result]) -> St
 
 def _read_figure(data: Path, axes: Path) -> FigureState:
     described = read_record(axes)
-    state = FigureState(read_curves(data), described.panels, described.figure, described.version)
+    figure, words = without_words(described.figure, f"{axes.parent.name}/{axes.name}")
+    state = FigureState(read_curves(data), described.panels, figure, described.version, words)
     known = {str(panel["panel"]) for panel in state.axes}
     for panel, curve in state.curves:
         if panel not in known:
@@ -139,9 +141,15 @@ def state_files(outcome: Outcome, result: Result) -> dict[str, bytes]:
         }
     return {
         f"{result.exhibit}.csv": curves_text(result.curves).encode(),
-        f"{result.exhibit}.json": record_text(result.figure, result.axes).encode(),
+        f"{result.exhibit}.json": record_text(with_words(result.figure, _words(outcome, result)), result.axes).encode(),
         f"{result.exhibit}.png": _small(result.png),
     }
+
+
+def restated_figure(outcome: Outcome, result: Result, accepted: FigureState) -> dict[str, bytes]:
+    """Return the file, by its name, that says the present words of a figure, whose drawing stays as accepted."""
+    record = record_text(with_words(accepted.figure, _words(outcome, result)), accepted.axes)
+    return {f"{result.exhibit}.json": record.encode()}
 
 
 def is_picture(path: Path) -> bool:

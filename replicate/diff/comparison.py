@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal
@@ -55,6 +55,8 @@ class ExhibitDiff:
         Whether its accepted state is that of an older version, which knew less of a figure or of claims.
     unsigned
         Whether an older version accepted it, without checksums.
+    restated
+        Of a figure: whether all of it is as accepted, but for what is said of it.
     """
 
     paper: str
@@ -68,6 +70,7 @@ class ExhibitDiff:
     cells: Sequence[CellChange] = ()
     outdated: bool = False
     unsigned: bool = False
+    restated: bool = False
 
     @property
     def name(self) -> str:
@@ -198,36 +201,47 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
         assert isinstance(before, TableState)  # noqa: S101  -- `read_state` was told the kind
         assert isinstance(after, TableState)  # noqa: S101
         diff = _compare_tables(paper, exhibit, kind, before, after)
-    changes = diff.changes or ([] if sums is None else _altered(paper, exhibit, folder / paper, sums))
-    return replace(diff, changes=changes, unsigned=sums is None)
+    edited = [] if sums is None else _altered(paper, exhibit, folder / paper, sums)
+    restated = diff.restated and not edited
+    return replace(diff, changes=diff.changes or edited, unsigned=sums is None, restated=restated)
 
 
 def _compare_figures(paper: str, exhibit: str, before: FigureState, after: FigureState, picture: Path) -> ExhibitDiff:
     found = compare_records(before.record, after.record)
     changes = [Change.of_figure(paper, exhibit, difference) for difference in found.differences]
+    changes += _changes_of_words(paper, exhibit, before.words, after.words)
     shown = f"{paper}/{picture.name}"
     if not picture.is_file():
         changes.append(Change(paper, exhibit, "new", f"its picture, {shown}, is missing", "picture"))
     elif not is_picture(picture):
         changes.append(Change(paper, exhibit, "new", f"its picture, {shown}, is damaged", "picture"))
-    old = before.version < after.version
-    return ExhibitDiff(paper, exhibit, "figure", changes, found.unchanged, before, after, found.pairs, outdated=old)
+    old = before.version < after.version or before.words is None
+    said = before.version == after.version and all(change.kind == "words" for change in changes)
+    return ExhibitDiff(
+        paper, exhibit, "figure", changes, found.unchanged, before, after, found.pairs, outdated=old, restated=said
+    )
 
 
 def _compare_tables(paper: str, exhibit: str, kind: Kind, before: TableState, after: TableState) -> ExhibitDiff:
     cells, unchanged = compare_cells(before.cells, after.cells)
     changes = [cell.change(paper, exhibit) for cell in cells]
-    accepted, present = before.words, after.words or Words({})
-    if accepted is None:
+    if before.words is None:
         text = f"what is said of it has no accepted state: {paper}/{exhibit}.json is missing"
         changes.append(Change(paper, exhibit, "new", text, "words"))
-    else:
-        changes += [
-            Change(paper, exhibit, "words", text, about, old, new)
-            for about, text, old, new in compare_words(accepted, present, {cell.key[0] for cell in cells})
-        ]
-    old = accepted is not None and accepted.evidence is None and present.evidence is not None
+    changes += _changes_of_words(paper, exhibit, before.words, after.words, {cell.key[0] for cell in cells})
+    said, found = (None if state.words is None else state.words.evidence for state in (before, after))
+    old = before.words is not None and said is None and found is not None
     return ExhibitDiff(paper, exhibit, kind, changes, unchanged, before, after, cells=cells, outdated=old)
+
+
+def _changes_of_words(
+    paper: str, exhibit: str, accepted: Words | None, present: Words | None, told: Collection[str] = ()
+) -> Iterator[Change]:
+    """Yield what is said otherwise of an exhibit; nothing where no words were accepted."""
+    if accepted is None:
+        return
+    for about, text, old, new in compare_words(accepted, present or Words({}), told):
+        yield Change(paper, exhibit, "words", text, about, old, new)
 
 
 def _altered(paper: str, exhibit: str, folder: Path, sums: Mapping[str, str]) -> list[Change]:

@@ -119,9 +119,9 @@ def page(
 
 
 def _has_pictures(diff: ExhibitDiff) -> bool:
-    """Whether it is a figure in one state at least, and not just its picture is missing."""
+    """Whether it is a figure in one state at least, and not just its picture is missing or its words are others."""
     drawn = any(isinstance(state, FigureState) for state in (diff.before, diff.after))
-    return drawn and any(change.where != "picture" for change in diff.changes)
+    return drawn and any(change.where != "picture" and change.kind != "words" for change in diff.changes)
 
 
 def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:

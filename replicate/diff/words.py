@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from replicate.errors import AcceptedStateError
-from replicate.exhibits import Claims, Exhibit, Table
+from replicate.exhibits import Claims, Exhibit, Figure, Table
 from replicate.figures.differences import ABSOLUTE
 from replicate.figures.json_text import parse_json
 from replicate.verdicts.ledger import LedgerEntry
@@ -24,6 +24,7 @@ from replicate.verdicts.ledger import LedgerEntry
 FORMAT = "words of an exhibit"
 VERSION = 1
 
+_WORDS = "words"  # where in a figure's record they are
 _SHOWN = 36  # characters around what changed
 _LEDGER = ("cause", "explanation", "reading", "corrected", "evidence", "consequence", "informed", "answer")
 _DEFAULTS = {"reading": "as-written", "consequence": "none"}
@@ -62,6 +63,10 @@ def words_of(exhibit: Exhibit, entries: Sequence[LedgerEntry] = (), evidence: Ma
 
 def _words(exhibit: Exhibit, entries: Sequence[LedgerEntry]) -> Iterator[tuple[str, str]]:
     yield "title", _plain(exhibit.title)
+    if isinstance(exhibit, Figure):
+        yield "caption", _plain(exhibit.caption)
+        yield "alternative text", _plain(exhibit.alt)
+        yield "stands for", _plain(exhibit.stands_for)
     if isinstance(exhibit, Claims):
         for claim in exhibit.claims.values():
             yield f"claim '{claim.id}'", _plain(claim.text)
@@ -127,6 +132,27 @@ def read_words(path: Path) -> Words:
         )
         raise AcceptedStateError(msg)
     return Words(words, evidence)
+
+
+def with_words(figure: Mapping[str, Any], words: Words) -> dict[str, Any]:
+    """Return what a record says of a figure as a whole, with the words of the figure in it."""
+    return {_WORDS: dict(words.texts), **figure}
+
+
+def without_words(figure: Mapping[str, Any], where: str) -> tuple[dict[str, Any], Words | None]:
+    """Split what a record says of a figure as a whole from the words of the figure; older versions kept none.
+
+    Raises
+    ------
+    AcceptedStateError
+        If the words are not texts by name.
+    """
+    words: Any = figure.get(_WORDS)
+    if _WORDS in figure and not _are_texts(words):
+        msg = f"{where}: '{_WORDS}' of the figure are {json.dumps(words)[:80]}; expected: texts by name"
+        raise AcceptedStateError(msg)
+    rest = {name: value for name, value in figure.items() if name != _WORDS}
+    return rest, None if words is None else Words(words)
 
 
 def _are_texts(content: Any) -> bool:
