@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from replicate.loops import PI, Loop, Plant, gamma_norm
+from replicate.loops import PI, Loop, LoopError, Plant, Weight, gamma_norm, sweep
 
 Term = tuple[list[float], list[float], float]
 ComplexArray = NDArray[np.complex128]
@@ -87,3 +87,73 @@ def test_integral_action_on_terms_that_cancel_at_rest_is_unstable() -> None:
     assert not loop.is_stable()
     assert loop.rightmost_pole() == 0.0
     assert not loop.summary().stable
+
+
+# The terms turn as far as their dead times let them: L is scanned over the angles themselves, without any frequency.
+PARTLY = [([0.2], [1.0], 1.0), ([0.2], [1.0], 2.0), ([0.1], [1.0], sqrt(2.0))]
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 1001)
+ON_TORUS = {
+    "one turn": ([([0.3], [1.0], 1.0), ([0.3], [1.0], 2.0)], 0.3 * np.exp(1j * ANGLES) + 0.3 * np.exp(2j * ANGLES)),
+    "off the real axis": ([([0.5], [1.0], 0.0), ([0.3], [1.0], 1.0)], 0.5 + 0.3 * np.exp(1j * ANGLES)),
+    "independent": (
+        [([0.5], [1.0], 0.0), ([0.3], [1.0], 1.0), ([0.15], [1.0], sqrt(2.0))],
+        0.5 + 0.3 * np.exp(1j * ANGLES)[:, None] + 0.15 * np.exp(1j * ANGLES),
+    ),
+    "two of three": (
+        PARTLY,
+        (0.2 * np.exp(1j * ANGLES) + 0.2 * np.exp(2j * ANGLES))[:, None] + 0.1 * np.exp(1j * ANGLES),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ON_TORUS)
+def test_the_balanced_norm_of_static_terms(name: str) -> None:
+    terms, L = ON_TORUS[name]
+    plant = Plant.from_terms(terms)
+    found = gamma_norm(plant, PI(1.0), Weight.balancing(plant, PI(1.0)))
+    assert found == pytest.approx(((1.0 + np.abs(L)) / np.abs(1.0 + L)).max(), rel=3e-5)
+    assert found >= ((1.0 + np.abs(L)) / np.abs(1.0 + L)).max() - 1e-12
+    fixed = gamma_norm(plant, PI(1.0), Weight.constant(2.0))
+    sizes = np.hypot(1.0, 0.5) * np.hypot(1.0, 2.0 * np.abs(L)) / np.abs(1.0 + L)
+    assert fixed == pytest.approx(sizes.max(), rel=3e-5)
+
+
+def test_the_peak_where_two_of_three_dead_times_have_a_common_measure() -> None:
+    # |1 + 0.2 z + 0.2 z^2|^2 = 0.68 + 0.48 c + 0.8 c^2 has its minimum 0.608 at c = -0.3; the third term turns freely
+    expected = 1.0 / (sqrt(0.608) - 0.1)
+    loop = Loop(Plant.from_terms(PARTLY), PI(1.0))
+    assert loop.sensitivity_peak() == pytest.approx(expected, rel=1e-10)
+    values = ON_TORUS["two of three"][1]
+    assert loop.complementary_peak() == pytest.approx(np.abs(values / (1.0 + values)).max(), rel=3e-5)
+    swept = sweep([Plant.from_terms(PARTLY)], [PI(1.0)], metrics=["ms", "gain_margin"])
+    assert swept["ms"].ravel()[0] == pytest.approx(expected, rel=1e-10)
+
+
+def test_what_would_be_a_bound_is_refused() -> None:
+    related = [([0.2], [1.0], 1.0), ([0.2], [1.0], sqrt(2.0)), ([0.1], [1.0], 1.0 + sqrt(2.0))]
+    plant = Plant.from_terms(related)
+    for question, what in [
+        (Loop(plant, PI(1.0)).sensitivity_peak, "sensitivity peak"),
+        (Loop(plant, PI(1.0)).margins, "gain margin"),
+        (Loop(plant, PI(1.9)).complementary_peak, "complementary sensitivity peak"),
+        (Loop(plant, PI(2.1)).is_stable, "number of unstable poles"),
+    ]:
+        with pytest.raises(LoopError, match=f"^the {what} is not known: .*dead times"):
+            question()
+    with pytest.raises(LoopError, match="is not known"):
+        gamma_norm(plant, PI(1.0), Weight.balancing(plant, PI(1.0)))
+    swept = sweep([plant], [PI(1.0)], metrics=["ms", "gain_margin"])
+    assert np.isnan(swept["ms"]).all()
+    assert "the sensitivity peak is not known" in str(swept.reason.ravel()[0])
+    # a peak of the loop itself, above the bound, is what it is
+    lagged = [([0.02], [1.0], 1.0), ([0.02], [1.0], sqrt(2.0)), ([0.01, 0.8], [1.0, 1.0], 1.0 + sqrt(2.0))]
+    w = np.linspace(0.001, 40.0, 400_001)
+    assert Loop(Plant.from_terms(lagged), PI(1.0)).sensitivity_peak() == pytest.approx(
+        np.abs(1.0 / (1.0 + open_loop(lagged, 1.0, 0.0, w))).max(), rel=1e-7
+    )
+
+
+def test_a_weight_without_limit_is_refused_where_the_loop_keeps_turning() -> None:
+    swaying = Weight(lambda w: 2.0 + np.sin(w), lambda w: np.cos(w) / (2.0 + np.sin(w)))
+    with pytest.raises(LoopError, match="the weight must have a limit at infinite frequency"):
+        gamma_norm(Plant([0.3], [1.0], 1.0), PI(1.0), swaying)

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from replicate.loops import checks
 from replicate.loops.controller import PID
+from replicate.loops.errors import LoopError
 from replicate.loops.frequency_domain.frequency_grids import bands_beyond, peak_grid, wide_grid
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.frequency_domain.sensitivity import highest_peak
@@ -33,10 +34,11 @@ from replicate.loops.numerics.peaks import FrequencyPeak
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
-ComplexArray = NDArray[np.complex128]
 
 DECADES = 6  # how far the search goes beyond the corners of the loop, towards both limits
 FAR = 1e12  # where a limit at zero or infinite frequency is evaluated, relative to the search band
+APART = np.array([1.0, 1.3, 1.7, 2.3])  # places there, at which a weight that has a limit is the same
+SAME = 1e-9  # relative difference that is rounding
 ROUNDING = 1e-13  # a value this close to a limit is the limit
 UNBOUNDED = 1e4  # growth between the end of the band and the limit that means "no bound"
 
@@ -120,7 +122,7 @@ def singular_value(plant: Plant, controller: PID, w: Array, weight: Weight | Non
 
 
 def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> FrequencyPeak:
-    """Return gamma, the H-infinity norm of the closed loop's transfer matrix, with the frequency of its peak.
+    r"""Return gamma, the H-infinity norm of the closed loop's transfer matrix, with the frequency of its peak.
 
     Parameters
     ----------
@@ -139,6 +141,8 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
     ------
     UnstableLoopError
         If the loop is unstable.
+    LoopError
+        If \|L\| does not vanish at infinite frequency, and what it does there, or the weight, leaves only a bound.
 
     Examples
     --------
@@ -183,8 +187,10 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
     best = highest_peak(magnitude, slope, w)
     at_rest, at_infinity = (_limit(magnitude, at) for at in (w[0] / FAR, w[-1] * FAR))
     if transfer.limit_curve.delayed.size:
-        scale = float(magnitude_of(weight, w[-1:] * FAR)[0])
-        at_infinity = _neutral_limit(transfer, abs(complex(controller.feedback(1j * w[-1] * FAR))) / scale)
+        near, far = end * APART, w[-1] * FAR * APART
+        noise = [np.abs(controller.feedback(1j * part)) / magnitude_of(weight, part) for part in (near, far)]
+        balanced = bool(np.allclose(noise[0] ** 2, np.abs(transfer(1j * near)), rtol=SAME, atol=0.0))
+        at_infinity = _neutral_limit(transfer, far, noise[1], balanced=balanced)
     ahead = np.geomspace(1.0, 10.0**DECADES, 20 * DECADES)
     for start, stop in bands_beyond(transfer, end):
         if np.max(bound(start * ahead)) <= max(best.value, at_infinity) * (1.0 + ROUNDING):
@@ -193,6 +199,8 @@ def gamma_norm(plant: Plant, controller: PID, weight: Weight | None = None) -> F
     for limit, name in ((at_rest, 0.0), (at_infinity, float("inf"))):
         if np.isfinite(limit) and limit < best.value * (1.0 - ROUNDING):
             continue
+        if name > 0.0 and not transfer.limit_curve.reached:
+            transfer.limit_curve.refuse("norm gamma")
         grows = not np.isfinite(limit) or limit > UNBOUNDED * best.value
         best = FrequencyPeak(float("inf") if grows else limit, name)
     return best
@@ -203,13 +211,24 @@ def _limit(magnitude: Callable[[Array], Array], frequency: float) -> float:
         return float(magnitude(np.array([frequency]))[0])
 
 
-def _neutral_limit(transfer: LoopTransfer, gc: float) -> float:
-    """Return the largest singular value at infinite frequency, where L keeps turning, and with it G, but not Gc/W."""
+def _neutral_limit(transfer: LoopTransfer, far: Array, gc: Array, *, balanced: bool) -> float:
+    """Return the largest singular value at infinite frequency, where L keeps turning, and with it G.
 
-    def magnitude(value: ComplexArray) -> Array:
-        return np.asarray(np.hypot(1.0, gc) * np.hypot(1.0, np.abs(value) / gc) / np.abs(1.0 + value))
-
-    return transfer.limit_curve.highest(magnitude)
+    ``gc`` is |Gc/W| at the frequencies ``far``; with the balancing weight it is sqrt(|L|) everywhere.
+    """
+    curve, first = transfer.limit_curve, float(gc[0])
+    if balanced:
+        return curve.highest_anywhere(lambda value: (1.0 + np.abs(value)) / np.abs(1.0 + value))
+    if np.allclose(gc, first, rtol=SAME, atol=0.0):
+        return curve.highest(
+            lambda value: np.hypot(1.0, first) * np.hypot(1.0, np.abs(value) / first) / np.abs(1.0 + value)
+        )
+    value = transfer(1j * far)
+    sizes = np.hypot(1.0, gc) * np.hypot(1.0, np.abs(value) / gc) / np.abs(1.0 + value)
+    if np.all(sizes > UNBOUNDED):
+        return float("inf")
+    msg = "the weight must have a limit at infinite frequency, or be the balancing one, where |L| does not vanish there"
+    raise LoopError(msg)
 
 
 def stability_margin(plant: Plant, controller: PID, weight: Weight | None = None) -> float:

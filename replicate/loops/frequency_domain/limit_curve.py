@@ -4,19 +4,22 @@ r"""What a loop transfer function with feedthrough does at infinite frequency: i
 
 Where the dead times are whole multiples of one, n_j h, that is a closed curve with the parameter :math:`\varphi =
 \omega h`. Dead times without a common measure turn independently of one another (Kronecker's theorem): then L comes as
-close as one likes to the circle around d_0 with the radius :math:`\sum |d_j|`, which encloses all the others.
+close as one likes to the circle around d_0 with the radius :math:`\sum |d_j|`, which encloses all the others. Where
+only some of the dead times are multiples of one, L fills the image of a torus, with an angle for each group of them:
+`replicate.loops.frequency_domain.limit_torus`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize_scalar
 
+from replicate.loops.errors import LoopError
 from replicate.loops.numerics.bracketed import bracketed_root
 
 Array = NDArray[np.float64]
@@ -40,21 +43,21 @@ class LimitCurve:
         d_j, the limits of the terms with dead time.
     steps : array, shape (n,)
         Their dead times as multiples of one.
+    hole
+        Radius of the circle about d_0 inside of which L does not come; of terms that turn independently.
     """
 
     direct: float
     delayed: Array
     steps: NDArray[np.intp]
+    hole: float = 0.0
 
     @classmethod
-    def of(cls, limits: Array, dead_times: Array) -> LimitCurve:
-        """Return the curve of terms with these limits at infinite frequency, and their dead times, ascending."""
-        turning = (dead_times > 0.0) & (limits != 0.0)
-        direct, delayed = float(limits[dead_times == 0.0].sum()), limits[turning]
-        steps = _multiples(dead_times[turning])
-        if steps is None:
-            return cls(direct, np.array([np.abs(delayed).sum()]), np.ones(1, dtype=np.intp))
-        return cls(direct, delayed, steps)
+    def circle(cls, direct: float, delayed: Array) -> LimitCurve:
+        """Return the outermost of the circles that terms reach which turn independently."""
+        sizes = np.abs(delayed)
+        hole = max(2.0 * float(sizes.max()) - float(sizes.sum()), 0.0)
+        return cls(direct, np.array([sizes.sum()]), np.ones(1, dtype=np.intp), hole)
 
     def __call__(self, angle: ArrayLike) -> ComplexArray:
         """Evaluate the curve at angles of any shape."""
@@ -72,6 +75,22 @@ class LimitCurve:
         return self(self._angles)
 
     @property
+    def reached(self) -> bool:
+        """Whether L comes close to all of the curve; else what is read from it is a bound."""
+        return True
+
+    def refuse(self, what: str) -> None:
+        """Say that a quantity is not known, as the curve that decides it may be a bound only.
+
+        Raises
+        ------
+        LoopError
+            Always.
+        """
+        msg = f"the {what} is not known: |L| does not vanish at high frequency, and of its dead times only some belong together"  # noqa: E501
+        raise LoopError(msg)
+
+    @property
     def size(self) -> float:
         """The largest modulus on the curve."""
         return self.highest(np.abs)
@@ -80,6 +99,14 @@ class LimitCurve:
     def lowest(self) -> float:
         """The smallest real part on the curve."""
         return -self.highest(lambda value: -value.real)
+
+    def highest_anywhere(self, magnitude: Callable[[ComplexArray], Array]) -> float:
+        """Return the largest value of a magnitude on the curve and on the edge of its hole, also off the real axis."""
+        whole = replace(self, delayed=np.append(self.delayed, 0.0), steps=np.append(self.steps, 1))
+        if not self.hole:
+            return whole.highest(magnitude)
+        edge = replace(whole, delayed=np.array([self.hole, 0.0]))
+        return max(whole.highest(magnitude), edge.highest(magnitude))
 
     def highest(self, magnitude: Callable[[ComplexArray], Array]) -> float:
         """Return the largest value of a magnitude on the curve; on a circle it must be reached on the real axis."""
@@ -110,7 +137,7 @@ class LimitCurve:
 VANISHING = LimitCurve(0.0, np.empty(0), np.empty(0, dtype=np.intp))  # of most loops
 
 
-def _multiples(dead_times: Array) -> NDArray[np.intp] | None:
+def multiples(dead_times: Array) -> NDArray[np.intp] | None:
     """Return dead times as multiples of the longest one that all of them are multiples of; None if there is none."""
     ratios = dead_times / np.min(dead_times, initial=np.inf)
     for denominator in range(1, RATIO):

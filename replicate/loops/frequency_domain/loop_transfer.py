@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError, LoopError
 from replicate.loops.frequency_domain.limit_curve import VANISHING, LimitCurve
+from replicate.loops.frequency_domain.limit_torus import limit_of
 from replicate.loops.numerics import polynomials
 from replicate.loops.numerics.polynomials import (
     horner,
@@ -186,7 +187,7 @@ class LoopTransfer:
         """What L(i w) approaches at infinite frequency."""
         if not self.feedthrough:
             return VANISHING
-        return LimitCurve.of(np.array([self.num[0] / self.den[0]]), np.array([self.dead_time]))
+        return limit_of(np.array([self.num[0] / self.den[0]]), np.array([self.dead_time]))
 
     def off_limit(self, w: float) -> float:
         """Return how far |L| exceeds its limit at most beyond a frequency that `beyond` has returned."""

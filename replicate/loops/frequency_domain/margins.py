@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.frequency_domain.frequency_grids import bands_beyond, loop_grid
+from replicate.loops.frequency_domain.limit_torus import LimitTorus
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.numerics.bracketed import bracketed_root
 from replicate.loops.records import Record
@@ -87,12 +88,17 @@ def margins(transfer: LoopTransfer) -> Margins:
             reduction, reduction_at = limit, float("inf")
     if not transfer.is_rational and np.isfinite(gain):
         gain, gain_at = _lower_beyond(transfer, gain, gain_at)
+    curve = transfer.limit_curve
+    if isinstance(curve, LimitTorus) and curve.lowest < -(1.0 + SAME) / gain:
+        curve.refuse("gain margin")
 
     w = transfer.gain_crossovers
     lag = np.mod(np.angle(transfer(1j * w)) + np.pi, 2.0 * np.pi) if w.size else np.empty(0)
     phase, phase_at = _extreme(np.degrees(lag), w, np.argmin, float("inf"))
     delay, delay_at = _extreme(lag / w if w.size else lag, w, np.argmin, float("inf"))
-    if transfer.limit_curve.size >= 1.0:  # with any more dead time the loop is neutral and unstable
+    if curve.size >= 1.0:  # with any more dead time the loop is neutral and unstable
+        if not curve.reached:
+            curve.refuse("delay margin")
         delay, delay_at = 0.0, float("inf")
     return Margins(
         gain, reduction, phase, delay, gain_at, reduction_at, phase_at, delay_at,

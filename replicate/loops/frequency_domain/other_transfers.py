@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_domain.frequency_grids import loop_grid
 from replicate.loops.frequency_domain.limit_curve import LimitCurve
+from replicate.loops.frequency_domain.limit_torus import limit_of
 from replicate.loops.frequency_domain.loop_transfer import (
     EPS,
     ILL_POSED,
@@ -253,7 +254,7 @@ class SumTransfer(LoopTransfer):
     @cached_property
     def limit_curve(self) -> LimitCurve:
         """What L(i w) approaches at infinite frequency."""
-        return LimitCurve.of(self.limits, self.dead_times)
+        return limit_of(self.limits, self.dead_times)
 
     @cached_property
     def _rests(self) -> list[Array]:

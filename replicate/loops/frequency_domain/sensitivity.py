@@ -34,6 +34,7 @@ class _Kind:
     bound: Callable[[ComplexArray, float], Array]
     slope: Callable[[float], float]
     at_infinite_gain: float
+    name: str
     ratio: tuple[Array, Array]  # of the rational part; the magnitude itself if there is no dead time
 
     def magnitude(self, value: ComplexArray) -> Array:
@@ -56,6 +57,7 @@ def sensitivity_peak(transfer: LoopTransfer, poles: ComplexArray, center: float 
         lambda value, off: _ratio(1.0, np.abs(center + value) - off),
         slope,
         0.0,
+        "sensitivity peak" if center == 1.0 else "closest approach",
         (transfer.den, np.asarray(np.polyadd(center * transfer.den, transfer.num), dtype=float)),
     )
     return _peak(transfer, poles, kind)
@@ -69,8 +71,17 @@ def complementary_peak(transfer: LoopTransfer, poles: ComplexArray) -> Frequency
         return float((1j * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
 
     closed = (transfer.num, np.asarray(np.polyadd(transfer.den, transfer.num), dtype=float))
-    kind = _Kind(lambda value, off: _ratio(np.abs(value) + off, np.abs(1.0 + value) - off), slope, 1.0, closed)
-    return _peak(transfer, poles, kind)
+    return _peak(
+        transfer,
+        poles,
+        _Kind(
+            lambda value, off: _ratio(np.abs(value) + off, np.abs(1.0 + value) - off),
+            slope,
+            1.0,
+            "complementary sensitivity peak",
+            closed,
+        ),
+    )
 
 
 def _ratio(top: ArrayLike, bottom: Array) -> Array:
@@ -115,6 +126,8 @@ def _with_ends(transfer: LoopTransfer, kind: _Kind, best: FrequencyPeak, limit: 
     if at_rest >= best.value:
         best = FrequencyPeak(at_rest, 0.0)
     if limit > best.value:
+        if not transfer.limit_curve.reached:
+            transfer.limit_curve.refuse(kind.name)
         best = FrequencyPeak(limit, float("inf"))
     return best
 

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from replicate.loops.errors import ImproperLoopError
 from replicate.loops.frequency_domain.frequency_grids import loop_grid
+from replicate.loops.frequency_domain.limit_torus import LimitTorus
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.numerics.bracketed import bracketed_root
 
@@ -52,8 +53,12 @@ def unstable_poles(transfer: LoopTransfer) -> int:
     ImproperLoopError
         If the loop is of neutral type with |L| >= 1 at infinite frequency and dead time: it then has infinitely many
         unstable poles.
+    LoopError
+        If it cannot be said whether it has them: with dead times of which only some have a common measure.
     """
     if transfer.feedthrough >= 1.0 and not transfer.is_polynomial:
+        if isinstance(transfer.limit_curve, LimitTorus):
+            transfer.limit_curve.refuse("number of unstable poles")
         msg = f"|L| tends to {transfer.feedthrough:g} >= 1 at infinite frequency: the loop has infinitely many unstable poles"  # noqa: E501
         raise ImproperLoopError(msg)
     if transfer.is_polynomial:
