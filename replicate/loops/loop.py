@@ -81,7 +81,7 @@ class Loop(LoopViews, SetOnce):
 
     def __init__(self, plant: Plant, controller: PID | SmithPredictor) -> None:
         checks.instance("the plant of a loop", plant, Plant, "a Plant (Plant.from_control makes one)")
-        checks.instance("the controller of a loop", controller, PID, "a PI or PID")
+        checks.instance("the controller of a loop", controller, PID, "a PI, PID or SmithPredictor")
         assert isinstance(controller, PID)  # noqa: S101  -- just checked
         self.plant = plant
         self.controller = controller

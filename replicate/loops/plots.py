@@ -1,7 +1,8 @@
 """Draw loops on axes that the caller has made: responses, Nyquist, Bode, and the plane of the gains.
 
 Every function draws on given matplotlib axes and returns them; nothing is saved or shown. matplotlib is imported only
-here, and only when something is drawn.
+here, and only when something is drawn. What is not matplotlib axes, a loop or a signal is refused with a LoopError that
+names the argument.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from replicate.loops import checks
 from replicate.loops.design.circles import Circle
 from replicate.loops.design.gain_plane import GainPlane, gain_plane
 from replicate.loops.loop import Loop
@@ -43,7 +45,9 @@ def plot_signal(ax: Axes, signal: Signal, label: str = "", *, until: float | Non
     until
         End of the time axis; by default the horizon.
     """
-    end = signal.horizon if until is None else min(until, signal.horizon)
+    _check_axes(ax)
+    checks.instance("the signal", signal, Signal, "a Signal")
+    end = signal.horizon if until is None else min(checks.positive("until", until), signal.horizon)
     breaks = signal.breaks[(signal.breaks > 0.0) & (signal.breaks < end)]
     before = np.nextafter(breaks, -np.inf)  # the value on the left of a jump
     t = np.unique(np.concatenate([np.linspace(0.0, end, POINTS), breaks, before]))
@@ -66,8 +70,10 @@ def plot_step(ax: Axes, loop: Loop, label: str = "", *, until: float | None = No
     until
         Horizon; by default until the loop has settled within 0.1 %.
     """
+    _check(ax, loop)
+    output = loop.step(until=until)
     ax.axhline(1.0, color="0.7", linewidth=0.8)
-    return _plot_output(ax, loop.step(until=until), label, until)
+    return _plot_output(ax, output, label, until)
 
 
 def plot_load(ax: Axes, loop: Loop, label: str = "", *, until: float | None = None) -> Axes:
@@ -84,6 +90,7 @@ def plot_load(ax: Axes, loop: Loop, label: str = "", *, until: float | None = No
     until
         Horizon; by default until the loop has settled within 0.1 %.
     """
+    _check(ax, loop)
     return _plot_output(ax, loop.load_step(until=until), label, until)
 
 
@@ -118,15 +125,16 @@ def plot_nyquist(ax: Axes, loop: Loop, label: str = "", *, ms: float | None = No
     ms
         Bound on the sensitivity; by default the loop's own Ms, whose circle touches the curve.
     """
-    bound = loop.sensitivity_peak() if ms is None else ms
+    _check(ax, loop)
+    bound = loop.sensitivity_peak().value if ms is None else 1.0 / Circle.of(ms=ms).radius
     value = loop.nyquist(_frequencies(loop))
     near = np.abs(value) < 4.0
     ax.plot(value.real[near], value.imag[near], label=label or None)
     if bound > 1.0:
-        circle = Circle.of(ms=float(bound))
+        circle = Circle.of(ms=bound)
         angle = np.linspace(0.0, 2.0 * np.pi, 361)
         x, y = -circle.center + circle.radius * np.cos(angle), circle.radius * np.sin(angle)
-        ax.plot(x, y, color="0.5", linestyle="--", linewidth=0.9, label=f"Ms = {float(bound):.3g}")
+        ax.plot(x, y, color="0.5", linestyle="--", linewidth=0.9, label=f"Ms = {bound:.3g}")
     ax.plot([-1.0], [0.0], marker="+", color="black", linestyle="none")
     ax.set_aspect("equal")
     ax.set_xlim(-2.5, 1.0)
@@ -150,7 +158,10 @@ def plot_bode(axes: Sequence[Axes], loop: Loop, label: str = "", *, w: ArrayLike
     w : array
         Frequencies; by default three decades about the crossovers.
     """
-    above, below = axes
+    pair = checks.several("the axes of a Bode plot", axes, "two matplotlib axes")
+    above, below = checks.exactly(2, "the axes of a Bode plot", pair, "two matplotlib axes")
+    _check(above, loop)
+    _check_axes(below)
     bode = loop.bode(_frequencies(loop) if w is None else w)
     above.loglog(bode.frequency, bode.magnitude, label=label or None)
     below.semilogx(bode.frequency, bode.phase, label=label or None)
@@ -168,6 +179,17 @@ def plot_bode(axes: Sequence[Axes], loop: Loop, label: str = "", *, w: ArrayLike
     below.set_ylabel("arg L(iω) / °")
     below.set_xlabel("ω")
     return axes
+
+
+def _check(ax: Axes, loop: Loop) -> None:
+    _check_axes(ax)
+    checks.instance("the loop", loop, Loop, "a Loop")
+
+
+def _check_axes(ax: Axes) -> None:
+    from matplotlib.axes import Axes
+
+    checks.instance("the axes to draw on", ax, Axes, "matplotlib axes")
 
 
 def _frequencies(loop: Loop) -> Array:
@@ -199,6 +221,8 @@ def plot_gain_plane(
     GainPlane
         What was drawn: the gains, and Ms at each of them, ``nan`` where the loop is unstable.
     """
+    _check_axes(ax)
+    levels = [checks.positive("each level of Ms", level) for level in checks.several("levels", levels, "a list of Ms")]
     plane = gain_plane(plant, k, ki)
     stable = np.isfinite(plane.ms)
     ax.contourf(plane.k, plane.ki, stable.astype(float), levels=[0.5, 1.5], colors=["0.93"])

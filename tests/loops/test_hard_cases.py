@@ -247,7 +247,7 @@ WRONG |= {
     "coefficients text": (lambda: Plant("12", [1.0, 1.0]), "the plant's numerator must be"),
     "coefficients none": (lambda: Plant([1.0], None), "the plant's denominator must be"),  # type: ignore[arg-type]
     "a transfer function for a plant": (lambda: Loop(control.tf([1], [1, 1]), PI(1.0)), "must be a Plant"),
-    "a number for a controller": (lambda: Loop(FOPTD, 1.0), "must be a PI or PID, not float"),  # type: ignore[arg-type]
+    "a number for a controller": (lambda: Loop(FOPTD, 1.0), "must be a PI, PID or SmithPredictor, not float"),  # type: ignore[arg-type]
     "frequency data": (lambda: Plant.from_control(control.frd([1, 2], [1, 2])), "not FrequencyResponseData"),
     "scipy": (lambda: Plant.from_control(scipy.signal.TransferFunction([1], [1, 1])), "not TransferFunctionContinuous"),
     "a number for a system": (lambda: Plant.from_control(3.0), "not float"),

@@ -213,7 +213,7 @@ NONSENSE: dict[str, tuple[Callable[[], object], str]] = {
     "load inf": (lambda: LOOP.respond(load=INF, until=5.0), "load step"),
     "load early": (lambda: LOOP.respond(load=1.0, load_at=-1.0, until=5.0), "0 <= load_at"),
     "load late": (lambda: LOOP.respond(load=1.0, load_at=9.0, until=5.0), "0 <= load_at"),
-    "no poles": (lambda: LOOP.poles(0), "at least 1"),
+    "no poles": (lambda: LOOP.poles(0), "whole, from 1 to 10000"),
     "ms inf": (lambda: design_pi(FOPTD, ms=INF), "ms must be finite"),
     "mp inf": (lambda: design_pi(FOPTD, mp=INF), "mp must be finite"),
     "Ti zero": (lambda: PID.ideal(1.0, 0.0), "integral_time"),
@@ -229,6 +229,11 @@ NONSENSE: dict[str, tuple[Callable[[], object], str]] = {
     "plant a matrix": (lambda: Plant([[1.0]], [[1.0, 1.0]]), "two lists"),
     "constraint unknown": (lambda: Constraint("slope"), "'slope' is unknown"),  # type: ignore[arg-type]
     "constraint reversed": (lambda: Constraint("phase", 5.0, 2.0), "low < high"),
+    "constraint a number": (lambda: Constraint(3), "constraint 3 is unknown"),  # type: ignore[arg-type]
+    "constraint of arrays": (lambda: Constraint(np.ones(2)), "constraint array.* is unknown"),  # type: ignore[arg-type]
+    "constraint from a word": (lambda: Constraint("phase", "a"), "range of the phase constraint must be numbers"),  # type: ignore[arg-type]
+    "constraint to nothing": (lambda: Constraint("phase", 0.0, None), "0 <= low < high, not 0.0 to None"),  # type: ignore[arg-type]
+    "constraint margin a word": (lambda: Constraint("curvature", margin="x"), "margin of the curvature"),  # type: ignore[arg-type]
     "constraint margin": (lambda: Constraint("curvature", margin=NAN), "margin"),
 }
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from replicate.loops import PI, Loop, Plant, plots
+from replicate.loops import PI, Loop, LoopError, Plant, plots
 
 LOOP = Loop(Plant.foptd(1.0, 1.0, 1.0), PI(0.6, 0.5))
 
@@ -80,3 +81,32 @@ def test_the_gain_plane_is_stable_below_the_ultimate_gain(ax: Axes) -> None:
 def test_the_gain_plane_of_a_plant_that_no_gains_on_it_stabilise(ax: Axes) -> None:
     plane = plots.plot_gain_plane(ax, Plant([1.0], [1.0, -1.0], 5.0), [0.5, 1.0], [0.1, 0.2])
     assert np.isnan(plane.ms).all()
+
+
+WRONG: dict[str, tuple[Callable[[Any], object], str]] = {
+    "signal": (lambda ax: plots.plot_signal(ax, LOOP), "the signal must be a Signal, not Loop"),  # type: ignore[arg-type]
+    "no axes": (lambda _: plots.plot_signal(None, LOOP.step(5.0)), "the axes to draw on must be matplotlib axes"),  # type: ignore[arg-type]
+    "until": (lambda ax: plots.plot_signal(ax, LOOP.step(5.0), until="x"), "until must be a finite number > 0"),  # type: ignore[arg-type]
+    "step": (lambda ax: plots.plot_step(ax, LOOP.plant), "the loop must be a Loop, not Plant"),  # type: ignore[arg-type]
+    "step until": (lambda ax: plots.plot_step(ax, LOOP, until="x"), "until must be a finite time > 0"),  # type: ignore[arg-type]
+    "load": (lambda _: plots.plot_load("ax", LOOP), "the axes to draw on must be matplotlib axes, not str"),  # type: ignore[arg-type]
+    "nyquist": (lambda ax: plots.plot_nyquist(ax, 1.0), "the loop must be a Loop, not float"),  # type: ignore[arg-type]
+    "nyquist ms": (lambda ax: plots.plot_nyquist(ax, LOOP, ms="x"), "ms must be finite and greater than 1"),  # type: ignore[arg-type]
+    "one axes": (lambda ax: plots.plot_bode(ax, LOOP), "the axes of a Bode plot must be two matplotlib axes"),
+    "three axes": (lambda ax: plots.plot_bode([ax] * 3, LOOP), "the axes of a Bode plot must be two matplotlib axes"),
+    "bode": (lambda ax: plots.plot_bode([ax, ax], None), "the loop must be a Loop, not NoneType"),  # type: ignore[arg-type]
+    "bode w": (lambda ax: plots.plot_bode([ax, ax], LOOP, w="x"), "must be"),
+    "plane": (lambda ax: plots.plot_gain_plane(ax, LOOP, [0.1], [0.1]), "gain plane must be a Plant, not Loop"),  # type: ignore[arg-type]
+    "plane k": (lambda ax: plots.plot_gain_plane(ax, LOOP.plant, ["x"], [0.1]), "k must be a finite number"),
+    "plane levels": (lambda ax: plots.plot_gain_plane(ax, LOOP.plant, [0.1], [0.1], levels=2.0), "levels must be"),  # type: ignore[arg-type]
+    "plane level": (lambda ax: plots.plot_gain_plane(ax, LOOP.plant, [0.1], [0.1], levels=["x"]), "each level of Ms"),  # type: ignore[list-item]
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_what_cannot_be_drawn_is_named_in_one_line(ax: Axes, name: str) -> None:
+    call, words = WRONG[name]
+    with pytest.raises(LoopError, match=words) as caught:
+        call(ax)
+    assert "\n" not in str(caught.value)
+    assert not ax.lines

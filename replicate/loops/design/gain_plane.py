@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.controller import PI
-from replicate.loops.errors import LoopError
+from replicate.loops.errors import ImproperLoopError, UnstableLoopError
 from replicate.loops.loop import Loop
 from replicate.loops.plant import Plant
 from replicate.loops.records import Record
@@ -45,7 +45,13 @@ def gain_plane(plant: Plant, k: ArrayLike, ki: ArrayLike) -> GainPlane:
         The plant.
     k, ki : array
         Gains.
+
+    Raises
+    ------
+    LoopError
+        If the plant is not a Plant, a gain not a finite number, or Ms not known for a stable loop.
     """
+    checks.instance("the plant of a gain plane", plant, Plant, "a Plant")
     columns, rows = (np.array([checks.finite(name, x) for x in np.atleast_1d(given)])
                      for name, given in (("k", np.asarray(k)), ("ki", np.asarray(ki))))  # fmt: skip
     return GainPlane(columns, rows, np.array([[_ms(plant, a, b) for a in columns] for b in rows]))
@@ -54,5 +60,5 @@ def gain_plane(plant: Plant, k: ArrayLike, ki: ArrayLike) -> GainPlane:
 def _ms(plant: Plant, k: float, ki: float) -> float:
     try:
         return Loop(plant, PI(k, ki)).sensitivity_peak().value
-    except LoopError:
+    except (ImproperLoopError, UnstableLoopError):
         return float("nan")

@@ -22,6 +22,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.loops import checks
 from replicate.loops.design.circles import Circle
 from replicate.loops.errors import LoopError
 from replicate.loops.plant import Plant
@@ -53,15 +54,21 @@ class Constraint:
     margin: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.kind not in get_args(Kind):
-            msg = f"constraint '{self.kind}' is unknown; allowed: {', '.join(get_args(Kind))}"
+        kind: object = self.kind  # whatever was given
+        if not isinstance(kind, str) or kind not in get_args(Kind):
+            msg = f"constraint {checks.shown(self.kind)} is unknown; allowed: {', '.join(get_args(Kind))}"
             raise LoopError(msg)
-        if not 0.0 <= self.low < self.high:
-            msg = f"the range of the {self.kind} constraint must satisfy 0 <= low < high, not {self.low} to {self.high}"
+        try:
+            low, high = checks.real(self.low), checks.real(self.high)
+        except ValueError:
+            low = high = np.nan
+        if not 0.0 <= low < high:
+            given = f"{checks.shown(self.low)} to {checks.shown(self.high)}"
+            msg = f"the range of the {self.kind} constraint must be numbers with 0 <= low < high, not {given}"
             raise LoopError(msg)
-        if not np.isfinite(self.margin):
-            msg = f"the margin of the {self.kind} constraint must be a finite number, not {self.margin}"
-            raise LoopError(msg)
+        margin = checks.finite(f"the margin of the {self.kind} constraint", self.margin)
+        for name, value in (("low", low), ("high", high), ("margin", margin)):
+            object.__setattr__(self, name, value)
 
 
 @dataclass(frozen=True)
