@@ -23,11 +23,11 @@ from replicate.loops import checks
 from replicate.loops.controller_views import ControllerViews
 from replicate.loops.errors import LoopError
 from replicate.loops.evaluation import quotient, values
+from replicate.loops.filters import Filter, checked_filter, filter_polynomials
 from replicate.loops.numerics.polynomials import product
 
 ComplexArray = NDArray[np.complex128]
 Array = NDArray[np.float64]
-Filter = float | tuple[tuple[float, ...], tuple[float, ...]]  # a time constant, or (num, den)
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -55,6 +55,16 @@ class PID(ControllerViews):
     LoopError
         If a gain is not a finite real number, a time constant is negative, the filter order is not 1 or 2, or a filter
         given by polynomials is not proper and stable.
+
+    Examples
+    --------
+    1 + 0.5/s + 2 s at s = 1/2 is 1 + 1 + 1:
+
+    >>> controller = PID(1.0, 0.5, 2.0)
+    >>> complex(controller.feedback(0.5))
+    (3+0j)
+    >>> controller == PID.ideal(1.0, integral_time=2.0, derivative_time=2.0)
+    True
     """
 
     k: float
@@ -75,7 +85,7 @@ class PID(ControllerViews):
         )
         self._set("derivative_filter", lag)
         for name in ("measurement_filter", "setpoint_filter"):
-            self._set(name, _checked_filter(name, getattr(self, name)))
+            self._set(name, checked_filter(name, getattr(self, name)))
         order = self.measurement_filter_order
         if not np.isscalar(order) or order not in (1, 2):
             msg = f"the order of the measurement filter must be 1 or 2, not {checks.shown(order)}"
@@ -219,14 +229,14 @@ class PID(ControllerViews):
 
     def measurement_filter_polynomials(self) -> tuple[Array, Array]:
         """Return (num, den) of the measurement filter."""
-        num, den = _filter_polynomials(self.measurement_filter)
+        num, den = filter_polynomials(self.measurement_filter)
         if self.measurement_filter_order == 2 and not isinstance(self.measurement_filter, tuple):
             den = np.asarray(np.polymul(den, den), dtype=float)
         return num, den
 
     def setpoint_filter_polynomials(self) -> tuple[Array, Array]:
         """Return (num, den) of the set-point filter."""
-        return _filter_polynomials(self.setpoint_filter)
+        return filter_polynomials(self.setpoint_filter)
 
     def feedback(self, s: ArrayLike) -> ComplexArray:
         """Evaluate the transfer function from -y to u, measurement filter included.
@@ -257,32 +267,6 @@ class PID(ControllerViews):
         return values(value, s)
 
 
-def _filter_polynomials(given: Filter) -> tuple[Array, Array]:
-    if isinstance(given, tuple):
-        return np.array(given[0]), np.array(given[1])
-    return np.array([1.0]), np.array([given, 1.0]) if given else np.array([1.0])
-
-
-def _checked_filter(name: str, given: object) -> Filter:
-    """Return a filter's time constant, or its polynomials without leading zeros."""
-    if not isinstance(given, tuple | list):
-        allowed = "a time constant >= 0 or a pair (num, den) of polynomials"
-        return checks.non_negative(f"the controller's {name}", given, allowed=allowed)
-    try:
-        num, den = (checks.coefficients(name, part) for part in given)
-    except (LoopError, ValueError):
-        shown = checks.shown(given)
-        msg = f"the controller's {name} must be two non-zero polynomials (num, den) of finite numbers, not {shown}"
-        raise LoopError(msg) from None
-    if num.size > den.size:
-        msg = f"the controller's {name} must be proper: degree {num.size - 1} over degree {den.size - 1}"
-    elif np.any(np.roots(den).real >= 0.0):
-        msg = f"the controller's {name} must be stable: {den.tolist()} has a root with Re s >= 0"
-    else:
-        return tuple(num.tolist()), tuple(den.tolist())
-    raise LoopError(msg)
-
-
 def _checked_time(name: str, value: float) -> float:
     try:
         time = checks.real(value)
@@ -306,6 +290,16 @@ class PI(PID):
         Set-point weight of the proportional part.
     measurement_filter, measurement_filter_order, setpoint_filter
         As for `PID`.
+
+    Examples
+    --------
+    With a gain of 2 and an integral time of 4 the feedback 2 + 0.5/s is 3 at s = 1/2:
+
+    >>> controller = PI(2.0, 0.5)
+    >>> controller.integral_time
+    4.0
+    >>> complex(controller.feedback(0.5))
+    (3+0j)
     """
 
     def __init__(

@@ -44,6 +44,15 @@ def plot_signal(ax: Axes, signal: Signal, label: str = "", *, until: float | Non
         Its name in a legend.
     until
         End of the time axis; by default the horizon.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from replicate.loops import PI
+    >>> loop = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.5))  # L = e^{-s}/(2 s)
+    >>> ax = plot_signal(Figure().add_subplot(), loop.load_step(until=2.0), "load")
+    >>> ax.lines[0].get_label(), float(ax.lines[0].get_xdata()[-1])
+    ('load', 2.0)
     """
     _check_axes(ax)
     checks.instance("the signal", signal, Signal, "a Signal")
@@ -69,6 +78,15 @@ def plot_step(ax: Axes, loop: Loop, label: str = "", *, until: float | None = No
         Its name in a legend.
     until
         Horizon; by default until the loop has settled within 0.1 %.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from replicate.loops import PI
+    >>> loop = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.5))  # L = e^{-s}/(2 s)
+    >>> ax = plot_step(Figure().add_subplot(), loop, until=5.0)
+    >>> len(ax.lines), ax.get_ylabel()  # the set-point, and the output
+    (2, 'y')
     """
     _check(ax, loop)
     output = loop.step(until=until)
@@ -89,6 +107,15 @@ def plot_load(ax: Axes, loop: Loop, label: str = "", *, until: float | None = No
         Its name in a legend.
     until
         Horizon; by default until the loop has settled within 0.1 %.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from replicate.loops import PI
+    >>> loop = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.5))  # L = e^{-s}/(2 s)
+    >>> ax = plot_load(Figure().add_subplot(), loop, until=5.0)
+    >>> len(ax.lines), ax.get_xlabel()
+    (1, 't')
     """
     _check(ax, loop)
     return _plot_output(ax, loop.load_step(until=until), label, until)
@@ -124,6 +151,15 @@ def plot_nyquist(ax: Axes, loop: Loop, label: str = "", *, ms: float | None = No
         Its name in a legend.
     ms
         Bound on the sensitivity; by default the loop's own Ms, whose circle touches the curve.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from replicate.loops import PI
+    >>> loop = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.5))  # L = e^{-s}/(2 s)
+    >>> ax = plot_nyquist(Figure().add_subplot(), loop, "integrator", ms=2.0)
+    >>> [line.get_label() for line in ax.lines[:2]]
+    ['integrator', 'Ms = 2']
     """
     _check(ax, loop)
     bound = loop.sensitivity_peak().value if ms is None else 1.0 / Circle.of(ms=ms).radius
@@ -157,6 +193,15 @@ def plot_bode(axes: Sequence[Axes], loop: Loop, label: str = "", *, w: ArrayLike
         Its name in a legend.
     w : array
         Frequencies; by default three decades about the crossovers.
+
+    Examples
+    --------
+    >>> from matplotlib.figure import Figure
+    >>> from replicate.loops import PI
+    >>> loop = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.5))  # L = e^{-s}/(2 s)
+    >>> above, below = plot_bode(Figure().subplots(2), loop, w=[0.1, 0.5, 1.0])
+    >>> above.lines[0].get_ydata().round(12).tolist()  # 1/(2 w)
+    [5.0, 1.0, 0.5]
     """
     pair = checks.several("the axes of a Bode plot", axes, "two matplotlib axes")
     above, below = checks.exactly(2, "the axes of a Bode plot", pair, "two matplotlib axes")
@@ -220,6 +265,16 @@ def plot_gain_plane(
     -------
     GainPlane
         What was drawn: the gains, and Ms at each of them, ``nan`` where the loop is unstable.
+
+    Examples
+    --------
+    The gain alone is at the limit of stability at pi/2:
+
+    >>> from matplotlib.figure import Figure
+    >>> integrator = Plant([1.0], [1.0, 0.0], dead_time=1.0)
+    >>> plane = plot_gain_plane(Figure().add_subplot(), integrator, k=[0.5, 1.5, 1.6], ki=[0.0, 0.01])
+    >>> np.isnan(plane.ms[0]).tolist()
+    [False, False, True]
     """
     _check_axes(ax)
     levels = [checks.positive("each level of Ms", level) for level in checks.several("levels", levels, "a list of Ms")]

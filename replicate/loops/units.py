@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from replicate.loops.controller import PID, Filter
+from replicate.loops.controller import PID
+from replicate.loops.filters import Filter
 from replicate.loops.plant import Plant
 from replicate.loops.plants.function_plant import HIGHEST, LOWEST, FunctionPlant
 

@@ -45,6 +45,19 @@ class Margins(Record):
         are all that matter, up to one full turn of the dead time beyond the last frequency at which |L| reaches one
         half (for a loop whose |L| tends to d > 0, half way between d and one). With several dead times |L| may rise
         again: the gain margin may belong to a later one.
+
+    Examples
+    --------
+    L = e^{-s}/(2 s) has its phase crossover at pi/2, where its size is 1/pi, and its gain crossover at 1/2, where its
+    phase is -90 degrees less half a radian: a phase margin of pi/2 - 1/2, a delay margin of twice that.
+
+    >>> from math import degrees, pi
+    >>> from replicate.loops import PI, Loop, Plant
+    >>> margins = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.5)).margins()
+    >>> round(margins.gain - pi, 12), round(margins.delay - (pi - 1.0), 12)
+    (0.0, 0.0)
+    >>> round(margins.phase / degrees(pi / 2 - 0.5), 12)
+    1.0
     """
 
     gain: float

@@ -43,6 +43,17 @@ class Signal(SignalViews, Piecewise):
     -----
     Times count from the step, dead time included. Overshoot is a fraction of the final value. Where the final value is
     zero (load responses) bands are absolute, as fractions of the unit step.
+
+    Examples
+    --------
+    An integrator with unit dead time under unit load, not yet fed back: y = t - 1 from t = 1 to t = 2.
+
+    >>> from replicate.loops import PI, Loop, Plant
+    >>> y = Loop(Plant([1.0], [1.0, 0.0], dead_time=1.0), PI(0.25)).load_step(until=2.0)
+    >>> [round(float(value), 12) for value in y([0.5, 1.5, 2.0])]
+    [0.0, 0.5, 1.0]
+    >>> round(y.peak(), 12), y.peak().time, round(y.integral(), 12)
+    (1.0, 2.0, 0.5)
     """
 
     def peak(self) -> Peak:

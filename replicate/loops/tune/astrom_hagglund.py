@@ -44,6 +44,14 @@ def amigo(plant: Plant, *, derivative: bool = False) -> PI | PID:
     ----------
     K. J. Åström and T. Hägglund, "Revisiting the Ziegler-Nichols step response method for PID control", J. Process
     Control 14 (2004) 635-650.
+
+    Examples
+    --------
+    With K = T = L = 1: 0.15 + 0.35 - 1/4 = 0.25, and 0.35 + 13/20 = 1.
+
+    >>> controller = amigo(Plant.foptd(1.0, 1.0, 1.0))
+    >>> round(controller.k, 12), round(controller.integral_time, 12)
+    (0.25, 1.0)
     """
     model = exact_first_order(plant, "AMIGO")
     L = model.dead_time

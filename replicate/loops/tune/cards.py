@@ -29,6 +29,12 @@ class RuleCard:
         Where it was published.
     validity
         The plants for which it is made, in words.
+
+    Examples
+    --------
+    >>> from replicate.loops import Plant
+    >>> RULES["lambda_"].rule(Plant.foptd(2.0, 6.0, 1.0), tau_cl=2.0).k  # 6/(2 (2 + 1))
+    1.0
     """
 
     rule: Callable[..., PID]

@@ -28,6 +28,14 @@ def by_name(plant: Plant, rule: str, variant: str = PRINTED) -> PI:
     ------
     LoopError
         If there is no such rule, or the plant is not K e^{-Ls}/(Ts + 1) with dead time.
+
+    Examples
+    --------
+    Ziegler and Nichols: 0.9 T/(K L) and, as most books print it, 3 L.
+
+    >>> controller = by_name(Plant.foptd(1.0, 2.0, 0.9), "ziegler-nichols")
+    >>> round(controller.k, 12), round(controller.integral_time, 12)
+    (2.0, 2.7)
     """
     rules = classical_rules(variant)
     if rule not in rules:

@@ -29,6 +29,14 @@ def lambda_(plant: Plant, tau_cl: float | None = None) -> PI:
     ------
     LoopError
         If the plant is not of first order with dead time, or tau_cl is negative.
+
+    Examples
+    --------
+    K = 6/(2 (2 + 1)) = 1 with Ti = T:
+
+    >>> controller = lambda_(Plant.foptd(2.0, 6.0, 1.0), tau_cl=2.0)
+    >>> controller.k, controller.integral_time
+    (1.0, 6.0)
     """
     model = exact_first_order(plant, "lambda tuning")
     L = model.dead_time

@@ -51,6 +51,13 @@ def lag_model(plant: Plant) -> LagModel:
     ------
     LoopError
         If the plant is not rational, has complex or unstable poles, or zeros in the left half-plane.
+
+    Examples
+    --------
+    A zero to the right, 1 - s, is a dead time of 1:
+
+    >>> lag_model(Plant([-2.0, 2.0], [4.0, 5.0, 1.0], dead_time=1.0))
+    LagModel(gain=2.0, time_constants=(4.0, 1.0), dead_time=2.0, integrators=0)
     """
     checks.instance("the plant of a tuning rule", plant, Plant, "a Plant")
     if not plant.is_rational:

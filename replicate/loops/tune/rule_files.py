@@ -140,6 +140,12 @@ def classical_rules(variant: str = PRINTED) -> Mapping[str, TuningRule]:
     ----------
     variant
         Which version of each rule; the printed one where a rule has no such version.
+
+    Examples
+    --------
+    >>> rule = classical_rules()["ziegler-nichols"]  # 0.9 tau/(K L)
+    >>> round(rule.evaluate(K=1.0, tau=2.0, L=0.9).kp, 12)
+    2.0
     """
     return load_rules(importlib.resources.files("replicate.loops.tune") / CLASSICAL, variant)
 
@@ -149,6 +155,13 @@ def first_order_rules() -> Mapping[str, TuningRule]:
     """Return the rules for first-order and integrating processes that several parts of the package use.
 
     Symbols are ``K``, ``tau``, ``L``; of an integrating process ``K`` and ``L``.
+
+    Examples
+    --------
+    >>> rule = first_order_rules()["simc-integrator"]  # 1/(K (tau_c + L)) and 4 (tau_c + L)
+    >>> gains = rule.evaluate(K=1.0, L=1.0, tau_c=1.0)
+    >>> gains.kp, gains.ti
+    (0.5, 8.0)
     """
     return load_rules(importlib.resources.files("replicate.loops.tune") / FIRST_ORDER)
 

@@ -20,6 +20,13 @@ class Gains:
         Proportional gain.
     ti
         Integral time; ``inf`` without integral action.
+
+    Examples
+    --------
+    >>> Gains(kp=2.0, ti=4.0).ki
+    0.5
+    >>> Gains.parallel(kp=2.0, ki=0.0).ti
+    inf
     """
 
     kp: Number
@@ -52,6 +59,12 @@ class Range:
         Formula of the parameters of a process.
     low, high
         Its least and largest value.
+
+    Examples
+    --------
+    >>> from replicate.loops.tune import formula
+    >>> Range(formula("L/tau"), 0.1, 1.0).contains(L=1.0, tau=2.0)
+    True
     """
 
     quantity: Formula

@@ -40,6 +40,14 @@ def ziegler_nichols(plant: Plant, kind: Kind = "PI", *, method: Literal["step", 
     ------
     LoopError
         If the plant does not suit the method, or kind or method is another word.
+
+    Examples
+    --------
+    Of the step response: 1.2 T/(K L), 2 L and L/2.
+
+    >>> controller = ziegler_nichols(Plant.foptd(1.0, 5.0, 2.0), "PID")
+    >>> controller.k, controller.integral_time, controller.derivative_time
+    (3.0, 4.0, 1.0)
     """
     if kind not in {"P", "PI", "PID"} or method not in {"step", "ultimate"}:
         msg = f"kind must be P, PI or PID and method step or ultimate, not {kind!r} and {method!r}"
@@ -74,6 +82,14 @@ def ultimate(plant: Plant) -> tuple[float, float]:
     ------
     LoopError
         If no small gain stabilises the plant, or no large one makes it unstable.
+
+    Examples
+    --------
+    An integrator with unit dead time: the phase is -180 degrees at pi/2, where 1/w is 2/pi.
+
+    >>> gain, period = ultimate(Plant([1.0], [1.0, 0.0], dead_time=1.0))
+    >>> round(gain / (math.pi / 2), 12), round(period, 12)
+    (1.0, 4.0)
     """
     static = plant.gain
     size = 1e-3 / abs(static) if math.isfinite(static) and static else _gain_at_corner(plant)
