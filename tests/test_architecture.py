@@ -24,7 +24,7 @@ ALLOWED = {
     "verdicts": {"errors", "exhibits", "plain_text"},
     "run": {"errors", "exhibits", "figures", "languages", "plain_text", "verdicts"},
     "display": {"errors", "exhibits", "figures", "plain_text", "resources", "run", "verdicts"},
-    "report": {"display", "errors", "exhibits", "figures", "plain_text", "resources", "run", "verdicts"},
+    "report": {"display", "errors", "exhibits", "figures", "plain_text", "resources", "run", "staging", "verdicts"},
     "handout": {"display", "errors", "exhibits", "figures", "languages", "plain_text", "resources", "run", "verdicts"},
     "sweeps": {"errors", "loops", "plain_text", "run", "staging"},
     "whatif": {"display", "errors", "exhibits", "figures", "loops", "resources"},

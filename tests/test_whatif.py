@@ -68,23 +68,25 @@ def lab(*trials: Trial) -> tuple[list[Paper], Results]:
     paper = Paper(
         id="mine", package="mine", title="T", authors=("A",), citation="C", year=2020, modules=(), numbered=()
     )
-    paper.table("table-1", "Rows", rows=("a", "b"), columns=("k",), printed=False)
-    return [paper], {("mine", "table-1"): TableResult("mine", "table-1", trials=TableTrials(trials))}
+    paper.table(
+        "table-2", "Table II: rows", labels={"b": "*b* of mine"}, rows=("a", "b"), columns=("k",), printed=False
+    )
+    return [paper], {("mine", "table-2"): TableResult("mine", "table-2", trials=TableTrials(trials))}
 
 
 def test_rows_that_are_not_drawn_are_left_out_of_a_report(tmp_path: Path) -> None:
     given = lab(Trial("a", "", "e^{-sqrt(s)}", "k=1"), Trial("b", "", "e^{-s}/(s+1)", "k=0.5,ki=0.4"))
     assert write_whatif(*given, tmp_path) == [tmp_path / NAME]
     page = (tmp_path / NAME).read_text(encoding="utf-8")
-    assert "mine table-1: b" in page
-    assert "mine table-1: a" not in page
+    assert "A 2020, Table II: b of mine" in page
+    assert "Table II: a" not in page
     assert not unreadable_loops(*given)
 
 
 def test_a_loop_that_is_not_understood_is_named_with_its_row() -> None:
     given = lab(Trial("a", "", "1/s", "k=1"), Trial("b", "fast", "1/(s+", "k=1"))
     (said,) = unreadable_loops(*given).values()
-    assert said.startswith("mine/table-1: b, fast: plant '1/(s+'")
+    assert said.startswith("mine/table-2: b, fast: plant '1/(s+'")
 
 
 def test_the_page_is_the_same_each_time() -> None:

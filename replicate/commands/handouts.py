@@ -90,7 +90,7 @@ def handout(
     )
     from replicate.languages import language as language_of
     from replicate.run.guarded import GuardedProcess
-    from replicate.staging import staged
+    from replicate.staging import staged, write
     from replicate.terminal.console import console
     from replicate.terminal.counted_progress import counted_progress_on
     from replicate.whatif import DISTRIBUTIONS, ROOMS, unreadable_loops, write_whatif
@@ -148,7 +148,7 @@ def handout(
                         case (int(done), int(total)):
                             report(done, total, 0)
                         case (str(name), bytes(content)):
-                            written.append(_written(fresh / "handouts" / name, content))
+                            written.append(write(fresh / "handouts" / name, content))
             # Exercises link to this page.
             written += write_whatif(
                 outcome.papers, outcome.results, fresh / "handouts", keep=run.kept_texts(ROOMS, DISTRIBUTIONS)
@@ -184,9 +184,3 @@ def _check_no_exercises(given: list[str]) -> None:
     if given:
         msg = f"{given[0]} is about exercises, and slides have none"
         raise ReplicateError(msg)
-
-
-def _written(path: Path, content: bytes) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)
-    return path

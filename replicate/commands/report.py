@@ -30,7 +30,7 @@ def report(
     from replicate.display import markdown
     from replicate.report.data import expected_files, write_outputs
     from replicate.report.pages import INDEX, build_report, single_page
-    from replicate.report.scope import Scope, owner_of
+    from replicate.report.scope import Scope
     from replicate.report.site import site_of
     from replicate.report.standing import keep, texts_of
     from replicate.report.texts import placed, unreadable
@@ -41,15 +41,14 @@ def report(
     chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
     pages_there = [name.removeprefix("report/") for name in files_of(run.folder, "report")] if papers else []
-    others = {owner_of(page, run.within.ids()) for page in pages_there} - named - {""}
-    in_order = [one.name for one in run.within.known if one.name in {*named, *others}]
-    everyone = run.within.papers(in_order) if others else chosen
+    scope = Scope.among(named, pages_there, run.within.ids())
+    in_order = [one.name for one in run.within.known if one.name in {*named, *scope.others}]
+    everyone = run.within.papers(in_order) if scope.others else chosen
     about = site_of(run.within.project, bundled=all(run.within.is_bundled(paper.id) for paper in everyone))
     # What is read below must not be newer than what is said to have been read.
     texts = "" if papers or single_file or run.no_cache or run.within.broken else texts_of(chosen, about)
     if texts and _stands(run, chosen, texts):
         return
-    scope = Scope(named, others)
     with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
         outcome = run.recompute(everyone)
@@ -69,10 +68,7 @@ def report(
         for paper in mailed:
             text = single_page(paper, outcome.results, outcome.judgement, data, about)
             (fresh / f"{paper.id}.html").write_bytes(text.encode())
-        for path in [path for path in fresh.rglob("*") if path.is_file()]:
-            if not scope.renews(path.relative_to(fresh).as_posix()):
-                path.unlink()
-        written = [path.relative_to(fresh) for path in fresh.rglob("*") if path.is_file()]
+        written = scope.prune(fresh)
     outcome = outcome.of(named)
     counts = counts_of(outcome)
     print_summary(counts, console())

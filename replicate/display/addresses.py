@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from urllib.parse import quote
 
-from replicate.display.labels import part_of
-from replicate.exhibits import Paper
+from replicate.display.labels import cited, heading, key_text, part_of
+from replicate.display.unmarked import unmarked
+from replicate.exhibits import Paper, Table
 
 #: The page on which loops can be tried out, in the report's folder and in that of the handouts.
 TRIALS = "whatif.html"
+
+_LONGEST_LABEL = 24  # of a row beside its point in the gain plane
 
 _NOTES = re.compile(r"notes-(\w+)\.md")
 
@@ -64,17 +67,45 @@ def address(page: str, exhibit: str, row: str, column: str) -> str:
     return f"{page}#{anchor(exhibit, row, column)}"
 
 
-def trial_label(exhibit: str, row: str, case: str = "") -> str:
-    """Return what a row, or a case of it, is called where its loop can be tried out, after its paper.
+def trial_table(paper: Paper, exhibit: str) -> str:
+    """Return what an exhibit is called where its loops can be tried out, in the paper's own numbering.
 
     Examples
     --------
-    >>> trial_label("I-table-1", "G1 Ms=1.4")
-    'I-table-1: G1 Ms=1.4'
-    >>> trial_label("table-2", "ISE", "ph = 0.1")
-    'table-2: ISE, ph = 0.1'
+    >>> paper = Paper("id", "package", "Title", ("Ann Lee",), "Citation.", 1999, (), ())
+    >>> table = paper.table("II-table-2", "Table II: gains", rows=("slow_one",), columns=("k",), printed=False)
+    >>> trial_table(paper, "II-table-2")
+    'Lee 1999, Part II, Table II'
     """
-    return f"{exhibit}: {row.replace('_', ' ')}" + (f", {case}" if case else "")
+    number, title = heading(exhibit, paper.exhibits[exhibit].title)
+    part = part_of(exhibit)
+    name = number or unmarked(title.partition(": ")[0])
+    return ", ".join(filter(None, (cited(paper), part and f"Part {part}", name)))
+
+
+def trial_label(paper: Paper, exhibit: str, row: str, case: str = "") -> str:
+    """Return what a row, or a case of it, is called where its loop can be tried out: table, then labels of the row.
+
+    The names of a row and its case stand in the gain plane, too: where a label is long, the key stands for it.
+
+    Examples
+    --------
+    >>> paper = Paper("id", "package", "Title", ("Ann Lee",), "Citation.", 1999, (), ())
+    >>> labels = {"b": "$K_P$ of *b*", "c": "set point, with the filter of the appendix"}
+    >>> table = paper.table("table-2", "Gains", rows=("a_1", "b", "c"), columns=("k",), labels=labels, printed=False)
+    >>> trial_label(paper, "table-2", "b", "h = 0.1")
+    'Lee 1999, Table 2: K_P of b, h = 0.1'
+    >>> trial_label(paper, "table-2", "a_1"), trial_label(paper, "table-2", "c")
+    ('Lee 1999, Table 2: a 1', 'Lee 1999, Table 2: c')
+    """
+    table = paper.exhibits[exhibit]
+    labels = table.labels if isinstance(table, Table) else {}
+    names = (
+        label if len(label := unmarked(labels.get(key, ""))) <= _LONGEST_LABEL and label else key_text(key)
+        for key in (row, case)
+        if key
+    )
+    return f"{trial_table(paper, exhibit)}: {', '.join(names)}"
 
 
 def trial_address(plant: str, controller: str) -> str:

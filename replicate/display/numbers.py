@@ -143,6 +143,21 @@ def full(computed: float | None) -> str:
     return minus_signs(computed_text(computed))
 
 
+def quoted(computed: float, text: str) -> str:
+    """Return a number as a text quotes it, if that is with one digit and a power of ten; empty otherwise.
+
+    What is zero but for rounding has no second digit: beside "within 1e-15" it is not 1.38778e-15.
+
+    Examples
+    --------
+    >>> quoted(1.38778e-15, "The deviation is 1e-15."), quoted(1.38778e-15, "Below 1e-12."), quoted(3e-15, "13e-15")
+    ('1e−15', '', '')
+    """
+    one_digit = f"{computed:.0e}"
+    stands = re.search(rf"(?<![\d.]){re.escape(one_digit)}(?!\d)", text)
+    return minus_signs(one_digit) if stands and math.isfinite(computed) else ""
+
+
 def between(low: str, high: str) -> str:
     """Return a range as text, one number if its ends are shown alike; empty if it has none.
 

@@ -163,8 +163,8 @@ class Placing:
         trials = result.trials.declared if isinstance(result, TableResult) else ()
         for trial in trials:
             if (trial.row, trial.case) == (row, case):
-                label, address = trial_label(table, row, case), trial_address(trial.plant, trial.controller)
-                return f"[{TRIALS} ({self.paper.id} {label})]({address})"
+                label = trial_label(self.paper, table, row, case)
+                return f"[{TRIALS} ({label})]({trial_address(trial.plant, trial.controller)})"
         asked, *allowed = (
             "', '".join(filter(None, names)) for names in ((table, row, case), *(one[:2] for one in trials))
         )

@@ -17,6 +17,7 @@ from replicate.exhibits import Figure, Paper, Table
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.report.columns import COLUMN_COLUMNS, column_rows, named_curves, named_drawing
 from replicate.report.pages import DATA
+from replicate.staging import write
 from replicate.verdicts.rows import ExhibitRow, Judgement, RangeRow, ResultRow, VerdictRow
 
 RESULT_COLUMNS = ("paper", "exhibit", "row", "column", "printed", "reading", "computed", "match")
@@ -95,10 +96,10 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
     """
     files = data_files(papers, results, judgement)
     for name, content in files.items():
-        _write(folder / name, content)
+        write(folder / name, content)
         # The same bytes inside the report, so that the report can be mailed whole.
-        _write(folder / "report" / DATA / name, content)
-    _write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement).encode())
+        write(folder / "report" / DATA / name, content)
+    write(folder / "junit.xml", junit([paper.id for paper in papers], results, judgement).encode())
     return files
 
 
@@ -147,8 +148,3 @@ def _addressed(rows: Iterable[VerdictRow], columns: Sequence[str], pages: Mappin
 
 def _one_line(text: Any) -> str:
     return " ".join(str(text).split())
-
-
-def _write(path: Path, content: bytes) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_bytes(content)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -18,6 +19,17 @@ class Scope:
 
     chosen: Collection[str]
     others: Collection[str] = ()
+
+    @classmethod
+    def among(cls, chosen: Collection[str], pages: Iterable[str], known: Collection[str]) -> Scope:
+        """Return the scope of a run on some papers, beside the pages that the report has of the known ones.
+
+        Examples
+        --------
+        >>> Scope.among({"khan"}, ["index.html", "khan.html", "ali.html"], ["ali", "khan"])
+        Scope(chosen={'khan'}, others={'ali'})
+        """
+        return cls(chosen, {owner_of(page, known) for page in pages} - {"", *chosen})
 
     def renews(self, name: str) -> bool:
         """Whether the run writes a file of the report anew, by its name inside the output folder.
@@ -40,6 +52,14 @@ class Scope:
         if room == "report":
             return owner_of(rest, (*self.chosen, *self.others)) not in self.others
         return True
+
+    def prune(self, folder: Path) -> list[Path]:
+        """Remove the files of an output folder that the run does not renew; return the others, relative to it."""
+        files = [path for path in folder.rglob("*") if path.is_file()]
+        for path in files:
+            if not self.renews(path.relative_to(folder).as_posix()):
+                path.unlink()
+        return [path.relative_to(folder) for path in files if path.exists()]
 
 
 def owner_of(page: str, papers: Iterable[str]) -> str:

@@ -172,5 +172,7 @@ def _claims(claims: Claims, result: ClaimsResult) -> Iterable[ClaimView]:
     for claim in claims.claims.values():
         finding = result.findings.get(claim.id)
         printed = PrintedValue(claim.printed) if parse_number(claim.printed) is not None else None
-        value = numbers.shown(finding.value, printed) if finding else ""
+        value = ""
+        if finding:
+            value = numbers.quoted(finding.value, finding.evidence) or numbers.shown(finding.value, printed)
         yield ClaimView(claim, finding, value, result.errors.get(claim.id, ""))

@@ -9,9 +9,11 @@ carried out, by this run or, if it is killed, by the next one.
 `write_signed`      one file at a place that the user names: a chart, a page
 `keep_file`         one more file in a folder that a run holds with `locked_folder`, for sweeps
 `files_of`          what earlier runs wrote
+`write`             a file and its folders, in a folder that is thrown away if the run does not end
 `finish_interrupted` before reading a folder that another run may have been killed in
 """
 
+from replicate.staging.files import write
 from replicate.staging.kept import keep_file, locked_folder
 from replicate.staging.signatures import signed, write_signed
 from replicate.staging.stage import files_of, finish_interrupted, replace_files, staged
@@ -24,5 +26,6 @@ __all__ = [
     "replace_files",
     "signed",
     "staged",
+    "write",
     "write_signed",
 ]

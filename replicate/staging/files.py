@@ -38,10 +38,11 @@ def _flush(path: Path) -> None:
         os.close(descriptor)
 
 
-def write(path: Path, content: bytes) -> None:
-    """Write a file and its folders."""
+def write(path: Path, content: bytes) -> Path:
+    """Write a file and its folders, and return it."""
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(content)
+    return path
 
 
 def write_safely(path: Path, content: bytes) -> None:

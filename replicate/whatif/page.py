@@ -124,8 +124,7 @@ def write_whatif(
 
 def _with_names(row: Row) -> dict[str, str]:
     """Return a row with the names of its table and of itself, by which the gain plane marks it."""
-    table, _, name = row.label.partition(": ")
-    return {**asdict(row), "table": table, "name": name or row.label}
+    return {**asdict(row), "table": row.table or row.label, "name": row.name}
 
 
 def _optimal(rows: Sequence[Row], keep: Keep) -> dict[str, Any]:

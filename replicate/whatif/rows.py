@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from replicate.display.addresses import trial_label
+from replicate.display.addresses import trial_label, trial_table
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results, TableResult
 from replicate.exhibits.trials import TableTrials
@@ -18,11 +18,27 @@ from replicate.loops.notation import parse_controller, parse_plant
 
 @dataclass(frozen=True)
 class Row:
-    """A loop to begin with: what it is called, and plant and controller in the notation of `replicate.loops`."""
+    """A loop to begin with.
+
+    Attributes
+    ----------
+    label
+        What it is called, beginning with the name of its table if it has one.
+    plant, controller
+        In the notation of `replicate.loops`.
+    table
+        What its table is called.
+    """
 
     label: str
     plant: str
     controller: str
+    table: str = ""
+
+    @property
+    def name(self) -> str:
+        """What it is called inside its table."""
+        return self.label.removeprefix(f"{self.table}: ")
 
 
 MOST_POLES = 15
@@ -84,9 +100,10 @@ def rows_of(papers: Iterable[Paper], results: Results) -> list[Row]:
     found: dict[tuple[str, str], Row] = {}
     for paper in papers:
         for exhibit, trials in _trials(paper, results):
+            table = trial_table(paper, exhibit)
             for row, case, plant, controller in trials.declared:
-                label = f"{paper.id} {trial_label(exhibit, row, case)}"
-                found.setdefault((plant, controller), Row(label, plant, controller))
+                label = trial_label(paper, exhibit, row, case)
+                found.setdefault((plant, controller), Row(label, plant, controller, table))
     return list(found.values())
 
 
@@ -100,7 +117,7 @@ def unreadable_loops(papers: Iterable[Paper], results: Results) -> dict[str, str
                     parse_plant(plant)
                     parse_controller(controller)
                 except LoopError as error:
-                    found.setdefault(paper.id, f"{paper.id}/{trial_label(exhibit, row, case)}: {error}")
+                    found.setdefault(paper.id, f"{paper.id}/{exhibit}: {', '.join(filter(None, (row, case)))}: {error}")
     return found
 
 
