@@ -465,6 +465,14 @@ def test_a_program_that_ends_its_process_is_named(make: Make, leave: str) -> Non
         make(f"{HEAD}```{{.python .run}}\n{leave}\n```\n")
 
 
+@pytest.mark.parametrize("written", [markup, webpage])
+def test_what_steers_in_the_output_of_a_program_is_written_out(make: Make, written: Callable[[Document], str]) -> None:
+    program = "print('<' + chr(0xD800) + chr(0x1B) + chr(0) + chr(0x202E) + '>')"
+    made = written(make(f"{HEAD}```{{.python .run}}\n{program}\n```\n"))
+    assert all(piece in made for piece in ("ud800", "x1b", "x00", "u202e"))
+    assert not {"\x1b", "\x00", "\u202e"} & set(made)
+
+
 def test_what_a_program_changes_around_it_is_left_in_its_process(make: Make) -> None:
     program = "import os, sys\nos.environ['TOY'] = '1'\nos.chdir('/')\nsys.path.clear()\nprint('done')"
     here = Path.cwd()

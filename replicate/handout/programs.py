@@ -1,7 +1,8 @@
 """Programs in a handout are run, so that what is printed under them is what they print.
 
 A code block of the classes ``.python .run`` is executed when the handout is built; all programs of one
-handout share their names, as the cells of a notebook do. What a program writes is put below it.
+handout share their names, as the cells of a notebook do. What a program writes is put below it; characters that
+steer what shows them are written out.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from replicate.errors import ReplicateError, TemplateError
 from replicate.handout.formulas import line_of
 from replicate.handout.own_code import LONGEST_RUN, OwnCode
 from replicate.handout.tree import Blocks, Element, classes, transform
+from replicate.plain_text import visible
 from replicate.run.guarded import GuardedProcess
 
 LONGEST_LINE = 88  # characters; what fits between the margins
@@ -52,7 +54,7 @@ def run_programs(
             _check_width(line, f"{source}:{number}")
         if "run" not in classes(element):
             return None
-        written = runs.written(code, source, first)
+        written = visible(runs.written(code, source, first))
         for line in written.splitlines():
             _check_width(line, f"{source}:{first}: the output")
         program = {"t": "CodeBlock", "c": [["", ["python"], []], code]}
