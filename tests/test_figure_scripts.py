@@ -148,6 +148,47 @@ matplotlib.animation.FuncAnimation(other, lambda frame: None, frames=2).save("ot
 """
 
 
+PIXELS = """
+import numpy
+import matplotlib.pyplot as plt
+from matplotlib.patches import Rectangle
+fig, ax = plt.subplots()
+patch = ax.add_patch(Rectangle((0, 0), 1, 1))
+patch.set_agg_filter(lambda pixels, dpi: (pixels, 0, 0))  # matplotlib itself reads pixels while it draws this
+fig.canvas.draw()
+before = numpy.array(fig.canvas.renderer.buffer_rgba())
+patch.set_color("red")
+fig.canvas.draw()
+assert (numpy.asarray(fig.canvas.get_renderer().buffer_rgba()) != before).any()
+plt.close(fig)
+"""
+EXIT = """
+import atexit
+import matplotlib.pyplot as plt
+fig, ax = plt.subplots()
+line, = ax.plot([0, 1])
+plt.close(fig)
+atexit.register(fig.savefig, "last.png")
+@atexit.register
+def thick():
+    line.set_linewidth(7)
+    fig.savefig("thick.png")
+@atexit.register
+def never():
+    raise ValueError
+atexit.unregister(never)
+"""
+
+
+def test_what_a_renderer_hands_out_and_what_is_saved_at_exit_is_captured(folder: Folder) -> None:
+    folder.write("plot_pixels.py", PIXELS)
+    folder.write("plot_exit.py", EXIT)
+    status, _, err = folder.run("accept", "plots/plot_pixels.py", "plots/plot_exit.py", "--reason", "first")
+    assert (status, folder.accepted()) == (0, ["plots/plot_exit-1", "plots/plot_pixels-1", "plots/plot_pixels-2"]), err
+    assert (folder.path / "plots/last.png").is_file()
+    assert '"width": 7.0' in (folder.path / "figures/plots/plot_exit-1.json").read_text()
+
+
 def test_what_a_canvas_writes_or_hands_out_is_captured_once_and_the_frames_of_films_are_not(folder: Folder) -> None:
     folder.write("plot_canvas.py", CANVAS)
     status, _, err = folder.run("accept", "plots/plot_canvas.py", "--reason", "first")
@@ -172,6 +213,7 @@ FAILING = [
     ("x = 1\nraise ValueError('no\\nway')\n", ":2: ValueError: no way"),
     ("x = (\n", ":1: SyntaxError:"),
     ("import sys\nsys.exit(3)\n", ":2: ended with sys.exit(3)"),
+    ("import atexit\nimport matplotlib.pyplot as plt\nplt.plot([1])\natexit.register(lambda: 1 / 0)\n", ":4: Zero"),
     ("import os\nos._exit(7)\n", ": ended before its end, with status 7"),
     ("import os\nos.abort()\n", ": ended before its end, with status -6"),
     ("import matplotlib.pyplot as plt\nplt.plot([1])\nplt.close()\n", ": draws nothing"),

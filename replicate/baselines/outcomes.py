@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 from replicate.baselines.store import Store
@@ -19,6 +19,7 @@ Status = Literal["same", "changed", "new", "gone", "accepted", "failed", "not dr
 #: Statuses that an author has to look at; a failed one is not a difference but a broken run.
 DIFFERS = {"changed", "new", "gone"}
 
+_RENEWED = "is written in the present format, which says more"
 _UNREADABLE = "replaces a state that could not be read"
 _PICTURE_DPI = 60
 _MOST_INCHES = 100.0  # each way: of a larger figure there is no picture
@@ -116,6 +117,8 @@ def compared(store: Store, name: str, drawn: Drawn, where: str = "") -> Outcome:
 def accept(store: Store, outcome: Outcome, drawn: Drawn | None, reason: str, replaces: str | None = None) -> Outcome:
     """Make the new state of a figure the accepted one; one that is as accepted keeps its files.
 
+    Unless an earlier release wrote them, whose records cannot say all that is compared now.
+
     Parameters
     ----------
     drawn
@@ -142,7 +145,10 @@ def accept(store: Store, outcome: Outcome, drawn: Drawn | None, reason: str, rep
         )
         raise ReplicateError(msg)
     if outcome.status == "same":
-        return outcome
+        accepted = store.read(outcome.name)
+        if drawn is None or accepted is None or not accepted.record.outdated:
+            return outcome
+        outcome = replace(outcome, status="changed", changes=[_RENEWED], layers=["named"])
     if drawn is None:
         store.remove(outcome.name, reason)
     else:

@@ -6,6 +6,7 @@ Started as a process of its own: ``python -m replicate.baselines.script_run SCRI
 
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import runpy
@@ -13,7 +14,7 @@ import sys
 import textwrap
 import traceback
 from collections.abc import Callable
-from functools import partialmethod, wraps
+from functools import partial, partialmethod, wraps
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,9 @@ from replicate.errors import FigureError
 
 #: Methods of canvases that hand the pixels to the script, which may write them as it likes.
 _PIXELS = ("buffer_rgba", "tostring_argb", "tostring_rgb")
+
+#: What a renderer knows the figure by that is drawn with it.
+_DRAWN = "_figure_of_the_script"
 
 _LONGEST = 300
 
@@ -70,7 +74,7 @@ class Keeper:
         def save(owner: Any, *arguments: Any, **options: Any) -> Any:
             figure = getattr(owner, "figure", owner)
             # A film saves each of its frames.
-            film = sys._getframe(1).f_globals.get("__name__", "").startswith("matplotlib.animation")  # noqa: SLF001
+            film = _caller().startswith("matplotlib.animation")
             if id(figure) in self._saving:
                 return original(owner, *arguments, **options)
             self._saving.add(id(figure))
@@ -94,6 +98,19 @@ class Keeper:
             elif callable(method):
                 setattr(canvas, name, self.saving(method))
 
+    def reading(self, original: Callable[..., Any]) -> Callable[..., Any]:
+        """Return a method of renderers that hands over pixels, and keeps the figure if the script asks for them."""
+
+        @wraps(original)
+        def read(renderer: Any) -> Any:
+            result = original(renderer)
+            figure = getattr(renderer, _DRAWN, None)
+            if figure is not None and not _caller().startswith("matplotlib"):  # which asks while it draws
+                self.keep(figure)
+            return result
+
+        return read
+
     def keep_open(self) -> None:
         """Keep every figure that pyplot has open, and those of films of which nothing else was kept."""
         plt: Any = sys.modules.get("matplotlib.pyplot")
@@ -104,11 +121,17 @@ class Keeper:
                 self.keep(figure)
 
 
+def _caller() -> str:
+    """Return the name of the module that called the function that asks."""
+    return str(sys._getframe(2).f_globals.get("__name__", ""))  # noqa: SLF001
+
+
 def _watch(keeper: Keeper) -> None:
     """Stand between the script and the screen."""
     import matplotlib as mpl
     import matplotlib.pyplot as plt
     from matplotlib.backend_bases import FigureCanvasBase
+    from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
     from matplotlib.figure import Figure
 
     plt.switch_backend("agg")
@@ -128,6 +151,17 @@ def _watch(keeper: Keeper) -> None:
     for canvas in (FigureCanvasBase, *_below(FigureCanvasBase)):
         keeper.watch(canvas)
     FigureCanvasBase.__init_subclass__ = classmethod(begin)  # type: ignore[arg-type, assignment]
+    renderer_of: Any = FigureCanvasAgg.get_renderer
+
+    def get_renderer(canvas: Any) -> Any:
+        renderer = renderer_of(canvas)
+        setattr(renderer, _DRAWN, canvas.figure)
+        return renderer
+
+    FigureCanvasAgg.get_renderer = get_renderer  # type: ignore[method-assign]
+    for name in _PIXELS:
+        if hasattr(RendererAgg, name):
+            setattr(RendererAgg, name, keeper.reading(getattr(RendererAgg, name)))
     # Nobody clicks, and what is shown during a pause is a frame of a film.
     FigureCanvasBase.start_event_loop = lambda *_, **__: None  # type: ignore[method-assign]
     plt.pause = lambda *_, **__: None
@@ -140,12 +174,43 @@ def _below(kind: type) -> list[type]:
     return [found for below in direct for found in (below, *_below(below))]
 
 
+def _late() -> list[partial[Any]]:
+    """Return the list of what the script will have registered for its exit; this process ends before it would run."""
+    found: list[partial[Any]] = []
+    register, unregister = atexit.register, atexit.unregister
+
+    def keep(function: Any, *arguments: Any, **options: Any) -> Any:
+        if _caller() != "__main__":
+            return register(function, *arguments, **options)
+        found.append(partial(function, *arguments, **options))
+        return function
+
+    def drop(function: Any) -> None:
+        found[:] = [one for one in found if one.func != function]
+        unregister(function)
+
+    atexit.register, atexit.unregister = keep, drop  # type: ignore[assignment]
+    return found
+
+
 def run(script: Path, keeper: Keeper) -> str:
-    """Run a script as Python would; return what went wrong, in one line, or nothing."""
-    sys.argv = [str(script)]
-    sys.path[0] = str(script.parent)
+    """Run a script as Python would, to its exit; return what went wrong, in one line, or nothing."""
+    late = _late()
+    problem = _problem(lambda: runpy.run_path(str(script), run_name="__main__"), script)
+    if os.getpid() != keeper.process:
+        return problem
+    if not problem:
+        keeper.keep_open()
+    while late:
+        said = _problem(late.pop(), script)
+        problem = problem or said
+    return problem
+
+
+def _problem(function: Callable[[], object], script: Path) -> str:
+    """Call a function of the script; return what went wrong, in one line, or nothing."""
     try:
-        runpy.run_path(str(script), run_name="__main__")
+        function()
     except SystemExit as end:
         if end.code not in {None, 0}:
             return f"{script.name}:{_line(end, script)}: ended with sys.exit({end.code!r})"
@@ -155,7 +220,6 @@ def run(script: Path, keeper: Keeper) -> str:
         return f"{script.name}:{error.lineno or 1}: {type(error).__name__}: {error.msg}"
     except BaseException as error:  # noqa: BLE001  -- whatever the script raises is its own
         return f"{script.name}:{_line(error, script)}: {_one_line(error)}"
-    keeper.keep_open()
     return ""
 
 
@@ -176,6 +240,8 @@ def main() -> None:
     keeper = Keeper(folder)
     _watch(keeper)
     os.chdir(script.parent)
+    sys.argv = [str(script)]
+    sys.path[0] = str(script.parent)
     problem = run(script, keeper)
     if os.getpid() != keeper.process:  # the script has forked, and this is the copy
         os._exit(0)

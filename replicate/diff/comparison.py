@@ -215,8 +215,10 @@ def _compare_figures(paper: str, exhibit: str, before: FigureState, after: Figur
         changes.append(Change(paper, exhibit, "new", f"its picture, {shown}, is missing", "picture"))
     elif not is_picture(picture):
         changes.append(Change(paper, exhibit, "new", f"its picture, {shown}, is damaged", "picture"))
-    old = before.version < after.version or before.words is None
-    said = before.version == after.version and all(change.kind == "words" for change in changes)
+    older = before.record.outdated and not after.record.outdated
+    old = older or before.words is None
+    only_words = before.version == after.version and all(change.kind == "words" for change in changes)
+    said = only_words and (bool(changes) or not older)
     return ExhibitDiff(
         paper, exhibit, "figure", changes, found.unchanged, before, after, found.pairs, outdated=old, restated=said
     )

@@ -41,6 +41,7 @@ _FIRST = {
 #: What is kept with the first panel, but said of the figure.
 _WHOLE = "figure_"
 _CALLED = {
+    "depth": "projection in space",
     "view": "view (elevation, azimuth, roll)",
     "xcategories": "categories of the x axis",
     "ycategories": "categories of the y axis",

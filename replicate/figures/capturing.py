@@ -17,7 +17,7 @@ from replicate.figures.ink import Ink
 from replicate.figures.marks import Box, marks_of
 from replicate.figures.parts import Namer, Part
 from replicate.figures.readback import read_panel
-from replicate.figures.record import Record
+from replicate.figures.record import REVISION, Record
 from replicate.figures.recorder import Drawn
 from replicate.figures.stacking import Stack, box_around, extent
 from replicate.figures.sub_figures import in_order_of_place, names_of_sub_figures
@@ -79,7 +79,8 @@ def record_of(figure: Figure) -> Record:
             described[0] |= outside
         frame = Box.of(figure.bbox.extents)
         parts = [_entry(part, frame) for part in whole.parts.values()]
-    about: dict[str, Any] = {"size": [round(float(side), 3) for side in figure.get_size_inches()]} | fitted
+    size = [round(float(side), 3) for side in figure.get_size_inches()]
+    about: dict[str, Any] = {"revision": REVISION, "size": size} | fitted
     about |= stacks[id(figure)].over()
     return Record(about | {"parts": parts}, described, curves)
 

@@ -77,6 +77,10 @@ def _is_number(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
+def _is_count(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value > 0
+
+
 def _are_texts(value: object) -> bool:
     return isinstance(value, list) and all(map(_is_text, value))
 
@@ -162,10 +166,13 @@ _UNIT: _Field = (lambda value: value in _UNITS, "one of Y, M, h, m, s")
 _LIMITS: _Field = (_are_limits, "two different numbers")
 
 _FIELDS: dict[str, _Field] = {
-    **dict.fromkeys(("panel", "title", "xlabel", "ylabel", "xscale", "yscale", "figure_title", "projection"), _TEXT),
+    **dict.fromkeys(
+        ("panel", "title", "xlabel", "ylabel", "xscale", "yscale", "figure_title", "projection", "depth"), _TEXT
+    ),
     **dict.fromkeys(("legend", "figure_legend", "figure_texts", "points", "areas"), _TEXTS),
     **dict.fromkeys(("xlim", "ylim"), _LIMITS),
     **dict.fromkeys(("xunit", "yunit"), _UNIT),
+    "revision": (_is_count, "a whole number, at least 1"),
     "hidden": (_is_flag, "true or false"),
     "texts": (_are_placed, "a list of objects, each with text, x and y"),
     **dict.fromkeys(("thinned", "streams"), (_are_numbers_by_name, "numbers by name")),

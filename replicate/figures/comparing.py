@@ -13,6 +13,7 @@ from replicate.figures.axes import compare_axes
 from replicate.figures.curves import CurveComparison, compare_curves
 from replicate.figures.differences import Difference, same_number
 from replicate.figures.mark_pairs import Frame
+from replicate.figures.older_records import known_to_both
 from replicate.figures.pair import Pair
 from replicate.figures.panel_pairs import matched_panels
 from replicate.figures.part_names import names_of_texts
@@ -63,6 +64,7 @@ def compare_records(accepted: Record, new: Record) -> Comparison:
 
 
 def _compare(accepted: Record, new: Record) -> Comparison:
+    accepted, new = known_to_both(accepted, new)
     curves = compare_curves((accepted.curves, accepted.panels), (new.curves, new.panels))
     found = [*compare_axes(accepted.panels, new.panels), *curves.changes]
     if accepted.version > 1 and new.version > 1:  # the first version knew no parts

@@ -55,11 +55,6 @@ class CurveComparison:
     renamed: dict[tuple[str, str], str] = field(default_factory=dict)
     fresh: set[tuple[str, str]] = field(default_factory=set)
 
-    @property
-    def unchanged(self) -> int:
-        """Number of curves that are where they were."""
-        return sum(not pair.moved for pair in self.pairs)
-
 
 def compare_curves(before: tuple[Curves, Sequence[Axes]], after: tuple[Curves, Sequence[Axes]]) -> CurveComparison:
     """Compare the curves of a figure.

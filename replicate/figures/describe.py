@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -52,8 +53,8 @@ def describe(panel: str, axes: Axes, ink: Ink | None = None) -> dict[str, Any]:
         axes. Only where it applies: ``titles`` (if there are several), ``aspect``, ``hidden`` (axes that are switched
         off), ``projection``, ``units`` ("box": the coordinates of curves are fractions of the axes), ``xtable``
         (where values lie on an axis that is neither linear nor logarithmic), ``xkind`` ("date", "categories"),
-        ``xunit`` (what dates count since 1970, if not days), ``xcategories``, ``polar``, ``view`` and what belongs to
-        the third axis.
+        ``xunit`` (what dates count since 1970, if not days), ``xcategories``, ``polar``, ``view``, ``depth`` and what
+        belongs to the third axis.
     """
     legend = axes.get_legend() if hasattr(axes, "get_legend") else None
     said = said_titles(axes)
@@ -196,5 +197,12 @@ def _solid(axes: Any) -> dict[str, Any]:
         "zlabel": axes.get_zlabel(),
         "zlim": [number(limit) for limit in axes.get_zlim()],
         "view": [number(getattr(axes, part, 0.0)) for part in ("elev", "azim", "roll")],
+        "depth": _depth(axes),
         "proportions": [number(part) for part in getattr(axes, "_box_aspect", ())],
     }
+
+
+def _depth(axes: Any) -> str:
+    """Return how axes in space are projected; what is parallel is seen from infinitely far."""
+    length = float(getattr(axes, "_focal_length", 1.0))
+    return "orthographic" if math.isinf(length) else f"in perspective, focal length {length:.4g}"

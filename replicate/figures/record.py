@@ -1,7 +1,8 @@
 """The record of a figure: what it shows, as plain data with a version number, written as JSON and read back.
 
 ``schemas/figure-record.schema.json`` is its JSON Schema. Version 1, which only papers used, was the bare list of panels
-with the curves in a CSV beside it; version 2 adds everything that is drawn.
+with the curves in a CSV beside it; version 2 adds everything that is drawn. What a later
+revision of a version adds is in `replicate.figures.older_records`.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from replicate.figures.json_text import parse_json
 from replicate.figures.polylines import Points
 
 VERSION = 2
+#: Within the version: a later revision says more, and only that.
+REVISION = 2
 FORMAT = "figure record"
 
 
@@ -30,7 +33,7 @@ class Record:
     Attributes
     ----------
     figure
-        Of the figure as a whole: ``size`` in inches, ``parts``.
+        Of the figure as a whole: ``size`` in inches, ``parts``, the ``revision`` of what is said.
     panels
         One description for each axes, as in `replicate.figures.describe`, with its ``position`` and ``parts``.
     curves
@@ -43,6 +46,16 @@ class Record:
     panels: Sequence[Mapping[str, Any]] = ()
     curves: Mapping[tuple[str, str], Points] = field(default_factory=dict)
     version: int = VERSION
+
+    @property
+    def revision(self) -> int:
+        """Of its version; records had none at first."""
+        return int(self.figure.get("revision", 1))
+
+    @property
+    def outdated(self) -> bool:
+        """Whether the present version says more of a figure than this record can."""
+        return (self.version, self.revision) < (VERSION, REVISION)
 
     def to_json(self) -> str:
         """Return the record as JSON, the same bytes for the same record.
