@@ -23,6 +23,7 @@ from replicate.diff.comparison import compare as compare_all
 from replicate.errors import OutputError, ReplicateError
 from replicate.exhibits import Finding
 from replicate.exhibits.results import FigureResult, Results
+from replicate.figures.record import REVISION
 from replicate.run.library import Library
 from replicate.run.outcome import Outcome
 from replicate.verdicts.inputs import Inputs
@@ -466,6 +467,19 @@ def test_a_figure_that_was_accepted_without_words_is_read_as_before(accepted: Pa
     accept(outcome(data), accepted, "with words")
     assert path.read_bytes() == good
     assert not compare_all(outcome(data), accepted).outdated
+
+
+def test_a_figure_of_an_earlier_revision_is_outdated_until_it_is_accepted(accepted: Path, data: Path) -> None:
+    present = outcome(data, replace(figure(png=OTHER_FONTS), figure={"revision": REVISION}))
+    path = accepted / "toy/fig-1.json"
+    setattr(present.papers[0].exhibits["fig-1"], "title", "Other words")  # noqa: B010  -- of any kind, to mypy
+    accept(present, accepted, "in other words")  # and nothing else
+    assert "revision" not in json.loads(path.read_text())["figure"]
+    found = compare_all(present, accepted)
+    assert (found.lines, [diff.exhibit for diff in found.outdated]) == ([], ["fig-1"])
+    accept(present, accepted, "of this release")
+    assert json.loads(path.read_text())["figure"]["revision"] == REVISION
+    assert not compare_all(present, accepted).outdated
 
 
 def test_accepting_words_accepts_no_alteration_beside_them(accepted: Path, data: Path) -> None:
