@@ -175,6 +175,10 @@ class LoopTransfer:
         (n, n_slope), (d, d_slope) = horner_with_slope(num, s), horner_with_slope(den, s)
         return n_slope / n - d_slope / d - self.dead_time
 
+    def log_modulus(self, w: float) -> float:
+        """Evaluate log |L(i w)|."""
+        return float(np.log(np.abs(complex(self(1j * w)))))
+
     @cached_property
     def feedthrough(self) -> float:
         """|L| in the limit of infinite frequency (0 for retarded loops)."""

@@ -97,7 +97,7 @@ class FunctionTransfer(LoopTransfer):
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending, found on a grid."""
-        return crossings_of_one(self, loop_grid(self, self.beyond(0.5), per_decade=PER_DECADE))
+        return crossings_of_one(self)
 
     @cached_property
     def corner_frequencies(self) -> ComplexArray:
@@ -276,8 +276,7 @@ class SumTransfer(LoopTransfer):
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending, found on a grid; with feedthrough, up to its asymptote."""
-        end = self.beyond(max(0.5, 0.5 * (1.0 + self.feedthrough)))
-        return crossings_of_one(self, loop_grid(self, end, per_decade=PER_DECADE))
+        return crossings_of_one(self, max(0.5, 0.5 * (1.0 + self.feedthrough)))
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which sum |L_i(i w)| provably stays below ``level``."""
@@ -295,12 +294,9 @@ class SumTransfer(LoopTransfer):
         raise ImproperLoopError(msg)
 
 
-def crossings_of_one(transfer: LoopTransfer, w: Array) -> Array:
-    """Return the frequencies between those given, ascending, at which |L(i w)| = 1."""
-
-    def excess(x: float) -> float:
-        return float(np.log(np.abs(complex(transfer(1j * x)))))
-
-    level = np.log(np.abs(transfer(1j * w)))
-    changes = np.nonzero(level[:-1] * level[1:] < 0.0)[0]
-    return np.array([bracketed_root(excess, w[i], w[i + 1]) for i in changes])
+def crossings_of_one(transfer: LoopTransfer, level: float = 0.5) -> Array:
+    """Return the frequencies, ascending, at which |L(i w)| = 1, on a grid up to where it stays below a level."""
+    w = loop_grid(transfer, transfer.beyond(level), per_decade=PER_DECADE)
+    size = np.log(np.abs(transfer(1j * w)))
+    changes = np.nonzero(size[:-1] * size[1:] < 0.0)[0]
+    return np.array([bracketed_root(transfer.log_modulus, w[i], w[i + 1]) for i in changes])

@@ -147,16 +147,13 @@ def _all_crossovers(transfer: LoopTransfer) -> Array:
     with np.errstate(divide="ignore"):
         level = np.log(np.abs(transfer(1j * w)))
 
-    def excess(x: float) -> float:
-        return float(np.log(np.abs(complex(transfer(1j * x)))))
-
     found: list[float] = []
     for i in np.nonzero((level[:-1] < 0.0) != (level[1:] < 0.0))[0]:
         inside = roots[(roots > w[i]) & (roots <= w[i + 1])]
         if inside.size % 2:
             found += inside.tolist()
         else:
-            found.append(bracketed_root(excess, w[i], w[i + 1]))
+            found.append(bracketed_root(transfer.log_modulus, w[i], w[i + 1]))
     return np.unique(found)
 
 

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from replicate.loops.closed_loop_poles.pole_starts import generator_eigenvalues
 from replicate.loops.controller import PID
 from replicate.loops.errors import ImproperLoopError
-from replicate.loops.frequency_domain.frequency_grids import loop_grid
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
-from replicate.loops.frequency_domain.other_transfers import PER_DECADE, crossings_of_one
+from replicate.loops.frequency_domain.other_transfers import crossings_of_one
 from replicate.loops.plant import Plant
 
 Array = NDArray[np.float64]
@@ -103,7 +102,7 @@ class PredictorTransfer(LoopTransfer):
     @cached_property
     def gain_crossovers(self) -> Array:
         """All frequencies at which |L(i w)| = 1, ascending, found on a grid."""
-        return crossings_of_one(self, loop_grid(self, self.beyond(0.5), per_decade=PER_DECADE))
+        return crossings_of_one(self)
 
     def beyond(self, level: float) -> float:
         """Return a frequency beyond which |L(i w)| provably stays below ``level``.
