@@ -121,6 +121,22 @@ def test_a_papers_handout_is_stopped_and_named(
     assert not list(Path.cwd().rglob("*.html"))
 
 
+@pytest.mark.parametrize("command", [SET, ("handout", "lab", "--stress", "3")])
+def test_an_interrupt_while_exercises_are_checked_says_that_nothing_was_changed(
+    replicate: Run, folder: Path, command: tuple[str, ...]
+) -> None:
+    interrupt = f"import os, time; os.kill({os.getpid()}, {int(signal.SIGINT)}); time.sleep(60)"
+    varied_handout.write(folder)
+    home = Path("mine")
+    home.mkdir()
+    (home / "exercise.md").write_text("## Title\nWhat?\n", encoding="utf-8")
+    (home / "exercise.py").write_text(EXERCISE.format(**NOTHING | {"in_answers": interrupt}), encoding="utf-8")
+    status, _, errors = replicate(*command, "-j1", "--exercises", "mine")
+    assert status == 130
+    assert errors == f"{Path('build')}: interrupted; nothing was changed there\n"
+    assert not list(Path.cwd().rglob("*.html"))
+
+
 def numbers(count: int) -> Iterator[int]:
     """Yield numbers, as a function that is streamed does; the last one is told."""
     yield from range(count - 1)

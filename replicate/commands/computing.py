@@ -130,15 +130,39 @@ def _executor(backend: str, scheduler: str | None, unit_timeout: float) -> Execu
 
 def computing(command: Callable[..., Returned]) -> Callable[..., Returned]:
     """Return a command with the options of all that compute, in place of its first argument."""
-    shared = _with_types(_options)
-    own = _with_types(command)[1:]
+    first, *own = _with_types(command)
+    return _with_options(command, first.name, _options, [*own, *_with_types(_options)])
+
+
+def taking(options: type) -> Callable[[Callable[..., Returned]], Callable[..., Returned]]:
+    """Return a decorator for a command that takes an object of options: each attribute becomes an option.
+
+    Parameters
+    ----------
+    options
+        A dataclass whose fields are annotated as typer's options are; one argument of the command is of it.
+    """
+
+    def decorated(command: Callable[..., Returned]) -> Callable[..., Returned]:
+        own = _with_types(command)
+        place, name = next((place, one.name) for place, one in enumerate(own) if one.annotation is options)
+        return _with_options(command, name, options, [*own[:place], *_with_types(options), *own[place + 1 :]])
+
+    return decorated
+
+
+def _with_options(
+    command: Callable[..., Returned], name: str, make: Callable[..., Any], parameters: list[inspect.Parameter]
+) -> Callable[..., Returned]:
+    """Return a command with the parameters given, one of whose arguments is made of some of them."""
+    options = [one.name for one in _with_types(make)]
 
     @functools.wraps(command)
     def with_options(**values: Any) -> Returned:
-        run = _options(**{option.name: values.pop(option.name) for option in shared})
-        return command(run, **values)
+        made = make(**{option: values.pop(option) for option in options})
+        return command(**{name: made}, **values)
 
-    parameters = [one.replace(kind=inspect.Parameter.KEYWORD_ONLY) for one in (*own, *shared)]
+    parameters = [one.replace(kind=inspect.Parameter.KEYWORD_ONLY) for one in parameters]
     with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     with_options.__annotations__ = {one.name: one.annotation for one in parameters}
     return with_options

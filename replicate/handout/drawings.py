@@ -88,7 +88,7 @@ class DrawnLater(Drawing):
     def __init__(self, wanted: Wanted, alt: str, width: float, variations: Mapping[str, Variation]) -> None:
         self.__dict__.update(name=wanted.figure, alt=alt, width=width)  # the fields of a frozen class
         self.wanted = wanted
-        self._draw: Callable[[Wanted], tuple[bytes, ...]] = lambda one: one.drawn(variations)
+        self._draw: Callable[[Wanted], tuple[bytes, ...]] = partial(Wanted.drawn, variations=variations)
         self._made: dict[Kind, bytes] = {}
 
     @property

@@ -101,8 +101,7 @@ def make(order: Order, results: Results, verdicts: Sequence[VerdictRow]) -> Iter
         )
         return
     ((paper, sheet),) = opened
-    progress = lambda done, total: tell((done, total))  # noqa: E731
-    class_set = ClassSet(paper, results, verdicts, order.solutions == (True,), sheet, order.file_format, progress)
+    class_set = ClassSet(paper, results, verdicts, order.solutions == (True,), sheet, order.file_format, _tell_progress)
     if order.again is not None:
         yield from class_set.again(order.again)
         return
@@ -111,6 +110,10 @@ def make(order: Order, results: Results, verdicts: Sequence[VerdictRow]) -> Iter
         if len(order.students) > AT_ONCE:  # otherwise its process would not have begun before all is drawn
             class_set = replace(class_set, artist=artist)
         yield from class_set.files(order.students, order.seed, bank)
+
+
+def _tell_progress(done: int, total: int) -> None:
+    tell((done, total))
 
 
 def _opened(order: Order) -> list[tuple[Paper, Sheet]]:

@@ -50,17 +50,24 @@ def staged(
     with _room(target) as fresh:
         manifest = Manifest.read(target)
         refuse_foreign(target, manifest, dict.fromkeys((*manifest.of(part, renews), *expects)))
-        try:
+        with unchanged(target):
             yield fresh
-        except KeyboardInterrupt:
-            say(f"{target}: interrupted; nothing was changed there")
-            raise
         written = files_below(fresh)
         gone = manifest.obsolete(part, written, renews)
         refuse_foreign(target, manifest, (*written, *gone), fresh)
         after = manifest.renewed(part, {name: digest(fresh / name) for name in written}, gone)
         write(fresh / MANIFEST, after.text().encode())
         swap(target, (*written, MANIFEST), gone)
+
+
+@contextmanager
+def unchanged(target: Path) -> Iterator[None]:
+    """Say of a run that the user interrupts inside the ``with`` block that a folder is as it was."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        say(f"{target}: interrupted; nothing was changed there")
+        raise
 
 
 def files_of(target: Path, part: str) -> list[str]:
