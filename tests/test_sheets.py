@@ -47,6 +47,19 @@ def test_points_title_and_date_are_on_the_sheet(tmp_path: Path, monkeypatch: pyt
     assert "Week 3: «PI» &".encode("utf-16-be").hex() in pdf(document).hex() or b"Week 3" in pdf(document)
 
 
+def test_a_page_names_formulas_in_headings_and_keeps_them_with_their_punctuation(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    toy = toy_class.class_set(tmp_path, monkeypatch)
+    page = webpage(edition(toy.paper, toy.results, (), solutions=True, sheet=toy.sheet))
+    (why,) = re.findall(r"<h3>[^\n]*Why <span class=\"tied\">(<math .*?</math>)\?</span>", page)
+    assert re.search(r"<math [^>]*aria-label=\"([^\"]*)\"", why)[1] == "x is less than y"  # type: ignore[index]
+    ends = re.findall(r"display=\"inline\"[^>]*>(?:(?!</math>).)*</math>([,.;:!?)][^\n]{,7})", page)
+    assert len(ends) > 2
+    assert all(end[1:] == "</span>" for end in ends)
+    assert ".tied { white-space: nowrap; }" in page
+
+
 def test_a_german_sheet_with_english_text(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     toy = toy_class.class_set(tmp_path, monkeypatch)
     document = edition(toy.paper, toy.results, (), solutions=True, sheet=Sheet(language=language("de"), points=(1.0,)))

@@ -13,7 +13,8 @@ _FORMULA = re.compile(
     r'<math display="(block|inline)"><semantics>(.*?)<annotation[^>]*>(.*?)</annotation></semantics></math>', re.DOTALL
 )
 _BESIDE = re.compile(
-    '(?P<opens>[(\\[“‘]?)(?P<formula><math display="inline"[^>]*>.*?</math>)(?P<ends>[-,.;:!?)\\]”’%]*)', re.DOTALL
+    '(?P<opens>[(\\[“‘]?)(?P<formula><math [^>]*?display="inline"[^>]*>.*?</math>)(?P<ends>[-,.;:!?)\\]”’%]*)',
+    re.DOTALL,
 )
 _CALLED = re.compile(r"<(a|h[1-6]|th|summary|label)\b[^>]*>.*?</\1>", re.DOTALL)
 _SHOWN = re.compile(
@@ -66,6 +67,8 @@ def in_place(page: str) -> str:
     '<span class="tied">(<math display="inline"><mi>k</mi></math>,</span> that is'
     >>> in_place('<a href="#k">its <math display="inline"><mi>k</mi></math></a>')
     '<a href="#k">its <math aria-label="k" display="inline"><mi>k</mi></math></a>'
+    >>> in_place('<h2><math alttext="k squared" display="inline"><msup><mi>k</mi><mn>2</mn></msup></math></h2>')[:49]
+    '<h2><math aria-label="k squared" alttext="k squar'
     """
     page = _BESIDE.sub(lambda found: _tied(*found.groups()), page)
     return _CALLED.sub(lambda found: _SHOWN.sub(_named, found[0]), page)

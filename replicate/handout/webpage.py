@@ -7,6 +7,7 @@ import html
 from markupsafe import Markup
 
 import replicate
+from replicate.display.formulas import in_place
 from replicate.display.inline_svg import inline_svg
 from replicate.display.rendering import html_environment
 from replicate.display.source_code import highlight
@@ -23,6 +24,7 @@ def webpage(document: Document) -> str:
     """Return the page as HTML."""
     blocks = transform(document.blocks, lambda element: _for_html(element, document))
     (body,) = written([blocks], "html", "--shift-heading-level-by=1")
+    body = in_place(body)
     return visible(
         html_environment()
         .get_template(TEMPLATE)
