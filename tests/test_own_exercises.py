@@ -142,6 +142,12 @@ def test_without_original_numbers_the_shared_handout_has_drawn_ones(
             ("def variant", f"{FIGURE}figures = {{'f': VariedFigure('A', 'B', print, (3,))}}\n\n\ndef variant"),
             r"mine/exercise\.py:5: .* figure 'A': size is \(3,\); expected",
         ),
+        (
+            ("def variant", "require = {}\n\n\ndef variant"),
+            r"mine/exercise\.py:4: 'require' is used nowhere, and no name of a part of an exercise; write 'requires'",
+        ),
+        (("def variant", "originals = {'x': 3}\n\n\ndef variant"), r"mine/exercise\.py:4: .*; write 'original'"),
+        (("def variant", "def show(inputs):\n    return {}\n\n\ndef variant"), r"mine/exercise\.py:4: .* 'shown'"),
         (("def variant", "stated = 3\n\n\ndef variant"), r"mine/exercise\.py:4: 'stated' is 3, allowed: a text"),
         (("def variant", "requires = 3\n\n\ndef variant"), r"mine/exercise\.py:4: 'requires' is 3, allowed: a dict"),
         (("def variant", "1 / 0\n\n\ndef variant"), r"mine/exercise\.py:4: the program fails: ZeroDivisionError"),
@@ -169,6 +175,12 @@ def test_what_is_wrong_in_the_program_is_one_line(tmp_path: Path, change: tuple[
             "## T\n\nAs\n{{ figure('fig-1') }}\nshows\n",
             r"mine/exercise\.md:4: a figure or table must begin a paragraph",
         ),
+        (
+            "::: exercise\n## T\n\nx\n\n::: exercise\n## U\n:::\n:::\n",
+            r"mine/exercise\.md:6: an exercise begins inside another; end that first",
+        ),
+        ("## T\n\nx\n\n::: {.exercise}\n## U\n:::\n", r"mine/exercise\.md:5: the file is one exercise; leave this"),
+        ("::: exercise\n## T\n:::\n\nLost.\n", r"mine/exercise\.md:1: the file is one exercise; leave this begin"),
         ("## T\n\n- {{ figure('fig-1') }}\n", r"mine/exercise\.md:3: a figure or table must begin a paragraph"),
         (
             "## T\n\nx\n[y](javascript:z)\n",
@@ -187,6 +199,22 @@ def test_what_is_wrong_in_the_text_is_named_with_its_line(
     toy = toy_class.class_set(tmp_path, monkeypatch, sheet=Sheet(own=own))
     with pytest.raises(ReplicateError, match=message):
         edition(toy.paper, toy.results, (), solutions=True, sheet=toy.sheet)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("return {", "file, state = 1, 2\n    return {"),  # of one function alone
+        ("def variant", "figure = 7\nprint(figure, end='')\n\n\ndef variant"),
+        ('inputs["x"] / 7, digits=3)', 'inputs["x"] / state(), digits=3)\n\n\ndef state():\n    return 7\n'),
+        ("def variant", "stated, state = 'Three digits.', 'Bavaria'\n\n\ndef variant"),
+        ("from replicate", "\N{BYTE ORDER MARK}from replicate"),
+        ("def variant", "from os import stat as state\n_file = __file__\n\n\ndef variant"),
+    ],
+)
+def test_other_names_of_a_program_are_its_own(tmp_path: Path, change: tuple[str, str]) -> None:
+    (found,) = own_exercises(exercise(tmp_path, program=PROGRAM.replace(*change)))
+    assert found.name == "mine"
 
 
 def test_a_folder_that_is_none(tmp_path: Path) -> None:

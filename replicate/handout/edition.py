@@ -21,7 +21,7 @@ from replicate.handout.formulas import Converted, Formula, FormulaError, convert
 from replicate.handout.own_exercises import OwnExercise
 from replicate.handout.placing import CLOSE, OPEN, Placed, Placing
 from replicate.handout.programs import run_programs
-from replicate.handout.reading import Lines, read
+from replicate.handout.reading import Lines, begin_of_exercise, read
 from replicate.handout.sheet import Sheet
 from replicate.handout.tree import Blocks, Element, attribute, classes, div, elements, plain, string, text_of, transform
 from replicate.languages import Language, language
@@ -197,14 +197,25 @@ def _own_text(own: OwnExercise, prose: Callable[..., Prose], placings: Sequence[
     """Fill in and read a lecturer's own exercise; its Div has the name under which its numbers vary."""
     filled = [prose(one.functions_of(own)).render_lines(own.text, own.source) for one in placings]
     found: list[Blocks] = []
-    for blocks in read(filled, own.source):
-        content = blocks[0]["c"][1] if blocks and "exercise" in classes(blocks[0]) else blocks
+    for blocks, lines in zip(read(filled, own.source), filled, strict=True):
+        content = _own_content(blocks, own, lines)
         if not content or content[0]["t"] != "Header":
             msg = f"{own.source}:1: an exercise must begin with its title, a heading"
             raise TemplateError(msg)
         content[0]["c"][1][2].append(["vary", own.name])
         found.append([div(content, "exercise")])
     return _Text(own.source, filled, found)
+
+
+def _own_content(blocks: Blocks, own: OwnExercise, lines: Lines) -> Blocks:
+    """Return what an own exercise holds, which need not be a block ``exercise``, but can be all of one."""
+    if len(blocks) == 1 and "exercise" in classes(blocks[0]):
+        content: Blocks = blocks[0]["c"][1]
+        return content
+    if any("exercise" in classes(element) for element in elements(blocks)):
+        msg = f"{own.source}:{begin_of_exercise(1, lines)}: the file is one exercise; leave this begin of a block out"
+        raise TemplateError(msg)
+    return blocks
 
 
 def _holds(text: _Text, number: int, tex: str) -> bool:

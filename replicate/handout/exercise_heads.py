@@ -8,10 +8,10 @@ from typing import Any
 from replicate.errors import ReplicateError, TemplateError, listed
 from replicate.exhibits import Paper
 from replicate.exhibits.exercises import Exercises
+from replicate.handout.reading import EXERCISE
 from replicate.handout.sheet import Sheet
 from replicate.handout.tree import Blocks, Element, classes, elements, string, text_of, transform
 
-_FENCE = re.compile(r"^:{3,}[ \t]*(?:exercise\b|\{[^}\n]*\.exercise\b)", re.MULTILINE)
 _LOOP = re.compile(r"\{%-?\s*for\b")
 _ATTRIBUTES = ("tool", "vary", "fixed", "plot")
 _LEVEL = 2  # below the section that they stand in, whatever the text writes
@@ -86,7 +86,7 @@ def check_sheet(paper: Paper, sheet: Sheet) -> None:
     """
     text = (paper.folder() / "handout.md").read_text(encoding="utf-8")
     if not _LOOP.search(text):
-        chosen(sheet, len(_FENCE.findall(text)) + len(sheet.own), f"{paper.id}/handout.md")
+        chosen(sheet, len(EXERCISE.findall(text)) + len(sheet.own), f"{paper.id}/handout.md")
 
 
 def _head(title: list[Element], number: int, tool: str, points: float | None, sheet: Sheet) -> list[Any]:

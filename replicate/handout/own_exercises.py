@@ -8,10 +8,12 @@ several by name; it may define ``original``, ``requires``, ``shown(inputs)``, ``
 
 from __future__ import annotations
 
+import ast
 import re
 import runpy
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -24,6 +26,7 @@ from replicate.plain_text import read_text
 
 TEXT, PROGRAM = "exercise.md", "exercise.py"
 BESIDE = "exercises"  # the folder beside notebooks in which their programs are
+_NEARLY = 0.8  # how alike a misspelt name is to the one that is meant, from 0 to 1
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*")
 _OPTIONAL: dict[str, tuple[Any, Callable[[Any], bool], str]] = {
     "original": (None, lambda value: value is None or isinstance(value, Mapping), "a dictionary of inputs"),
@@ -131,6 +134,7 @@ def own_variation(program: Path, name: str) -> Variation:
     code = OwnCode(str(program), source)
     with code.running("the program"):
         defined = runpy.run_path(str(program), run_name=f"exercise {name}")
+    _check_names(defined, program, source)
     values = {field: defined.get(field, default) for field, (default, _, _) in _OPTIONAL.items()}
     for field, (_, holds, allowed) in _OPTIONAL.items():
         if not holds(values[field]):
@@ -169,6 +173,25 @@ def own_variation(program: Path, name: str) -> Variation:
     variation.answers(drawn)
     variation.answers(original)
     return variation
+
+
+def _check_names(defined: Mapping[str, Any], program: Path, source: str) -> None:
+    """Refuse a name that is used nowhere and is nearly one that exercises may define, and do not."""
+    bound: dict[str, int] = {}
+    used = set()
+    for node in ast.walk(ast.parse(program.read_bytes())):
+        match node:
+            case ast.FunctionDef(name=name) | ast.Name(id=name, ctx=ast.Store()):
+                bound.setdefault(name, node.lineno)
+            case ast.Name(id=name):
+                used.add(name)
+    absent = [field for field in _OPTIONAL if field not in defined]
+    for name in sorted(defined.keys() & bound.keys() - used, key=bound.__getitem__):
+        near = get_close_matches(name.lower(), absent, n=1, cutoff=_NEARLY)
+        if near and not name.startswith("_"):
+            place = f"{source}:{bound[name]}"
+            msg = f"{place}: '{name}' is used nowhere, and no name of a part of an exercise; write '{near[0]}'"
+            raise ReplicateError(msg)
 
 
 def _defining(field: str) -> str:

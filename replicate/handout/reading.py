@@ -31,6 +31,7 @@ _FOREIGN = {
     "Image": "an image from a file",
 }
 BLOCKS = ("exercise", "key", "lead", "solution")  # what a text may begin with ``:::``
+EXERCISE = re.compile(r"^:{3,}[ \t]*(?:exercise\b|\{[^}\n]*\.exercise\b)", re.MULTILINE)  # the begin of its block
 _MARK = "\ue007"  # between two texts
 _FENCE = ":::"
 _WORD_FENCE = '"c":":::'  # in pandoc's JSON: the begin of a block that it took for words of the paragraph before
@@ -105,7 +106,14 @@ def _joined_fence(lines: Lines) -> int:
     return next(found, 1)
 
 
+def begin_of_exercise(number: int, lines: Lines) -> int:
+    """Return the line in which the block of an exercise begins, counted from one; 1 if there are fewer."""
+    found = [line for text, line in lines if EXERCISE.match(text)]
+    return found[number - 1] if number <= len(found) else 1
+
+
 def _check(blocks: Blocks, lines: Lines, source: str) -> None:
+    number = 0
     for element in elements(blocks):
         if element["t"] in _FOREIGN:
             raise _refused(element, lines, source)
@@ -117,6 +125,12 @@ def _check(blocks: Blocks, lines: Lines, source: str) -> None:
             line = next((number for text, number in lines if re.match(rf":::.*\b{re.escape(name)}\b", text)), 1)
             msg = f"{source}:{line}: no block '{name}'; allowed: {', '.join(BLOCKS)}"
             raise TemplateError(msg)
+        if "exercise" in classes(element):
+            number += 1
+            if any("exercise" in classes(inside) for inside in elements(element["c"][1])):
+                line = begin_of_exercise(number + 1, lines)
+                msg = f"{source}:{line}: an exercise begins inside another; end that first"
+                raise TemplateError(msg)
 
 
 def _refused(element: Element, lines: Lines, source: str) -> TemplateError:
