@@ -22,12 +22,14 @@ from replicate.exhibits.exercises import Exercises
 from replicate.exhibits.results import FigureResult, Results, TableResult
 from replicate.handout import handouts, with_handout
 from replicate.handout.edition import Document, edition
+from replicate.handout.exercise_heads import check_sheet
 from replicate.handout.formulas import convert
 from replicate.handout.placing import exercises_of
 from replicate.handout.printout import markup, pdf
 from replicate.handout.qti import qti_package
 from replicate.handout.questions import questions_of
 from replicate.handout.row_heads import with_row_heads
+from replicate.handout.sheet import Sheet
 from replicate.handout.slides import slides
 from replicate.handout.tree import elements
 from replicate.handout.webpage import webpage
@@ -337,6 +339,18 @@ def test_a_paper_without_handout(tmp_path: Path) -> None:
     paper = synthetic.paper(tmp_path)
     with pytest.raises(TemplateError, match=r"toy/handout\.md: the paper has no handout"):
         with_handout([paper])
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [(b"# Toy\n\ncaf\xe9\n", r"toy/handout\.md:3: is not UTF-8 text"), ("# Toy".encode("utf-16"), ":1: is not UTF-8")],
+)
+def test_a_text_that_cannot_be_read_is_named_before_anything_is_computed(
+    tmp_path: Path, content: bytes, said: str
+) -> None:
+    (tmp_path / "handout.md").write_bytes(content)
+    with pytest.raises(TemplateError, match=said):
+        check_sheet(synthetic.paper(tmp_path), Sheet())
 
 
 # ------------------------------------------------------------------------------------------- what stops the build

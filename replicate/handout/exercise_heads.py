@@ -11,6 +11,7 @@ from replicate.exhibits.exercises import Exercises
 from replicate.handout.reading import EXERCISE
 from replicate.handout.sheet import Sheet
 from replicate.handout.tree import Blocks, Element, classes, elements, string, text_of, transform
+from replicate.plain_text import read_text
 
 _LOOP = re.compile(r"\{%-?\s*for\b")
 _ATTRIBUTES = ("tool", "vary", "fixed", "plot")
@@ -83,10 +84,13 @@ def check_sheet(paper: Paper, sheet: Sheet) -> None:
     ------
     ReplicateError
         As `chosen`. A text that makes its exercises in a loop is left to the build.
+    TemplateError
+        If the text cannot be read; the message has the line.
     """
-    text = (paper.folder() / "handout.md").read_text(encoding="utf-8")
+    source = f"{paper.id}/handout.md"
+    text = read_text(paper.folder() / "handout.md", source, TemplateError)
     if not _LOOP.search(text):
-        chosen(sheet, len(EXERCISE.findall(text)) + len(sheet.own), f"{paper.id}/handout.md")
+        chosen(sheet, len(EXERCISE.findall(text)) + len(sheet.own), source)
 
 
 def _head(title: list[Element], number: int, tool: str, points: float | None, sheet: Sheet) -> list[Any]:
