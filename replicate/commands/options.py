@@ -81,7 +81,10 @@ def not_shared(folder: Path) -> Path:
     OutputError
         If everything else lies in it: the root of a disk, or the user's home.
     """
-    place = folder.resolve()
+    try:
+        place = folder.resolve()
+    except RuntimeError:  # links in a circle, as Python before 3.13 has it: whoever opens the folder says so
+        return folder
     shared = {Path(place.anchor): "the root of a disk"}
     with suppress(RuntimeError):  # a user whom the system does not know
         shared[Path.home().resolve()] = "the user's home"
