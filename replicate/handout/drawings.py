@@ -88,7 +88,8 @@ class DrawnLater(Drawing):
     def __init__(self, wanted: Wanted, alt: str, width: float, variations: Mapping[str, Variation]) -> None:
         self.__dict__.update(name=wanted.figure, alt=alt, width=width)  # the fields of a frozen class
         self.wanted = wanted
-        self._draw: Callable[[Wanted], tuple[bytes, ...]] = partial(Wanted.drawn, variations=variations)
+        self._variations = variations
+        self._draw: Callable[[Wanted], tuple[bytes, ...]] = self._drawn_here
         self._made: dict[Kind, bytes] = {}
 
     @property
@@ -116,6 +117,9 @@ class DrawnLater(Drawing):
         if kind not in self._made:
             self._made.update(zip(self.wanted.kinds, self._draw(self.wanted), strict=True))
         return self._made[kind]
+
+    def _drawn_here(self, wanted: Wanted) -> tuple[bytes, ...]:
+        return wanted.drawn(self._variations)
 
 
 def have_drawn(pictures: Iterable[tuple[Drawing, Kind]], artist: Artist | None) -> None:
