@@ -62,7 +62,8 @@ class Plant(PlantViews, SetOnce):
         top = checks.coefficients("the plant's numerator", num)
         bottom = checks.coefficients("the plant's denominator", den)
         if top.size > bottom.size:
-            msg = f"the plant must be proper: numerator degree {top.size - 1} exceeds denominator degree {bottom.size - 1}"  # noqa: E501
+            degrees = f"numerator degree {top.size - 1} exceeds denominator degree {bottom.size - 1}"
+            msg = f"the plant must be proper: {degrees}"
             raise LoopError(msg)
         with np.errstate(over="ignore", under="ignore"):  # looked for below
             self._set(top / bottom[0], bottom / bottom[0], checks.non_negative("the dead time", dead_time))

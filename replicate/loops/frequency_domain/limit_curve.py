@@ -87,7 +87,8 @@ class LimitCurve:
         LoopError
             Always.
         """
-        msg = f"the {what} is not known: |L| does not vanish at high frequency, and of its dead times only some belong together"  # noqa: E501
+        why = "|L| does not vanish at high frequency, and of its dead times only some belong together"
+        msg = f"the {what} is not known: {why}"
         raise LoopError(msg)
 
     @property

@@ -59,7 +59,8 @@ def unstable_poles(transfer: LoopTransfer) -> int:
     if transfer.feedthrough >= 1.0 and not transfer.is_polynomial:
         if isinstance(transfer.limit_curve, LimitTorus):
             transfer.limit_curve.refuse("number of unstable poles")
-        msg = f"|L| tends to {transfer.feedthrough:g} >= 1 at infinite frequency: the loop has infinitely many unstable poles"  # noqa: E501
+        why = f"|L| tends to {transfer.feedthrough:g} >= 1 at infinite frequency"
+        msg = f"{why}: the loop has infinitely many unstable poles"
         raise ImproperLoopError(msg)
     if transfer.is_polynomial:
         roots = np.roots(np.polyadd(transfer.den, transfer.num))

@@ -119,7 +119,8 @@ class Signal(SignalViews, Piecewise):
         width = band * (abs(self.final) if self.final else 1.0)
         error = np.abs(self._samples - self.final)
         if error[-1, -1] > width:
-            msg = f"the response has not settled within {band:g} of {self.final:g} by t = {self.horizon:g}; compute a longer one"  # noqa: E501
+            where = f"within {band:g} of {self.final:g} by t = {self.horizon:g}"
+            msg = f"the response has not settled {where}; compute a longer one"
             raise NotSettledError(msg)
         near = error.max(axis=1) + MARGIN * np.ptp(self._samples, axis=1) > width
         for piece in np.nonzero(near)[0][::-1]:

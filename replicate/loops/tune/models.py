@@ -31,6 +31,11 @@ class LagModel:
         L, with what a reduction has added to it.
     integrators
         Number of poles at s = 0.
+
+    Examples
+    --------
+    >>> LagModel(gain=2.0, time_constants=(4.0, 1.0), dead_time=0.5, integrators=0)  # 2 e^{-s/2}/((4s + 1)(s + 1))
+    LagModel(gain=2.0, time_constants=(4.0, 1.0), dead_time=0.5, integrators=0)
     """
 
     gain: float

@@ -61,6 +61,14 @@ def load_rules(source: Traversable, variant: str = PRINTED) -> dict[str, TuningR
     ------
     TuningRuleError
         If a rule is incomplete, given twice, or a formula cannot be read; the message names file and rule.
+
+    Examples
+    --------
+    The file of classical rules that comes with the project:
+
+    >>> rules = load_rules(importlib.resources.files("replicate.loops.tune") / "classical_rules.toml")
+    >>> rules["ziegler-nichols"].name
+    'Ziegler-Nichols, reaction curve, PI'
     """
     rules: dict[str, TuningRule] = {}
     for record in tomllib.loads(source.read_text(encoding="utf-8")).get("rule", []):
@@ -172,6 +180,11 @@ def marked_rules() -> list[dict[str, Any]]:
     Each has ``name``, ``process`` (``lag`` or ``integrator``), ``reduces`` (whether the half rule comes first),
     ``where`` (pairs of symbol and formula, in order), ``Kp``, ``Ki``, and for one case of several ``holds``:
     quantity, low, high.
+
+    Examples
+    --------
+    >>> sorted({rule["process"] for rule in marked_rules()})
+    ['integrator', 'lag']
     """
     return [_marked(record) for record in _records(FIRST_ORDER)]
 

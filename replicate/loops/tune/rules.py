@@ -108,6 +108,17 @@ class TuningRule:
         What else the formulas use, in order; each counts where no such parameter is given.
     unit
         What the gains are multiplied by, where the rule is made for a process of another gain; `None` for 1.
+
+    Examples
+    --------
+    A rule of one's own, with the closed loop as fast as the process, evaluated exactly:
+
+    >>> from fractions import Fraction
+    >>> from replicate.loops.tune import formula
+    >>> rule = TuningRule("own", "Closed loop as fast as the process", formula("T/(K*(T + L))"), formula("T"))
+    >>> gains = rule.evaluate(K=Fraction(1), T=Fraction(3), L=Fraction(1))
+    >>> gains.kp, gains.ti
+    (Fraction(3, 4), Fraction(3, 1))
     """
 
     id: str
