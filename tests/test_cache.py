@@ -138,6 +138,25 @@ def test_whatever_a_result_depends_on_makes_it_stale_and_is_named(
     assert why(tmp_path / "cache", TABLE_2) == ({OF_TABLE_2: said} if said else {})
 
 
+def test_what_changes_in_a_module_recomputes_the_exhibits_that_use_it(site: Path, tmp_path: Path) -> None:
+    paper = site / "lab_paper"
+    (paper / "more.py").write_text(
+        "from lab_paper import paper\n\n\n"
+        "@paper.figure('fig-3', 'Three')\ndef _three(figure):\n    figure.add_subplot().plot([0, 1])\n"
+    )
+    face = paper / "__init__.py"
+    face.write_text(face.read_text().replace('"exhibits",', '"exhibits", "more",'))
+    both = [*TABLE_2, ("lab", "fig-3")]
+    assert set(why(tmp_path / "cache", both)) == {OF_TABLE_2, "lab/fig-3"}
+    with (paper / "exhibits.py").open("a") as file:
+        file.write("\n")
+    assert why(tmp_path / "cache", both) == {OF_TABLE_2: "lab/exhibits.py has changed"}
+    with (paper / "more.py").open("a") as file:
+        file.write("\n")
+    changed = "lab/more.py has changed"  # exhibits.py imports by a name that no statement gives
+    assert why(tmp_path / "cache", both) == {OF_TABLE_2: changed, "lab/fig-3": changed}
+
+
 def test_another_version_of_a_library_makes_results_stale(site: Path, tmp_path: Path) -> None:
     why(tmp_path / "cache", TABLE_2)
     metadata = site / "lab_distribution-1.0.dist-info" / "METADATA"

@@ -4,7 +4,8 @@ A worker records what it has loaded when a unit is done:
 
 * the framework's own rooms, whole folders by content;
 * the paper's folder by content, without what only judges, explains or tries results (``ledger.toml``, ``notes.md``,
-  ``handout.md``, ``handout.py``, ``slides.md``, ``test_*.py``, ``conftest.py``), so that editing it recomputes nothing;
+  ``handout.md``, ``handout.py``, ``slides.md``, ``test_*.py``, ``conftest.py``), so that editing it recomputes nothing,
+  and without what modules say that the exhibit does not use (`replicate.run.exhibit_modules`): they count by name;
 * every other module that is not the standard library's: by content, or by the version of its distribution if it is
   an installed one;
 * the project file above the paper's folder, by what it says;
@@ -28,6 +29,7 @@ from pathlib import Path
 
 from replicate.errors import ProjectError
 from replicate.exhibits import Exhibit, Paper
+from replicate.run.exhibit_modules import PaperModules
 from replicate.run.modules import distributions_of, file_of, is_standard
 from replicate.run.project import project_text
 
@@ -39,6 +41,7 @@ _ABOUT = re.compile(r"(ledger|notes|handout|slides)([-.]\w+)?\.(toml|md)|handout
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 _ROOT = __name__.split(".")[0]
 _GONE = "missing"
+_NAMED = "by name"  # in place of the digest of a file that counts only by being there
 _LENGTH = 24  # of a digest; 96 bits
 
 
@@ -57,6 +60,7 @@ class Looked:
         self._modules: dict[str, str] = {}
         self._versions: dict[str, str] = {}
         self._projects: dict[Path, dict[str, str]] = {}
+        self._used: dict[tuple[str, frozenset[str]], PaperModules] = {}
         self._environment = {
             "version": f"{platform.python_version()} {platform.system()} {platform.machine()}",
             **{name: os.environ.get(name, "") for name in _KERNELS},
@@ -72,22 +76,36 @@ class Looked:
         """
         distributions: set[str] = set()
         by_content: set[str] = set()
+        of_paper: set[str] = set()
         rooms: set[str] = set()
         for name in modules:
+            is_own = _is_own(paper, name)
+            if is_own:
+                of_paper.add(name)
             if name == _ROOT or name.startswith(f"{_ROOT}."):
                 rooms.add(name.split(".")[1] if "." in name else "__init__")
             elif not is_standard(name):
                 found = distributions_of(name)
                 distributions.update(found)
-                if not found and not _is_own(paper, name):
+                if not found and not is_own:
                     by_content.add(name)
         groups = {
             "framework": dict.fromkeys(rooms - {"papers"}, ""),
+            "paper": dict.fromkeys(self._unused(paper, exhibit, frozenset(of_paper | by_content)), _NAMED),
             "distribution": dict.fromkeys(distributions, ""),
             "module": dict.fromkeys(by_content, ""),
             "data": dict.fromkeys(paper.data_of(exhibit), ""),
         }
         return {group: dict(sorted(names.items())) for group, names in self.now(paper, groups).items()}
+
+    def _unused(self, paper: Paper, exhibit: Exhibit, modules: frozenset[str]) -> set[str]:
+        """Return the files of modules that an exhibit does not use, by their names in the paper's folder."""
+        if (paper.package, modules) not in self._used:
+            self._used[paper.package, modules] = PaperModules(paper.package, modules)
+        unused = self._used[paper.package, modules].unused(exhibit)
+        inside = [name.removeprefix(f"{paper.package}.").replace(".", "/") for name in unused]
+        files = {file for name in inside for file in (f"{name}.py", f"{name}/__init__.py")}
+        return files & self._folder("paper", paper.package, paper.folder()).keys()
 
     def now(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> Dependencies:
         """Return the present state of everything that was recorded, and of files that came beside it."""
@@ -95,7 +113,10 @@ class Looked:
         return {
             "python": self._environment,
             "framework": {name: digest for room in rooms for name, digest in self._room(room).items()},
-            "paper": self._folder("paper", paper.package, paper.folder()),
+            "paper": {
+                name: _NAMED if recorded["paper"].get(name) == _NAMED else digest
+                for name, digest in self._folder("paper", paper.package, paper.folder()).items()
+            },
             "project": self._project(Path(str(paper.folder()))),
             "distribution": {name: self._version(name) for name in recorded["distribution"]},
             "module": {name: self._module(name) for name in recorded["module"]},

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import ast
 import importlib.machinery
 import importlib.metadata
-import importlib.util
 import os
 import sys
 import sysconfig
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from functools import cache
 from pathlib import Path
+
+from replicate.run.module_text import module_text
 
 _ROOT = __name__.partition(".")[0]
 _NUMERICS = (f"{_ROOT}.loops", f"{_ROOT}.papers")
@@ -66,37 +66,7 @@ def _reached(start: Iterable[str]) -> set[str]:
 def imports_of(name: str) -> tuple[str, ...]:
     """Return every name that may be a module in the import statements of a loaded module, wherever they stand."""
     path = file_of(name)
-    if path is None or path.suffix != ".py":
-        return ()
-    try:
-        tree = ast.parse(path.read_bytes())
-    except (OSError, SyntaxError, ValueError):
-        return ()
-    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    return tuple(_imported(tree, package))
-
-
-def _imported(tree: ast.AST, package: str) -> Iterator[str]:
-    for node in _statements(tree):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            try:
-                base = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
-            except ImportError:
-                continue
-            yield base
-            yield from (f"{base}.{alias.name}" for alias in node.names)
-
-
-def _statements(tree: ast.AST) -> Iterator[ast.AST]:
-    """Yield all statements, in whatever block; an import is no part of an expression, and most nodes are."""
-    waiting = [tree]
-    while waiting:
-        node = waiting.pop()
-        yield node
-        blocks = (ast.stmt, ast.excepthandler, ast.match_case)
-        waiting += [child for child in ast.iter_child_nodes(node) if isinstance(child, blocks)]
+    return module_text(path, name).imports if path is not None and path.suffix == ".py" else ()
 
 
 def distributions_used(packages: Iterable[str]) -> set[str]:
@@ -121,6 +91,11 @@ def distributions_used(packages: Iterable[str]) -> set[str]:
         elif top != _ROOT or any(_is_in(name, room) for room in (*_NUMERICS, *packages)):
             waiting += imports_of(name)
     return found
+
+
+def is_framework(name: str) -> bool:
+    """Say whether a module is of this package, and not of a paper that comes with it."""
+    return _is_in(name, _ROOT) and not _is_in(name, _NUMERICS[1])
 
 
 def is_standard(name: str) -> bool:
