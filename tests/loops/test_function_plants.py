@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import mpmath as mp
 import numpy as np
 import pytest
 
-from loops.references import polished_root
-from replicate.loops import PI, PID, Loop, LoopError, Plant
+from loops.references import polished_root, talbot
+from replicate.loops import PI, PID, Loop, LoopError, Plant, Signal
 
 Function = Callable[[Any], Any]
 
@@ -57,18 +58,14 @@ def step(function: Function, dead_time: float, controller: PID, t: float) -> flo
         def drive(s: mp.mpc) -> mp.mpc:
             return (controller.b * mp.mpf(controller.k) + mp.mpf(controller.ki) / s) * function(s) / s
 
+        def around(n: int) -> Function:
+            return lambda s: drive(s) * (-feedback(controller, s) * function(s)) ** n
+
         if not dead_time:
-            return float(
-                mp.invertlaplace(
-                    lambda s: drive(s) / (1 + feedback(controller, s) * function(s)), t, method="talbot", degree=60
-                )
-            )
+            return float(talbot(lambda s: drive(s) / (1 + feedback(controller, s) * function(s)), t))
         n = 0
         while t > late:
-            total += mp.invertlaplace(
-                lambda s, n=n: drive(s) * (-feedback(controller, s) * function(s)) ** n, t - late,
-                method="talbot", degree=50,
-            )  # fmt: skip
+            total += talbot(around(n), t - late, 50)
             n, late = n + 1, late + mp.mpf(dead_time)
     return float(total)
 
@@ -128,7 +125,7 @@ def test_unstable_loops_grow_as_their_poles_say(k: float) -> None:
             # 1 + k e^{-sqrt s} has the slope 1/(2 sqrt s) at its zero, k e^{-sqrt s} the value -1
             residue = -2 * mp.sqrt(pole) * mp.exp(pole * t) / pole
             grown = residue if k < 0 else 2 * residue.real
-            shifted = mp.invertlaplace(lambda s: closed(s + 60), mp.mpf(t), method="talbot", degree=120)
+            shifted = talbot(lambda s: closed(s + 60), t, 120)
             exact = shifted * mp.exp(60 * mp.mpf(t))
             assert float(y(t)) == pytest.approx(float(mp.re(exact)), rel=1e-9)
             if t == 1.5:
@@ -213,16 +210,23 @@ def test_a_function_that_overflows_without_vanishing_is_named(controller: PID) -
 # ---- integrals over all time -----------------------------------------------------------------------------------------
 
 
-def absolute_error(error: Function, whole: float, guesses: list[float]) -> float:
+@cache
+def absolute_error(error: Function, whole: float, guesses: tuple[float, ...]) -> float:
     """Integrate |e| from the transform of e: between its sign changes, and what is left of its whole integral."""
     with mp.workdps(40):
-
-        def inverse(transform: Function, t: mp.mpf) -> mp.mpf:
-            return mp.invertlaplace(transform, t, method="talbot", degree=60)
-
-        zeros = [mp.findroot(lambda t: inverse(error, t), (0.98 * g, 1.02 * g), tol=1e-20) for g in guesses]
-        running = [mp.mpf(0), *(inverse(lambda s: error(s) / s, t) for t in zeros), mp.mpf(whole)]
+        zeros = [mp.findroot(lambda t: talbot(error, t), (0.98 * g, 1.02 * g), tol=1e-20) for g in guesses]
+        running = [mp.mpf(0), *(talbot(lambda s: error(s) / s, t) for t in zeros), mp.mpf(whole)]
         return float(sum(abs(b - a) for a, b in itertools.pairwise(running)))
+
+
+def where_it_crosses_one(y: Signal, unit: float) -> tuple[float, ...]:
+    """Return where to look for sign changes of the error, in units of time; three digits, the same in every unit."""
+    return tuple(float(f"{t / unit:.3g}") for t in y.crossings(1.0) if t < 1e4 * unit)
+
+
+def diffusion_error(s: mp.mpc) -> mp.mpc:
+    """Return the error's transform of e^{-sqrt s} under 0.9 + 5/s."""
+    return 1 / (s + (mp.mpf(0.9) * s + 5) * mp.exp(-mp.sqrt(s)))
 
 
 @pytest.mark.parametrize("unit", [1.0, 1e-9, 1e6])
@@ -230,14 +234,10 @@ def test_absolute_error_of_a_response_that_ends_like_a_power_of_time(unit: float
     k, ki = 0.9, 5.0
     plant = Plant.from_function(lambda s: np.exp(-np.sqrt(s * unit)))
     y = Loop(plant, PI(k, ki / unit)).step()
-
-    def error(s: mp.mpc) -> mp.mpc:
-        return 1 / (s + (k * s + ki) * mp.exp(-mp.sqrt(s)))
-
-    crossings = [float(t) / unit for t in y.crossings(1.0) if t < 1e4 * unit]
+    crossings = where_it_crosses_one(y, unit)
     assert crossings
     assert y.ie() / unit == pytest.approx(1.0 / ki, rel=1e-11)
-    assert y.iae() / unit == pytest.approx(absolute_error(error, 1.0 / ki, crossings), rel=1e-10)
+    assert y.iae() / unit == pytest.approx(absolute_error(diffusion_error, 1.0 / ki, crossings), rel=1e-10)
     assert (2.0 * y).iae() == pytest.approx(2.0 * y.iae(), rel=1e-13)
     for refused in (y.itae, y.itse, (y + y).iae):
         with pytest.raises(LoopError, match=r"like a power of time: its \w+ cannot be computed"):
@@ -271,10 +271,17 @@ POWERS: dict[str, tuple[Function, Function, float]] = {
 }
 
 
+@cache
+def error_of_power(name: str) -> Function:
+    """Return the error's transform of a function of ``POWERS`` under 0.5 + 0.3/s."""
+    exact = POWERS[name][1]
+    return lambda s: 1 / (s + (0.5 * s + 0.3) * exact(s))
+
+
 @pytest.mark.parametrize("unit", [1.0, 1e-9, 1e6])
 @pytest.mark.parametrize("name", POWERS)
 def test_integrals_of_responses_that_end_like_other_powers_of_time(name: str, unit: float) -> None:
-    function, exact, gain = POWERS[name]
+    function, _, gain = POWERS[name]
     plant = Plant.from_function(lambda s: function(s * unit))
     loop = Loop(plant, PI(0.5, 0.3 / unit))
     y, d = loop.step(), loop.load_step()
@@ -284,11 +291,8 @@ def test_integrals_of_responses_that_end_like_other_powers_of_time(name: str, un
     weighted = Loop(plant, PI(0.5, 0.3 / unit, b=0.2)).step()
     assert weighted.ie() / unit == pytest.approx(1.0 / (0.3 * gain) + 0.8 * 0.5 / 0.3, rel=1e-12)
 
-    def error(s: mp.mpc) -> mp.mpc:
-        return 1 / (s + (0.5 * s + 0.3) * exact(s))
-
-    crossings = [float(t) / unit for t in y.crossings(1.0) if t < 1e4 * unit]
-    assert y.iae() / unit == pytest.approx(absolute_error(error, y.ie() / unit, crossings), rel=1e-10)
+    expected = absolute_error(error_of_power(name), 1.0 / (0.3 * gain), where_it_crosses_one(y, unit))
+    assert y.iae() / unit == pytest.approx(expected, rel=1e-10)
     for never in (Loop(plant, PI(0.5)).step(), Loop(plant, PI(0.5)).load_step()):  # falls like a power above -1
         assert never.ie() == np.inf
         assert never.iae() == np.inf
@@ -302,8 +306,7 @@ def test_an_error_that_falls_like_a_power_of_the_logarithm_of_time() -> None:
     def error(s: mp.mpc) -> mp.mpc:
         return 1 / (s + (k * s + ki) * mp.log(1 + 1 / s))
 
-    crossings = [float(t) for t in y.crossings(1.0) if t < 1e4]
-    assert y.iae() == pytest.approx(absolute_error(error, 0.0, crossings), rel=1e-10)
+    assert y.iae() == pytest.approx(absolute_error(error, 0.0, where_it_crosses_one(y, 1.0)), rel=1e-10)
 
 
 def test_integrals_that_do_not_converge() -> None:
@@ -315,19 +318,21 @@ def test_integrals_that_do_not_converge() -> None:
         y.ise()
 
 
+@cache
+def metrics(name: str, unit: float, gain: float) -> np.ndarray:
+    """Return metrics of a loop in other units of time and gain, in those of the function."""
+    function, _, dead_time = FUNCTIONS[name]
+    plant = Plant.from_function(lambda s: gain * function(s * unit), dead_time * unit)
+    loop = Loop(plant, PI(0.5 / gain, 0.6 / gain / unit))
+    y, d, m = loop.step(), loop.load_step(), loop.margins()
+    return np.array([
+        1.0 + y.overshoot(), y.settling_time() / unit, y.rise_time() / unit, y.iae() / unit,
+        d.iae() / unit / gain, float(d.peak()) / gain, float(loop.sensitivity_peak()),
+        m.gain, m.phase, m.delay / unit, (loop.rightmost_pole() * unit).real,
+    ])  # fmt: skip
+
+
 @pytest.mark.parametrize(("unit", "gain"), [(1e-12, 1e-9), (1e12, 1e9), (1e-3, 1e6), (1e6, 1e-9)])
 @pytest.mark.parametrize("name", ["diffusion", "fractional lag", "tanh"])
 def test_a_function_in_other_units_is_the_same_function(name: str, unit: float, gain: float) -> None:
-    function, _, dead_time = FUNCTIONS[name]
-
-    def metrics(unit: float, gain: float) -> np.ndarray:
-        plant = Plant.from_function(lambda s: gain * function(s * unit), dead_time * unit)
-        loop = Loop(plant, PI(0.5 / gain, 0.6 / gain / unit))
-        y, d, m = loop.step(), loop.load_step(), loop.margins()
-        return np.array([
-            1.0 + y.overshoot(), y.settling_time() / unit, y.rise_time() / unit, y.iae() / unit,
-            d.iae() / unit / gain, float(d.peak()) / gain, float(loop.sensitivity_peak()),
-            m.gain, m.phase, m.delay / unit, (loop.rightmost_pole() * unit).real,
-        ])  # fmt: skip
-
-    assert metrics(unit, gain) == pytest.approx(metrics(1.0, 1.0), rel=1e-10)
+    assert metrics(name, unit, gain) == pytest.approx(metrics(name, 1.0, 1.0), rel=1e-10)

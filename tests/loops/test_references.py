@@ -29,6 +29,7 @@ from loops.references import (
     de_hoog,
     parseval,
     polished_root,
+    talbot,
     zeros_right_of,
 )
 
@@ -86,6 +87,16 @@ def test_branch_cut_against_de_hoog(signal: str) -> None:
     }
     value = de_hoog(lambda s: parts[signal](s) / (1 + root_plant(s) * (k + ki / s)) / s, 2.0)
     assert agree(root_plant_pi(signal, k, ki, 2.0, guesses=ROOT_POLES), value)
+
+
+@pytest.mark.parametrize("degree", [40, 60, 120])
+def test_talbot_is_that_of_mpmath_and_inverts_transforms_with_a_closed_form(degree: int) -> None:
+    for t in (0.05, 6.0):
+        value = talbot(lambda s: mp.exp(-mp.sqrt(s)) / s, t, degree)
+        with mp.workdps(40):
+            assert agree(value, mp.erfc(1 / (2 * mp.sqrt(mp.mpf(t)))), digits=min(degree // 2 - 3, 36))
+            expected = mp.invertlaplace(lambda s: mp.exp(-mp.sqrt(s)) / s, t, method="talbot", degree=degree)
+        assert agree(value, expected, digits=min(degree // 2, 36))
 
 
 def test_first_wave_against_de_hoog() -> None:

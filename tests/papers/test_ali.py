@@ -13,6 +13,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import sympy as sp
+from loops.references import talbot
 from numpy.typing import NDArray
 
 from replicate.exhibits import Table
@@ -211,7 +212,7 @@ def delayed_terms(structure: str, settings: Settings, theta: float, load: bool, 
             round_trip = transfer(structure, settings, s) / (s - 1)
             return round_trip**n * (1 / (s - 1) if load else round_trip) / s
 
-        return (-1) ** n * mp.invertlaplace(transform, t, method="talbot", degree=60)
+        return (-1) ** n * talbot(transform, t)
 
     with mp.workdps(40):
         theta, found = mp.mpf(str(theta)), []
