@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -54,6 +56,24 @@ def test_nothing_is_written_again_and_the_same_is_said(
     assert replicate(*command) == kept
     assert pages == ["written"]
     assert _state(out) == before
+
+
+def test_nothing_is_loaded_that_an_untouched_report_does_not_need(
+    replicate: Run, written: tuple[list[str], Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from replicate.exhibits import Paper
+
+    command, _ = written
+    with monkeypatch.context() as patched:
+        patched.setattr(Paper, "load", lambda _paper: pytest.fail("a paper is loaded"))
+        assert replicate(*command)[0] == 0
+    code = (
+        f"import sys; sys.argv = {['replicate', *command]!r}\nfrom replicate.cli import main\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
+        "print(*sorted({'pandas', 'scipy', 'matplotlib', 'jinja2', 'replicate.loops'} & sys.modules.keys()))"
+    )
+    said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert said.splitlines()[-1] == ""
 
 
 def _append(name: str, text: str) -> Change:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from replicate.run.library import Library
     from replicate.run.outcome import Outcome, Selection
     from replicate.run.parallel import Executor
+    from replicate.run.units import Unit
 
 Returned = TypeVar("Returned")
 
@@ -71,14 +72,12 @@ class Computing:
                 executor=self.executor,
             )
 
-    def tell_kept(self, papers: Sequence[Paper]) -> None:
+    def tell_kept(self, units: Sequence[Unit]) -> None:
         """Say on standard error that every result was kept, as `recompute` does."""
         from replicate.run.parallel import Progress
-        from replicate.run.units import units_of
         from replicate.terminal.console import console
         from replicate.terminal.progress import progress_on
 
-        units = [unit for paper in papers for one in paper.exhibits.values() for unit in units_of(paper, one)]
         with progress_on(console(stderr=True), verbose=self.verbose) as progress:
             for done, unit in enumerate(units, start=1):
                 progress(Progress(done, len(units), unit, from_cache=True))

@@ -12,7 +12,10 @@ from replicate.errors import TemplateError
 from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from replicate.exhibits import Paper
+    from replicate.report.site import Site
     from replicate.run.outcome import Outcome
 
 
@@ -26,13 +29,18 @@ def report(
 
     Of papers that are named, their pages are written and what all pages share.
     """
+    # What is read below must not be newer than what is said to have been read.
+    texts = "" if papers or single_file or run.no_cache else _texts(run)
+    if texts and _stands(run, texts):
+        return
+
     from replicate import whatif
     from replicate.display import markdown
     from replicate.report.data import expected_files, write_outputs
-    from replicate.report.pages import INDEX, build_report, single_page
+    from replicate.report.pages import build_report, single_page
     from replicate.report.scope import Scope
-    from replicate.report.site import site_of
-    from replicate.report.standing import keep, texts_of
+    from replicate.report.site import INDEX
+    from replicate.report.standing import keep
     from replicate.report.texts import placed, unreadable
     from replicate.staging import files_of, staged
     from replicate.terminal.console import console
@@ -44,11 +52,7 @@ def report(
     scope = Scope.among(named, pages_there, run.within.ids())
     in_order = [one.name for one in run.within.known if one.name in {*named, *scope.others}]
     everyone = run.within.papers(in_order) if scope.others else chosen
-    about = site_of(run.within.project, bundled=all(run.within.is_bundled(paper.id) for paper in everyone))
-    # What is read below must not be newer than what is said to have been read.
-    texts = "" if papers or single_file or run.no_cache or run.within.broken else texts_of(chosen, about)
-    if texts and _stands(run, chosen, texts):
-        return
+    about = _about(run, everyone)
     with staged(run.folder, "report", renews=scope.renews, expects=expected_files(chosen)) as fresh:
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
         outcome = run.recompute(everyone)
@@ -72,7 +76,13 @@ def report(
     outcome = outcome.of(named)
     counts = counts_of(outcome)
     print_summary(counts, console())
-    if texts and not outcome.broken and not outcome.failures and not outcome.judgement.unreadable:
+    if (
+        texts
+        and not run.within.broken
+        and not outcome.broken
+        and not outcome.failures
+        and not outcome.judgement.unreadable
+    ):
         keep(run.folder, chosen, texts, [run.folder / path for path in written], counts, outcome.judgement.unused)
     echo(f"\nreport: {run.folder / 'report' / pages[0].name}")
     for paper in mailed:
@@ -80,19 +90,34 @@ def report(
     exit_with(run.within, outcome)
 
 
-def _stands(run: Computing, papers: list[Paper], texts: str) -> bool:
+def _about(run: Computing, papers: Sequence[Paper]) -> Site:
+    """Return the texts of the report on some papers."""
+    from replicate.report.site import site_of
+
+    return site_of(run.within.project, bundled=all(run.within.is_bundled(paper.id) for paper in papers))
+
+
+def _texts(run: Computing) -> str:
+    """Return the digest of all that the report is made of besides results; empty if a paper cannot be used."""
+    from replicate.report.standing import texts_of
+
+    papers = run.within.found()
+    return texts_of(papers, _about(run, papers)) if papers else ""
+
+
+def _stands(run: Computing, texts: str) -> bool:
     """Say what the report says, if there is nothing to write anew; return whether that is so."""
-    from replicate.report.pages import INDEX
+    from replicate.report.site import INDEX
     from replicate.report.standing import standing
     from replicate.staging import finish_interrupted
     from replicate.terminal.console import console
     from replicate.terminal.summary import print_summary
 
     finish_interrupted(run.folder)
-    found = standing(run.folder, papers, texts)
+    found = standing(run.folder, run.within.found(), texts)
     if found is None:
         return False
-    run.tell_kept(papers)
+    run.tell_kept(found.results)
     print_summary(found.counts, console())
     echo(f"\nreport: {run.folder / 'report' / INDEX}")
     for line in found.unused:

@@ -29,7 +29,7 @@ from replicate.report.errata_sheet import Erratum, Sheet, sheets
 from replicate.report.notes import Piece, pieces, place
 from replicate.report.search import KINDS, hits
 from replicate.report.single_file import self_contained
-from replicate.report.site import Site
+from replicate.report.site import INDEX, Site
 from replicate.report.views import ExhibitView, exhibit_views
 from replicate.report.weight import within_limits
 from replicate.resources import templates_dir
@@ -37,7 +37,6 @@ from replicate.run.modules import distributions_used
 from replicate.verdicts.prose import Prose
 from replicate.verdicts.rows import Judgement, VerdictRow
 
-INDEX = "index.html"
 METHODS = "methods.html"
 VERDICTS = "verdicts.html"  # in its place, where the project has no page on methods
 ERRATA = "errata.html"

@@ -12,6 +12,8 @@ from replicate.errors import TemplateError
 from replicate.plain_text import read_text
 from replicate.run.project import Project
 
+INDEX = "index.html"
+
 _TITLE = "Papers, replicated"
 _INTRO = (
     "A paper prints numbers. Here each of them is recomputed and compared at the precision at which it was "

@@ -117,6 +117,12 @@ class Library:
             raise PaperDefinitionError(self.broken[0])
         return list(papers.values())
 
+    def found(self) -> list[Paper]:
+        """Return the papers meant as they were found, without their exhibits; none if one of them cannot be used."""
+        found = [self._found(one.name).paper for one in self._all_meant()]
+        usable = [paper for paper in found if paper is not None]
+        return usable if len(usable) == len(found) else []
+
     def paper(self, id: str) -> Paper:
         """Return one paper with its exhibits.
 

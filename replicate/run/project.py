@@ -17,6 +17,7 @@ folder upwards. All paths in it are relative to its folder::
 
 from __future__ import annotations
 
+import contextlib
 import json
 import re
 from dataclasses import dataclass, field
@@ -187,9 +188,11 @@ def _papers(path: Path, data: dict[str, Any]) -> tuple[tuple[Path, ...], tuple[s
 
 def _language(path: Path, given: str) -> Language:
     """Return a language that comes with this package, or that of a file beside the project file."""
+    tag = str(path.parent / given) if given.endswith(".toml") else given
+    with contextlib.suppress(ReplicateError):
+        return language(tag)
     try:
-        tag = str(path.parent / given) if given.endswith(".toml") else given
-        return language(tag, f"{place_of(path, 'language')}: language")
+        return language(tag, f"{place_of(path, 'language')}: language")  # which says where it is asked for
     except ReplicateError as error:
         raise ProjectError(str(error)) from error
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.table import Table
@@ -11,8 +12,10 @@ from rich.text import Text
 
 from replicate.display import consequences
 from replicate.display.words import CLAIM_VERDICTS, CONSEQUENCES, VERDICTS, Word
-from replicate.run.outcome import Outcome
 from replicate.terminal.colours import colour
+
+if TYPE_CHECKING:
+    from replicate.run.outcome import Outcome
 
 Counts = Mapping[str, Mapping[str, Mapping[str, int]]]
 """By what is counted and by paper: how often each word was used."""
