@@ -135,6 +135,22 @@ def test_what_some_inputs_give_is_never_excluded() -> None:
     for k, m in rng.uniform([1.95, 2.95], [2.05, 3.05], (40, 2)):
         ends = {"sum": (k + m - 1e-3, k + m + 1e-3), "product": (k * m - 1e-3, k * m + 1e-3)}
         assert not excluded(rules, "A", box, ends)
+        assert not excluded(rules, "A", box, ends, {"k": k, "m": m})
+
+
+def test_where_the_closest_point_stays_open_only_the_box_and_the_smallest_part_are_asked() -> None:
+    asked = []
+
+    def never_out(_case: str, box: Box, _ends: Ends) -> bool:
+        asked.append(box)
+        return False
+
+    box, closest = {"k": (1.95, 2.05), "m": (2.95, 3.05)}, {"k": 2.04, "m": 2.96}
+    assert not excluded({"sum": never_out}, "A", box, {"sum": (4.9, 5.0)}, closest)
+    whole, part = asked
+    assert whole == box
+    assert all(low <= closest[name] <= high for name, (low, high) in part.items())
+    assert {round((high - low) / 0.1, 9) for low, high in part.values()} == {2.0**-4}
 
 
 def test_inputs_of_another_table_and_of_the_text() -> None:

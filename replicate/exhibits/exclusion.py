@@ -3,7 +3,10 @@
 A search that finds no such inputs may have missed them. Where a reading can rule out, with certainty, that a quantity
 takes a value of some interval anywhere in a part of the box, the search becomes a proof: a part is excluded if one of
 the quantities that ought to hold together cannot; any other part is halved along its longest side. A part that is still
-open after several halvings ends the attempt: it says soon that there is no proof.
+open after several halvings ends the attempt.
+
+What can be said of a part can be said of all that it is divided into. So the smallest part around the point at which
+the search came closest is tried before the halves: where it stays open, the end is known.
 """
 
 from __future__ import annotations
@@ -19,7 +22,13 @@ _MOST_PARTS = 64
 _MOST_HALVINGS = 8  # of all sides together
 
 
-def excluded(rules: Mapping[str, Rule], case: str, box: Box, targets: Mapping[str, Ends]) -> bool:
+def excluded(
+    rules: Mapping[str, Rule],
+    case: str,
+    box: Box,
+    targets: Mapping[str, Ends],
+    closest: Mapping[str, float] | None = None,
+) -> bool:
     """Say whether it is proven that no inputs of a box give all targets together.
 
     Parameters
@@ -28,6 +37,8 @@ def excluded(rules: Mapping[str, Rule], case: str, box: Box, targets: Mapping[st
         By quantity; a rule says no where it cannot tell. They are asked in this order, the quick ones first.
     targets
         By quantity: the interval in which it ought to lie.
+    closest
+        A point of the box at which the targets are nearly met, if one is known; otherwise its middle is taken.
 
     Examples
     --------
@@ -42,18 +53,44 @@ def excluded(rules: Mapping[str, Rule], case: str, box: Box, targets: Mapping[st
     >>> excluded(rules, "A", box, {"sum": (1.9, 2.0), "difference": (0.5, 0.6)})
     True
     """
-    whole = {name: high - low for name, (low, high) in box.items()}
-    waiting: list[tuple[dict[str, Ends], int]] = [(dict(box), 0)]
-    for _ in range(_MOST_PARTS):
+
+    def is_out(part: Box) -> bool:
+        return any(rule(case, part, targets[quantity]) for quantity, rule in rules.items() if quantity in targets)
+
+    def halved(part: Box, halvings: int) -> list[tuple[Box, int]]:
+        name, *halves = _halves(part, box)
+        return [({**part, name: half}, halvings + 1) for half in halves]
+
+    if is_out(box):
+        return True
+    if not is_out(_smallest(box, closest or {name: sum(ends) / 2 for name, ends in box.items()})):
+        return False
+    waiting = halved(box, 0)
+    for _ in range(_MOST_PARTS - 1):
         if not waiting:
             return True
         part, halvings = waiting.pop()
-        if any(rule(case, part, targets[quantity]) for quantity, rule in rules.items() if quantity in targets):
+        if is_out(part):
             continue
-        longest = max(part, key=lambda name: (part[name][1] - part[name][0]) / whole[name] if whole[name] else 0.0)
-        low, high = part[longest]
-        middle = (low + high) / 2
-        if halvings == _MOST_HALVINGS or not low < middle < high:
+        if halvings == _MOST_HALVINGS:
             return False
-        waiting += [(part | {longest: half}, halvings + 1) for half in ((low, middle), (middle, high))]
+        waiting += halved(part, halvings)
     return False
+
+
+def _smallest(box: Box, point: Mapping[str, float]) -> Box:
+    """Return the part of a box around a point that is left after as many halvings as there may be."""
+    part = dict(box)
+    for _ in range(_MOST_HALVINGS):
+        name, lower, upper = _halves(part, box)
+        part[name] = lower if point[name] <= lower[1] else upper
+    return part
+
+
+def _halves(part: Box, box: Box) -> tuple[str, Ends, Ends]:
+    """Return the name of a part's side that is longest as a share of the box's, and its halves."""
+    sides = {name: high - low for name, (low, high) in box.items()}
+    name = max(part, key=lambda name: (part[name][1] - part[name][0]) / sides[name] if sides[name] else 0.0)
+    low, high = part[name]
+    middle = (low + high) / 2
+    return name, (low, middle), (middle, high)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from replicate.exhibits.conventions import settle
-from replicate.exhibits.exclusion import Rule, excluded
+from replicate.exhibits.exclusion import Ends, Rule, excluded
 from replicate.exhibits.joint_point import joint_point
 from replicate.exhibits.many_inputs import ManyInputs
 from replicate.exhibits.matching import match
@@ -204,11 +204,21 @@ def _search(
     ranges.points[case.name] = dict(zip(case.inputs, map(float, point), strict=True))
     if reading.rules_out:
         wanted_ends = {q: value.ends for q, value in zip(quantities, prints, strict=True) if value}
-        _prove(table, reading.rules_out, case, wanted_ends, ranges)
+        values = np.abs(np.array(search.values) - targets.mean(axis=1))
+        nearest = {
+            quantity: search.points[int(np.argmin(np.nan_to_num(away, nan=np.inf)))]
+            for quantity, away in zip(quantities, values.T, strict=True)
+        }
+        _prove(table, reading.rules_out, case, wanted_ends, nearest, ranges)
 
 
 def _prove(
-    table: Table, rules: Mapping[str, Rule], case: _Case, targets: Mapping[str, tuple[float, float]], ranges: Ranges
+    table: Table,
+    rules: Mapping[str, Rule],
+    case: _Case,
+    targets: Mapping[str, Ends],
+    nearest: Mapping[str, np.ndarray],
+    ranges: Ranges,
 ) -> None:
     """Add what proves of the values of a case that no inputs give them, where there is such a proof."""
     box = {name: value.ends for name, value in case.inputs.items()}
@@ -217,7 +227,8 @@ def _prove(
     held = {quantity: ends for quantity, ends in known.items() if ends[0] <= joint[quantity] <= ends[1]}
     for quantity in [quantity for quantity in known if quantity not in held]:
         key, alone = table.key(case.name, quantity), {quantity: known[quantity]}
-        if excluded(rules, case.name, box, alone):
+        closest = dict(zip(case.inputs, map(float, nearest[quantity]), strict=True))
+        if excluded(rules, case.name, box, alone, closest):
             ranges.proofs[key] = "alone"
-        elif held and excluded(rules, case.name, box, held | alone):
+        elif held and excluded(rules, case.name, box, held | alone, ranges.points[case.name]):
             ranges.proofs[key] = "jointly"
