@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from replicate.exhibits import Table
 from replicate.loops import Loop
 from replicate.papers.ali import iste, paper, sensitivities, sensitivity_count, tuning
-from replicate.papers.ali.examples import example_1, example_2, total_variation
+from replicate.papers.ali.examples import example_1, example_2
 from replicate.papers.ali.structures import (
     ALPHA,
     STRUCTURES,
@@ -311,7 +311,7 @@ def test_total_variation_counts_moves_and_jumps() -> None:
 
     period = 2 * math.pi / math.sqrt(2.0)
     u = Loop(Plant([1.0], [1.0, 0.0, 1.0]), PI(k=1.0)).respond(until=3 * period).control
-    assert total_variation(u) == pytest.approx(1.0 + 3 * 2.0, rel=1e-10)
+    assert u.total_variation() == pytest.approx(1.0 + 3 * 2.0, rel=1e-10)
 
 
 def test_every_hypothesis_on_the_sensitivities_is_counted_as_tried() -> None:

@@ -23,7 +23,7 @@ def slopes(series: Array) -> Array:
 def evaluate(series: Array, x: Array) -> Array:
     """Evaluate the series in each column at its own point, as cosines or by Clenshaw's recurrence."""
     if x.size <= FEW:
-        return _sum(series, _polynomials(series.shape[0], x))
+        return _sum(series, chebyshev.cosines(x, series.shape[0] - 1))
     twice = x + x
     ahead, after = np.zeros_like(x), np.zeros_like(x)
     for row in series[:0:-1]:
@@ -34,11 +34,6 @@ def evaluate(series: Array, x: Array) -> Array:
     return np.asarray(series[0] + x * ahead - after)
 
 
-def _polynomials(count: int, x: Array) -> Array:
-    """Return the first Chebyshev polynomials at some points, shape (count, points)."""
-    return np.cos(np.arange(count)[:, None] * np.arccos(np.minimum(np.maximum(x, -1.0), 1.0)))
-
-
 def _sum(series: Array, polynomials: Array) -> Array:
     return np.asarray(np.einsum("kp,kp->p", series, polynomials))
 
@@ -46,7 +41,7 @@ def _sum(series: Array, polynomials: Array) -> Array:
 def _with_slopes(series: Array, slope: Array, x: Array) -> tuple[Array, Array]:
     if x.size > FEW:
         return evaluate(series, x), evaluate(slope, x)
-    polynomials = _polynomials(series.shape[0], x)
+    polynomials = chebyshev.cosines(x, series.shape[0] - 1)
     return _sum(series, polynomials), _sum(slope, polynomials[:-1])
 
 

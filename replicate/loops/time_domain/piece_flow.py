@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import chebyshev as cheb
 from numpy.typing import NDArray
 
 from replicate.loops.numerics import chebyshev
@@ -128,7 +127,7 @@ def delayed_values(
         left, right = breaks[piece], breaks[piece + 1]
         x = np.clip(2.0 * (times[here] - left) / (right - left) - 1.0, -1.0, 1.0)
         where = np.nonzero(earlier)[0][here]
-        values[where] += np.where(times[here] >= -slack, cheb.chebval(x, control[piece]), 0.0)
+        values[where] += np.where(times[here] >= -slack, chebyshev.valued(control[piece], x), 0.0)
     return values, earlier
 
 

@@ -20,6 +20,7 @@ START = 1e-4  # of the set-point step: an output below this is resolved as if it
 LONG = 100.0  # length, in units of what the fastest mode needs, of a piece in which that mode has long decayed:
 STIFF = 1e-13  # relative size of the rounding errors that its equations leave in coefficients that are zero
 CLOCK = 4.0 * float(np.finfo(float).eps)
+SQUARES = np.arange(DEGREE + 1) ** 2  # of the orders: they bound the slopes of the polynomials
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 
 
@@ -42,22 +43,20 @@ class Resolution:
         y, u, v
             Chebyshev coefficients of the output, the control signal and the delayed inputs.
         """
-        size_y = max(self.size_y, float(np.max(np.abs(y))))
-        size_u = max(self.size_u, float(np.max(np.abs(u))))
-        size_v = max(size_u, float(np.max(np.abs(v))))
+        rows = np.abs(np.concatenate([[y, u], v]))
+        largest = rows.max(axis=1)
+        size_y, size_u = max(self.size_y, float(largest[0])), max(self.size_u, float(largest[1]))
+        sizes = np.array([size_y, size_u, *[max(size_u, float(largest[2:].max()))] * len(v)])
         if not (size_y < LARGEST and size_u < LARGEST):
             msg = f"the response grows beyond {LARGEST:g} by t = {start * self.unit:g}: choose a shorter horizon"
             raise LoopError(msg)
         # times are known to rounding only: what changes fast carries that error
         blur = CLOCK * start * 2.0 / h
         stiff = STIFF if h > LONG * self.fastest else 0.0
-        order = np.arange(DEGREE + 1) ** 2
-        remaining = upper = 0.0
-        for row, size in [(y, size_y), (u, size_u), *((row, size_v) for row in v)]:
-            if size:
-                tail, floor = np.abs(row), blur * float(np.max(order * np.abs(row))) + stiff * size
-                remaining = max(remaining, (float(np.max(tail[-2:])) - floor) / size)
-                upper = max(upper, (float(np.max(tail[2 * DEGREE // 3 :])) - floor) / size)
+        floors = blur * (rows * SQUARES).max(axis=1) + stiff * sizes
+        sizes[sizes == 0.0] = 1.0  # of a row of zeros
+        remaining = max(0.0, float(((rows[:, -2:].max(axis=1) - floors) / sizes).max()))
+        upper = max(0.0, float(((rows[:, 2 * DEGREE // 3 :].max(axis=1) - floors) / sizes).max()))
         if remaining <= RESOLVED:
             self.size_y, self.size_u = size_y, size_u
         return remaining, upper <= SMOOTH

@@ -46,23 +46,21 @@ def ups_and_downs(slopes: Array, integrals: Array, scales: Array | float = 1.0) 
 
 
 def _zeros(slopes: Array, samples: Array, pieces: Pieces) -> tuple[Pieces, Array]:
-    """Return the zeros in some pieces, as piece numbers and local coordinates.
+    """Return the zeros in some pieces, as piece numbers and local coordinates, each between points of opposite sign.
 
-    Zeros between samples of opposite sign are found all at once; pieces with an extremum so close to zero that it may
-    hide two zeros between samples go through the companion matrix.
+    The points are the samples, and the extrema so close to zero that they may hide two zeros between samples.
     """
-    part = samples[pieces]
-    differences = np.diff(part, axis=1)
-    turns = differences[:, 1:] * differences[:, :-1] <= 0.0
-    hidden = np.any(turns & (np.abs(part[:, 1:-1]) < MARGIN * np.ptp(part, axis=1)[:, None]), axis=1)
-    rows, columns = np.nonzero((part[:, :-1] < 0.0) != (part[:, 1:] < 0.0))
-    clear = ~hidden[rows]
-    rows, columns = rows[clear], columns[clear]
-    nodes = chebyshev.nodes(SAMPLES - 1)
-    owners = pieces[rows]
-    found = series_roots.roots(
-        slopes[owners].T, nodes[columns], nodes[columns + 1], part[rows, columns], part[rows, columns + 1]
-    )
-    slow = [(piece, chebyshev.real_roots(slopes[piece])) for piece in pieces[hidden]]
-    owners = np.concatenate([owners, *(np.full(roots.size, piece, dtype=np.intp) for piece, roots in slow)])
-    return owners, np.concatenate([found, *(roots for _, roots in slow)])
+    part, nodes = samples[pieces], chebyshev.nodes(SAMPLES - 1)
+    moves = np.diff(part, axis=1)
+    turns = moves[:, 1:] * moves[:, :-1] <= 0.0
+    row, column = np.nonzero(turns & (np.abs(part[:, 1:-1]) < MARGIN * np.ptp(part, axis=1)[:, None]))
+    series = slopes[pieces[row]].T
+    extreme = series_roots.maxima(np.sign(moves[row, column]) * series, nodes[column], nodes[column + 2])
+    owners = np.concatenate([np.repeat(pieces, SAMPLES), pieces[row]])
+    points = np.concatenate([np.tile(nodes, pieces.size), extreme])
+    values = np.concatenate([part.ravel(), series_roots.evaluate(series, extreme)])
+    order = np.lexsort((points, owners))
+    owners, points, values = owners[order], points[order], values[order]
+    left = np.nonzero(((values[:-1] < 0.0) != (values[1:] < 0.0)) & (owners[:-1] == owners[1:]))[0]
+    right, owners = left + 1, owners[left]
+    return owners, series_roots.roots(slopes[owners].T, points[left], points[right], values[left], values[right])

@@ -132,11 +132,12 @@ class Signal(SignalViews, Piecewise):
     def _last_exit(self, piece: int, width: float) -> float | None:
         series = self.coefficients[piece].copy()
         series[0] -= self.final
-        if abs(cheb.chebval(1.0, series)) > width:
+        if abs(series.sum()) > width:
             return self._time(piece, 1.0)
-        crossings = np.concatenate(
-            [self._crossing_roots(piece, self.final + width), self._crossing_roots(piece, self.final - width)]
-        )
+        error = self._samples[piece] - self.final
+        slack = MARGIN * float(np.ptp(error))
+        levels = [level for level in (width, -width) if error.min() - slack <= level <= error.max() + slack]
+        crossings = np.concatenate([np.empty(0), *(self._crossing_roots(piece, self.final + x) for x in levels)])
         for x in np.sort(crossings)[::-1]:  # the last root beyond which |error| really was larger
             before = max(-1.0, x - 1e-7)
             if abs(cheb.chebval(before, series)) > width:

@@ -18,7 +18,6 @@ from replicate.papers.ali.examples import (
     load_response,
     loop,
     setpoint_response,
-    total_variation,
 )
 from replicate.papers.ali.pairs import KINDS, Pair, by_form, outputs, pairs
 
@@ -114,8 +113,8 @@ def visioli_control_oscillates() -> Finding:
     settings = example_2()
     variation = {
         kind: Pair(
-            total_variation(response(EXAMPLE_2, "series", settings["proposed"]).control),
-            total_variation(response(EXAMPLE_2, "ideal", settings[f"visioli-{kind}"]).control),
+            response(EXAMPLE_2, "series", settings["proposed"]).control.total_variation(),
+            response(EXAMPLE_2, "ideal", settings[f"visioli-{kind}"]).control.total_variation(),
         )
         for kind, response in (("setpoint", setpoint_response), ("load", load_response))
     }

@@ -7,11 +7,8 @@ from fractions import Fraction
 from functools import cache
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from replicate.exhibits import AS_WRITTEN, Table
-from replicate.loops import Loop, Response, Signal
+from replicate.loops import Loop, Response
 from replicate.papers.ali import paper
 from replicate.papers.ali.stability import summarised
 from replicate.papers.ali.structures import (
@@ -25,8 +22,6 @@ from replicate.papers.ali.structures import (
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Array = NDArray[np.float64]
 
 DECAYED = 26.0  # time constants of the slowest mode, exp(-26) = 5e-12
 
@@ -112,28 +107,6 @@ def load_response(theta: Fraction, structure: str, settings: Settings) -> Respon
     return controlled.respond(setpoint=0.0, load=1.0, until=horizon(controlled))
 
 
-def total_variation(signal: Signal) -> float:
-    """Return the total variation of a signal that is zero before the step, jumps included.
-
-    Examples
-    --------
-    A constant has one jump, at the step.
-
-    >>> import numpy as np
-    >>> total_variation(Signal(np.array([0.0, 1.0, 2.0]), np.array([[3.0, 0.0], [3.0, 0.0]])))
-    3.0
-    """
-    inside = signal.extrema()
-    signs = (-1.0) ** np.arange(signal.coefficients.shape[1])
-    values = np.concatenate(
-        [signal.coefficients @ signs, [peak.value for peak in inside], signal.coefficients.sum(axis=1)]
-    )
-    times = np.concatenate([signal.breaks[:-1], [peak.time for peak in inside], signal.breaks[1:]])
-    # at a break the end of one piece comes before the start of the next, so that the step between them is a jump
-    is_start = np.repeat([1, 0, 0], [len(signal.breaks) - 1, len(inside), len(signal.breaks) - 1])
-    return float(np.sum(np.abs(np.diff(values[np.lexsort((is_start, times))], prepend=0.0))))
-
-
 def performance(theta: Fraction, structure: str, settings: Settings) -> dict[str, float]:
     """Return the numbers of one column but the settings; an unstable loop has its rightmost pole and nothing else."""
     found = dict.fromkeys(QUANTITIES[3:], math.nan)
@@ -150,11 +123,11 @@ def performance(theta: Fraction, structure: str, settings: Settings) -> dict[str
         "iae": setpoint.output.iae(),
         "u0": float(setpoint.control(0.0)),
         "u_min": setpoint.control.trough().value,
-        "tv": total_variation(setpoint.control),
+        "tv": setpoint.control.total_variation(),
         "load_max": load.output.peak().value,
         "load_ts": load.output.settling_time(),
         "load_iae": load.output.iae(),
-        "load_tv": total_variation(load.control),
+        "load_tv": load.control.total_variation(),
     }
 
 
