@@ -7,12 +7,14 @@ from functools import cache
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import minimize
+from numpy.typing import NDArray
+from scipy.optimize import least_squares
 
 from replicate.loops import PID, Loop
 from replicate.papers.ali.examples import EXAMPLE_2
 from replicate.papers.ali.structures import Settings, plant, series
 
+Array = NDArray[np.float64]
 Kind = Literal["setpoint", "load"]
 
 UNTIL = 8.0  # the best responses have settled long before
@@ -30,13 +32,18 @@ FORMS: dict[str, Callable[[Settings], PID]] = {"parallel": parallel, "series": s
 
 def iste(controlled: Loop, kind: Kind) -> float:
     r"""Return :math:`\int_0^\infty t^2 e^2\,dt` after a unit step of the set point or of a load at the plant input."""
+    return float(np.sum(_residuals(controlled, kind) ** 2))
+
+
+def _residuals(controlled: Loop, kind: Kind) -> Array:
+    """Return numbers whose squares add up to the ISTE: the weighted errors at the nodes of Gauss' rule."""
     step = 1.0 if kind == "setpoint" else 0.0
     output = controlled.respond(setpoint=step, load=1.0 - step, until=UNTIL).output
     half = 0.5 * controlled.plant.dead_time
     starts = np.arange(0.0, UNTIL - half, 2.0 * half)
     times = (starts[:, None] + half * (1.0 + NODES)).ravel()
     weights = np.tile(half * WEIGHTS, starts.size)
-    return float(np.sum(weights * (times * (step - output(times))) ** 2))
+    return np.asarray(np.sqrt(weights) * times * (step - output(times)))
 
 
 @cache
@@ -46,20 +53,18 @@ def best(form: str, kind: Kind) -> Settings:
     Raises
     ------
     ValueError
-        If the search does not converge.
+        If the search does not converge, or ends at an unstable loop.
     """
 
-    def criterion(logarithms: np.ndarray[tuple[int], np.dtype[np.float64]]) -> float:
-        controlled = Loop(plant(float(EXAMPLE_2)), FORMS[form](Settings(*np.exp(logarithms).tolist())))
-        return iste(controlled, kind) if controlled.is_stable() else np.inf
+    def closed(logarithms: Array) -> Loop:
+        return Loop(plant(float(EXAMPLE_2)), FORMS[form](Settings(*np.exp(logarithms).tolist())))
+
+    def residuals(logarithms: Array) -> Array:
+        return _residuals(closed(logarithms), kind)
 
     start = np.log([START.Kp, START.Ti, START.Td])
-    simplex = start + np.vstack([np.zeros(3), 0.1 * np.eye(3)])
-    found = minimize(
-        criterion, start, method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": 1e-5, "fatol": 1e-12, "maxiter": 600},
-    )  # fmt: skip
-    if not found.success:
+    found = least_squares(residuals, start, method="lm", xtol=1e-7, ftol=1e-11)
+    if not found.success or not closed(found.x).is_stable():
         msg = f"ISTE, {form} form, {kind}: {found.message}"
         raise ValueError(msg)
     return Settings(*(float(f"{value:.3g}") for value in np.exp(found.x)))

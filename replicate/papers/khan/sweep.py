@@ -91,8 +91,8 @@ def sweep(ph: float, kh: Array) -> Sweep:
     slow = kh < np.exp(-1.0 - ph)
     decay = ph - lambertw(-kh[slow] * np.exp(ph)).real
     until = float(np.ceil(max(HORIZON, 2.0 + 3.5 / decay.min(initial=1.0))))
-    controllers = [PI(float(k)) for k in kh]
-    found = sweep_of_loops(_plant(ph), controllers, ("overshoot", "peak_time", "rise_time"), until)
+    gains = np.column_stack([kh, np.zeros_like(kh)])
+    found = sweep_of_loops(_plant(ph), gains, ("overshoot", "peak_time", "rise_time"), until)
     overshoot, at, rise_time = (found[name][0] for name in found.metrics)
     if np.any((overshoot > 0.001) & (at > 0.7 * until)):
         msg = f"ph = {ph:g}: the highest peak comes late; {until:g} dead times are too few"

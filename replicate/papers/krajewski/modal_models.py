@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import least_squares
 
 from replicate.exhibits.extrema import largest
 from replicate.papers.krajewski.normalised_loop import loop
@@ -57,42 +57,44 @@ def second_order_error(a: float, b: float) -> float:
     """Return the largest error of the best second-order response with a zero, after the dead time.
 
     With t' = t - τ the model is 1 - exp(-σt')(cos ωt' + c sin ωt'/ω), ω² of either sign, fitted by least squares to the
-    figures' time axis; c enters linearly and is solved for.
+    figures' time axis; c enters linearly and is solved for. The characteristic polynomial is s² + 2σs + σ² + ω², whose
+    modes decay where both coefficients are positive: their logarithms are free.
     """
     t = np.linspace(0.0, UNTIL - TAU, 1201)
     exact = response(a, b)
     error = 1.0 - exact(t + TAU)
 
-    def parts(parameters: Array, t: Array) -> tuple[Array, Array]:
-        sigma, square = parameters
-        root = np.sqrt(complex(square))
-        decay = np.exp(-sigma * t)
-        return decay * np.cos(root * t).real, decay * (t * np.sinc(root * t / np.pi)).real
+    def parts(logarithms: Array, t: Array) -> tuple[Array, Array]:
+        double, constant = np.exp(logarithms)
+        sigma, square = 0.5 * double, constant - 0.25 * double**2
+        if square < 0.0:
+            rate = np.sqrt(-square)
+            slow, fast = np.exp((rate - sigma) * t), np.exp(-(rate + sigma) * t)
+            return 0.5 * (slow + fast), 0.5 * (slow - fast) / rate
+        omega, decay = np.sqrt(square), np.exp(-sigma * t)
+        return decay * np.cos(omega * t), decay * t * np.sinc(omega * t / np.pi)
 
-    def weight(parameters: Array) -> float:
-        cosine, sine = parts(parameters, t)
-        return float(sine @ (error - cosine) / (sine @ sine))
+    def solved(logarithms: Array) -> tuple[float, Array]:
+        cosine, sine = parts(logarithms, t)
+        c = float(sine @ (error - cosine) / (sine @ sine))
+        return c, np.asarray(error - cosine - c * sine)
 
-    def residual(parameters: Array) -> Array:
-        cosine, sine = parts(parameters, t)
-        return np.asarray(error - cosine - weight(parameters) * sine)
+    def residual(logarithms: Array) -> Array:
+        return solved(logarithms)[1]
 
-    def cost(parameters: Array) -> float:
-        # Modes must decay: σ > 0, and for a real pair σ² > -ω².
-        if parameters[0] <= 0.0 or parameters[0] ** 2 + parameters[1] <= 0.0:
-            return 1e6
-        return float(np.sum(residual(parameters) ** 2))
-
-    starts = [(0.3, -0.05), (0.7, 0.2), (0.7, 2.0), (1.0, 6.0)]
+    starts = [(0.3, -0.05), (0.7, 0.2), (0.7, 2.0), (1.0, 6.0)]  # σ and ω²
     fits = [
-        minimize(cost, start, method="Nelder-Mead", options={"xatol": 1e-10, "fatol": 1e-14, "maxiter": 2000})
-        for start in starts
-    ]
-    best = min(fits, key=lambda fit: float(fit.fun))
-    c = weight(best.x)
+        least_squares(
+            residual, np.log([2.0 * sigma, sigma**2 + square]), "3-point", method="lm",
+            ftol=1e-15, xtol=1e-12, gtol=1e-15,
+        )
+        for sigma, square in starts
+    ]  # fmt: skip
+    best = min(fits, key=lambda fit: float(fit.cost))
+    c, fitted = solved(best.x)
 
     def remaining(x: float) -> float:
         cosine, sine = parts(best.x, np.array([x]))
         return abs(1.0 - float(exact(x + TAU)) - float(cosine[0]) - c * float(sine[0]))
 
-    return largest(remaining, t, np.abs(residual(best.x)))[1]
+    return largest(remaining, t, np.abs(fitted))[1]

@@ -10,11 +10,13 @@ from functools import cache
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from replicate.exhibits.extrema import largest
 from replicate.loops import PI, FrequencyPeak, Loop, PIDesign, Signal, design_pi, setpoint_weight
 from replicate.papers.panagopoulos.part_1.plants import PLANTS
 
+Array = NDArray[np.float64]
 WeightRule = Literal["w_mp", "w_0"]
 
 BOUNDS = (1.4, 1.6, 1.8, 2.0)  # the values of Ms in Table 1
@@ -70,9 +72,10 @@ def setpoint_peak(plant: str, ms: float, b: float) -> float:
     """Return M_sp (6), the largest |G_sp| (5) of a design with any set-point weight; at rest |G_sp| is 1."""
     found = design(plant, ms)
 
-    def gain(log_w: float) -> float:
+    def gain(log_w: Array) -> Array:
         s = 1j * np.exp(log_w)
-        value = complex(loop(plant, ms)(s))
-        return float(abs((found.ki + s * b * found.k) / (found.ki + s * found.k) * value / (1.0 + value)))
+        value = loop(plant, ms)(s)
+        return np.abs((found.ki + s * b * found.k) / (found.ki + s * found.k) * value / (1.0 + value))
 
-    return max(1.0, largest(gain, np.log(found.frequency) + np.log(np.geomspace(1e-2, 10.0, 301)))[1])
+    grid = np.log(found.frequency) + np.log(np.geomspace(1e-2, 10.0, 301))
+    return max(1.0, largest(lambda x: float(gain(np.array(x))), grid, gain(grid))[1])

@@ -48,17 +48,24 @@ def ellipse(w: float, kd: float, plant: Plant = G4) -> tuple[Array, Array]:
     return k, ki
 
 
-def ki_range(k: float, kd: float, w: Array = W) -> tuple[float, float]:
+@cache
+def _of_ellipses() -> tuple[Array, ...]:
+    """Return, at each frequency, |G| and what else the ellipses (3) of all gains share."""
+    g = G4(1j * W)
+    r = np.abs(g)
+    return r, CIRCLE.center * g.real / r, -CIRCLE.center * W * g.imag / r**2, W / r, W**2
+
+
+def ki_range(k: float, kd: float) -> tuple[float, float]:
     """Return the ends of the ki that keep a stable loop outside the circle; ``nan`` where there are none.
 
     Of several gaps between the ellipses the highest stable one counts.
     """
-    g = G4(1j * w)
-    r = np.abs(g)
-    inside = CIRCLE.radius**2 - (r * k + CIRCLE.center * g.real / r) ** 2
-    blocked = inside > 0.0
-    middle = (-CIRCLE.center * w * g.imag / r**2 + w**2 * kd)[blocked]
-    half = (w / r)[blocked] * np.sqrt(inside[blocked])
+    r, offset, level, slope, square = _of_ellipses()
+    inside = CIRCLE.radius**2 - (r * k + offset) ** 2
+    blocked = np.nonzero(inside > 0.0)[0]
+    middle = level[blocked] + square[blocked] * kd
+    half = slope[blocked] * np.sqrt(inside[blocked])
     low, high = middle - half, middle + half
     order = np.argsort(low)
     low, high = low[order], np.maximum.accumulate(high[order])
@@ -81,6 +88,11 @@ def region(kd: float, highest: float = 1.6, points: int = 161) -> tuple[Array, A
     k = np.linspace(0.0, highest, points)
     ends = np.array([ki_range(float(x), kd) for x in k])
     return k, ends[:, 0], ends[:, 1]
+
+
+@cache
+def _plant_on_grid() -> LoopJet:
+    return LoopJet.of(G4, W)
 
 
 @dataclass(frozen=True)
@@ -108,7 +120,7 @@ def best(kd: float) -> Best | None:
     tops = np.array([ki_range(float(x), kd)[1] for x in fine])
     i = int(np.nanargmax(tops))
     gains = np.array([fine[i], tops[i], kd])
-    value, _ = LoopJet.of(G4, W).values("sensitivity", CIRCLE, gains)
+    value, _ = _plant_on_grid().values("sensitivity", CIRCLE, gains)
     dips = np.nonzero((value[1:-1] <= value[:-2]) & (value[1:-1] <= value[2:]))[0] + 1
     touching = [float(W[j]) for j in dips[np.argsort(value[dips])]]
     for count in (1, 2):

@@ -6,6 +6,7 @@ Everything is rational and without dead time, so transfer functions are pairs of
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -44,13 +45,13 @@ class Shaft:
         """Return the process of (3); the test batch has omega_f = 1."""
         return cls(omega_p**2, zeta_p, omega_p, omega_f)
 
-    @property
+    @cached_property
     def plant(self) -> Plant:
         """The process as a plant."""
         mode = [1.0, 2.0 * self.zeta_p * self.omega_p, self.omega_p**2]
         return Plant([self.gain], np.polymul([1.0, self.omega_f], mode))
 
-    @property
+    @cached_property
     def p_max(self) -> float:
         """|P(i omega_p)|."""
         return float(abs(self.plant(1j * self.omega_p)))
@@ -119,14 +120,17 @@ class Shaft:
         return Plant(np.polymul(plant.num, den), closed)
 
     def largest_stable_gain(self) -> float:
-        """Return the k_b at which the inner loop becomes unstable."""
-        low, high = 0.0, 1.0
-        while np.all(self.damped(high).poles().real < 0.0):
-            low, high = high, 2.0 * high
-        while high - low > 1e-13 * high:
-            middle = 0.5 * (low + high)
-            low, high = (middle, high) if np.all(self.damped(middle).poles().real < 0.0) else (low, middle)
-        return high
+        """Return the k_b at which the inner loop becomes unstable: the least at which it has a pole on the axis.
+
+        With P F = k_b N/D these are k_b = -D/N at the frequencies at which that is real, the roots of Im(D N*).
+        """
+        plant, (filter_num, filter_den) = self.plant, self.filter(1.0)
+        num, den = np.polymul(plant.num, filter_num), np.polymul(plant.den, filter_den)
+        in_w = [p * 1j ** np.arange(p.size)[::-1] for p in (num, den)]
+        w = np.roots(np.polymul(in_w[1], np.conj(in_w[0])).imag)
+        s = 1j * w[(w.real > 0.0) & (np.abs(w.imag) < 1e-9 * np.abs(w))].real
+        gains = -(np.polyval(den, s) / np.polyval(num, s)).real
+        return float(np.min(gains[gains > 0.0]))
 
 
 def allpass(omega: float, zeta: float) -> tuple[Array, Array]:

@@ -67,18 +67,25 @@ def starch_range() -> tuple[float, float]:
     return search_range(STARCH, start.k, start.ki)
 
 
+@cache
+def _starch_on_range() -> tuple[Array, LoopJet]:
+    """Return logarithms of frequencies on that range, and the plant there."""
+    low, high = starch_range()
+    grid = np.linspace(np.log(low), np.log(high), 200)
+    return grid, LoopJet.of(STARCH, np.exp(grid))
+
+
 def shape(gains: tuple[float, float, float], kind: Literal["curvature", "phase"]) -> float:
     """Return the largest signed curvature, or the largest slope of arg L over log w, on the starch search range.
 
     ``gains`` are k, ki, kd; a positive value violates the constraint of the supplement's (5).
     """
-    low, high = starch_range()
+    grid, plant = _starch_on_range()
 
-    def value(log_w: float) -> float:
-        jet = LoopJet.of(STARCH, np.array([np.exp(log_w)]))
-        return -float(jet.values(kind, Circle.of(ms=STARCH_MS), np.array(gains))[0][0])
+    def values(jet: LoopJet) -> Array:
+        return -jet.values(kind, Circle.of(ms=STARCH_MS), np.array(gains))[0]
 
-    return largest(value, np.linspace(np.log(low), np.log(high), 200))[1]
+    return largest(lambda x: float(values(LoopJet.of(STARCH, np.exp([x])))[0]), grid, values(plant))[1]
 
 
 def on_both_limits(gain: float) -> dict[str, float]:
@@ -140,15 +147,16 @@ def _never_above_one(k: float, ki: float, kd: float) -> float:
     """
     loop = Loop(DRYING, PID(k, ki, kd))
 
-    def needed(log_w: float) -> float:
+    def needed(log_w: Array) -> Array:
         s = 1j * np.exp(log_w)
-        value = complex(loop(s))
-        gain = abs((ki + k * s) / (ki + k * s + kd * s**2) * value / (1.0 + value))
-        return float(np.sqrt(max(gain**2 - 1.0, 0.0)) / abs(s))
+        value = loop(s)
+        gain = np.abs((ki + k * s) / (ki + k * s + kd * s**2) * value / (1.0 + value))
+        return np.asarray(np.sqrt(np.maximum(gain**2 - 1.0, 0.0)) / np.abs(s))
 
     # the plant's velocity gain is P0(0) = Kp, so 1/G_sp = 1 + s^2 (kd + 1/Kp)/ki + O(s^3): the limit at zero frequency
     at_rest = float(np.sqrt(2.0 * (kd + DRYING.den[-2] / DRYING.num[-1]) / ki))
-    return max(at_rest, largest(needed, np.linspace(np.log(1e-3), np.log(3.0), 800))[1])
+    grid = np.linspace(np.log(1e-3), np.log(3.0), 800)
+    return max(at_rest, largest(lambda x: float(needed(np.array(x))), grid, needed(grid))[1])
 
 
 def beside_the_peak(w: float) -> tuple[float, float]:

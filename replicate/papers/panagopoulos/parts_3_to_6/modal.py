@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complex128]
 
 DECAYED = 26.0  # time constants of the slowest mode after which its contribution is below 1e-11
+BLOCK = 64  # times that share an exponential
 PER_RADIAN = 2.0  # samples per radian of the fastest oscillation, to separate extrema
 
 
@@ -54,16 +55,22 @@ class ModalSum:
         """Return the derivative."""
         return ModalSum(self.poles, self.residues * self.poles)
 
-    def roots(self, t: Array) -> Array:
-        """Return the sign changes between ascending times, found there and polished by Newton's method."""
-        y = self(t)
+    def roots(self, t: Array, y: Array) -> Array:
+        """Return the sign changes between ascending times with given values, polished by Newton's method."""
         change = np.nonzero(y[:-1] * y[1:] < 0.0)[0]
         left, right = t[change], t[change + 1]
         found = left - y[change] * (right - left) / (y[change + 1] - y[change])
-        slope = self.derivative()
+        slopes = self.derivative().residues
         for _ in range(4):
-            found = np.clip(found - self(found) / slope(found), left, right)
+            modes = np.exp(found[:, None] * self.poles)
+            found = np.clip(found - (modes @ self.residues).real / (modes @ slopes).real, left, right)
         return found
+
+    def _modes(self, step: float, count: int) -> ComplexArray:
+        """Return exp(poles[i] * t) at ``count`` equal steps from t = 0, as products of few exponentials."""
+        fine, coarse = np.arange(BLOCK), BLOCK * np.arange(-(-count // BLOCK))
+        starts, parts = (np.exp(step * n[:, None] * self.poles) for n in (coarse, fine))
+        return np.asarray((starts[:, None] * parts).reshape(-1, self.poles.size)[:count])
 
     def absolute_integral(self) -> float:
         """Return the integral of the absolute value over all time.
@@ -73,8 +80,11 @@ class ModalSum:
         """
         end = DECAYED / float(np.min(-self.poles.real))
         count = int(PER_RADIAN * end * max(float(np.max(np.abs(self.poles.imag))), 1.0 / end)) + 200
-        t = np.linspace(0.0, end, count)
-        t = np.union1d(t, self.derivative().roots(t))
-        total = self.integral()
-        ends = np.append(total(np.concatenate([[0.0], self.roots(t)])), 0.0)
+        t, slope, total = np.linspace(0.0, end, count), self.derivative(), self.integral()
+        modes = self._modes(t[1], count)
+        extrema = slope.roots(t, (modes @ slope.residues).real)
+        t = np.concatenate([t, extrema])
+        y = np.concatenate([(modes @ self.residues).real, self(extrema)])
+        order = np.argsort(t)
+        ends = np.append(total(np.concatenate([[0.0], self.roots(t[order], y[order])])), 0.0)
         return float(np.sum(np.abs(np.diff(ends))))
