@@ -34,18 +34,55 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> str:
     return path.as_uri()
 
 
-@pytest.fixture
-def page(browser: Any, address: str) -> Iterator[Any]:
-    page = browser.new_page(viewport={"width": 1280, "height": 900})
+@contextlib.contextmanager
+def tab(browser: Any) -> Iterator[Any]:
+    """Open a tab, which takes longer than a page in it."""
+    page = browser.new_page()
     page.wrong = []
     page.on("pageerror", lambda error: page.wrong.append(str(error)))
     page.on("console", lambda message: page.wrong.append(message.text) if message.type == "error" else None)
     page.on("request", lambda request: None if request.url.startswith("file:") else page.wrong.append(request.url))
-    page.goto(address)
-    until(page, "window.whatif && document.querySelector('#metrics-body tr')")
     yield page
     page.close()
-    assert page.wrong == []  # nothing raised, nothing was fetched
+
+
+def opened(page: Any, address: str) -> None:
+    """Open the page, in a tab that may have shown it before."""
+    page.goto("about:blank")
+    page.wrong.clear()
+    page.set_viewport_size({"width": 1280, "height": 900})
+    page.emulate_media(color_scheme="light")
+    page.mouse.move(0, 0)
+    page.goto(address)
+    until(page, "window.whatif && document.querySelector('#metrics-body tr')")
+
+
+@pytest.fixture(scope="module")
+def reopened(browser: Any) -> Iterator[Any]:
+    with tab(browser) as page:
+        yield page
+
+
+@pytest.fixture
+def page(reopened: Any, address: str) -> Iterator[Any]:
+    """Return the page as it opens, for tests that change it."""
+    opened(reopened, address)
+    yield reopened
+    assert reopened.wrong == []  # nothing raised, nothing was fetched
+
+
+@pytest.fixture(scope="module")
+def left_open(browser: Any, address: str) -> Iterator[Any]:
+    with tab(browser) as page:
+        opened(page, address)
+        yield page
+
+
+@pytest.fixture
+def same_page(left_open: Any) -> Iterator[Any]:
+    """Return a page that stays open, for tests that ask its functions or leave it as it was."""
+    yield left_open
+    assert left_open.wrong == []
 
 
 NEXT_FRAME = "() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 0)))"
@@ -74,13 +111,13 @@ COMPUTE = """([given, controller, times]) => {
 }"""
 
 
-def test_the_kernel_is_as_exact_as_python(page: Any) -> None:
+def test_the_kernel_is_as_exact_as_python(same_page: Any) -> None:
     rng = np.random.default_rng(2026)
     stable = 0
     for number in range(LOOPS):
         given, loop = random_loop(rng, number)
         times = np.linspace(0.0, 12.0 * (given["plant"]["deadTime"] + 1.0), 60)
-        found = page.evaluate(COMPUTE, [given["plant"], given["controller"], times.tolist()])
+        found = same_page.evaluate(COMPUTE, [given["plant"], given["controller"], times.tolist()])
         assert found["stable"] == loop.is_stable(), given
         if not found["stable"]:
             continue
@@ -107,8 +144,8 @@ def test_the_kernel_is_as_exact_as_python(page: Any) -> None:
         ("9/(s^3+s^2+9s+9)", "k=-0.3,ki=0.2"),  # poles on the imaginary axis
     ],
 )
-def test_margins_of_loops_that_chance_seldom_brings(page: Any, plant: str, controller: str) -> None:
-    found = page.evaluate(
+def test_margins_of_loops_that_chance_seldom_brings(same_page: Any, plant: str, controller: str) -> None:
+    found = same_page.evaluate(
         "([plant, given]) => whatif.measure(whatif.prepare(whatif.parsePlant(plant)), whatif.parseController(given))",
         [plant, controller],
     )
@@ -136,8 +173,8 @@ def metrics_of(loop: Loop) -> dict[str, float]:
     return found
 
 
-def test_the_page_agrees_with_its_own_reference(page: Any) -> None:
-    (apart,) = re.findall(r"agrees with the report to ([\d.e+-]+)\.", page.inner_text("#agreement"))
+def test_the_page_agrees_with_its_own_reference(same_page: Any) -> None:
+    (apart,) = re.findall(r"agrees with the report to ([\d.e+-]+)\.", same_page.inner_text("#agreement"))
     assert float(apart) < 1e-9
 
 
@@ -253,11 +290,11 @@ def numbers(text: str) -> list[float]:
     return [float(number) for number in re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text)]
 
 
-def test_the_python_lines_print_what_the_table_shows(page: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    exec(page.evaluate("whatif.python(whatif.state)"), {})  # noqa: S102  -- the lines that a reader would run
+def test_the_python_lines_print_what_the_table_shows(same_page: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    exec(same_page.evaluate("whatif.python(whatif.state)"), {})  # noqa: S102  -- the lines that a reader would run
     printed = numbers(capsys.readouterr().out)
-    assert printed == numbers(" ".join(page.locator("#metrics-body td").all_inner_texts()))
-    assert len(printed) == page.locator("#metrics-body tr").count()
+    assert printed == numbers(" ".join(same_page.locator("#metrics-body td").all_inner_texts()))
+    assert len(printed) == same_page.locator("#metrics-body tr").count()
 
 
 def test_an_ideal_derivative_is_that_of_the_core(page: Any, address: str) -> None:
@@ -305,31 +342,31 @@ def rules(page: Any, plant: str) -> dict[str, list[float]]:
 
 
 @pytest.mark.parametrize("text", ["e^{-2s}/(3s+1)", "-0.5e^{-0.2s}/(3s+1)", "0.5e^{-2s}/s"])
-def test_the_rules_of_the_page_are_those_of_the_core(page: Any, text: str) -> None:
-    plant, found = parse_plant(text), rules(page, text)
+def test_the_rules_of_the_page_are_those_of_the_core(same_page: Any, text: str) -> None:
+    plant, found = parse_plant(text), rules(same_page, text)
     for name, rule in (("SIMC", simc), ("AMIGO", amigo), ("ZN", ziegler_nichols)):
         expected = rule(plant)
         assert found[name] == pytest.approx([expected.k, expected.ki], rel=1e-12), name
 
 
-def test_rules_of_the_papers_are_marked_where_they_apply(page: Any) -> None:
+def test_rules_of_the_papers_are_marked_where_they_apply(same_page: Any) -> None:
     # Khan and Lehman for e^{-hs}/(s + p), K = 2/p, by (7b) and, restored, (7a); Bayhan and others with K, tau and L
     p, h = 0.5, 3.0
     kp = 0.404 / h + 0.256 * p - 0.1275 * (p / h) ** 0.5
     ki = 0.0808 / h**2 + 0.719 * p / h - 0.324 * p**0.5 / h**1.5
-    assert rules(page, "2e^{-3s}/(s+0.5)")["Khan (7)"] == pytest.approx([kp / 2, ki / 2], rel=1e-12)
+    assert rules(same_page, "2e^{-3s}/(s+0.5)")["Khan (7)"] == pytest.approx([kp / 2, ki / 2], rel=1e-12)
     p, h = 0.5, 0.2
     kp = -0.0404 * p**2 * h + 0.0723 * p + 0.3852 / h
     ki = -0.0525 * p**2 + 0.4104 * p / h - 0.00024 / h**2
-    assert rules(page, "e^{-0.2s}/(s+0.5)")["Khan (7)"] == pytest.approx([kp, ki], rel=1e-12)
-    assert "Khan (7)" not in rules(page, "e^{-0.01s}/(s+0.5)")
-    assert list(rules(page, "1/((s+1)(0.2s+1)(0.05s+1))")) == ["SIMC"]
-    assert rules(page, "e^{-s}/(s-1)") == {}
+    assert rules(same_page, "e^{-0.2s}/(s+0.5)")["Khan (7)"] == pytest.approx([kp, ki], rel=1e-12)
+    assert "Khan (7)" not in rules(same_page, "e^{-0.01s}/(s+0.5)")
+    assert list(rules(same_page, "1/((s+1)(0.2s+1)(0.05s+1))")) == ["SIMC"]
+    assert rules(same_page, "e^{-s}/(s-1)") == {}
 
 
-def test_the_marked_pole_assignment_puts_a_double_pole(page: Any) -> None:
+def test_the_marked_pole_assignment_puts_a_double_pole(same_page: Any) -> None:
     K, tau, L = 2.0, 3.0, 1.5
-    k, ki = rules(page, "2e^{-1.5s}/(3s+1)")["pole assignment"]
+    k, ki = rules(same_page, "2e^{-1.5s}/(3s+1)")["pole assignment"]
     a = (L + 4 * tau - (L**2 + 8 * tau**2) ** 0.5) / (2 * L)  # -a/tau is the triple pole with the exact dead time
     above, below = [L**2, -6 * L, 12.0], [L**2, 6 * L, 12.0]  # Padé, second order
     loop = np.polyadd(np.polymul([tau, 1.0, 0.0], below), K * np.polymul([k, ki], above))
@@ -338,9 +375,9 @@ def test_the_marked_pole_assignment_puts_a_double_pole(page: Any) -> None:
 
 
 @pytest.mark.parametrize("text", ["1/(s+1)^4", "2e^{-0.5s}/((4s+1)(s+1))", "e^{-s}(1-0.3s)/(s(s+1)^2)", "1/(s+1)^7"])
-def test_several_lags_are_reduced_as_in_the_core(page: Any, text: str) -> None:
+def test_several_lags_are_reduced_as_in_the_core(same_page: Any, text: str) -> None:
     expected = simc(parse_plant(text))
-    assert rules(page, text)["SIMC"] == pytest.approx([expected.k, expected.ki], rel=1e-9)
+    assert rules(same_page, text)["SIMC"] == pytest.approx([expected.k, expected.ki], rel=1e-9)
 
 
 def test_curves_and_picture_can_be_taken_away(page: Any) -> None:
@@ -435,15 +472,19 @@ def test_a_change_is_drawn_once_a_frame(page: Any) -> None:
         ("b", "Infinity", "'Infinity' is not a number"),
     ],
 )
-def test_nonsense_gets_a_sentence_and_changes_nothing(page: Any, field: str, text: str, reason: str) -> None:
-    before = page.evaluate("[whatif.state.plantText, whatif.state.controller]")
-    page.fill(f"#{field}", text)
-    page.press(f"#{field}", "Enter")
-    error = page.get_attribute(f"#{field}", "aria-describedby")
-    until(page, f"document.getElementById('{error}').textContent")
-    assert reason in page.inner_text(f"#{error}")
-    assert page.get_attribute(f"#{field}", "aria-invalid") == "true"
-    assert page.evaluate("[whatif.state.plantText, whatif.state.controller]") == before
+def test_nonsense_gets_a_sentence_and_changes_nothing(same_page: Any, field: str, text: str, reason: str) -> None:
+    before = same_page.evaluate("[whatif.state.plantText, whatif.state.controller]")
+    sense = same_page.input_value(f"#{field}")
+    same_page.fill(f"#{field}", text)
+    same_page.press(f"#{field}", "Enter")
+    error = same_page.get_attribute(f"#{field}", "aria-describedby")
+    until(same_page, f"document.getElementById('{error}').textContent")
+    assert reason in same_page.inner_text(f"#{error}")
+    assert same_page.get_attribute(f"#{field}", "aria-invalid") == "true"
+    assert same_page.evaluate("[whatif.state.plantText, whatif.state.controller]") == before
+    same_page.fill(f"#{field}", sense)
+    same_page.press(f"#{field}", "Enter")
+    until(same_page, f"!document.getElementById('{error}').textContent")
 
 
 def test_a_plant_without_stable_region_and_one_without_dead_time(page: Any) -> None:
@@ -530,14 +571,14 @@ LIMITED = """([given, controller, limit, antiWindup, end]) =>
     ],
 )
 def test_the_limited_response_is_right_to_a_line_width(
-    page: Any, plant: str, controller: str, anti_windup: Literal["none", "back-calculation"]
+    same_page: Any, plant: str, controller: str, anti_windup: Literal["none", "back-calculation"]
 ) -> None:
     """The page says that it is approximate; a line is about a hundredth of the picture's height wide."""
     limit, loop = 1.2, Loop(parse_plant(plant), parse_controller(controller))
-    given = page.evaluate(
+    given = same_page.evaluate(
         "([plant, controller]) => [whatif.parsePlant(plant), whatif.parseController(controller)]", [plant, controller]
     )
-    points = np.array(page.evaluate(LIMITED, [*given, limit, anti_windup != "none", 30.0]))
+    points = np.array(same_page.evaluate(LIMITED, [*given, limit, anti_windup != "none", 30.0]))
     exact = loop.saturated(limits=(-limit, limit), anti_windup=anti_windup, until=30.1).output(points[:, 0])
     assert np.max(np.abs(exact - loop.step(until=30.1)(points[:, 0]))) > 0.01  # the limit is felt
     assert np.max(np.abs(points[:, 1] - exact)) < 1e-3
@@ -554,10 +595,12 @@ REGION = """([text, controller, plane]) => {
 
 
 @pytest.mark.parametrize("text", ["e^{-s}/(s+1)", "e^{-0.4s}/(s-1)", "9/(s^3+s^2+9s+9)", "-2e^{-s}/(s+1)", "e^{-s}/s"])
-def test_region_and_contours_are_those_of_the_core(page: Any, text: str) -> None:
+def test_region_and_contours_are_those_of_the_core(same_page: Any, text: str) -> None:
     sign = -1.0 if text.startswith("-") else 1.0
     plant = parse_plant(text)
-    found = page.evaluate(REGION, [text, f"k={sign * 1.3 if '-1)' in text else sign * 0.2},ki={sign * 0.05}", "ki"])
+    found = same_page.evaluate(
+        REGION, [text, f"k={sign * 1.3 if '-1)' in text else sign * 0.2},ki={sign * 0.05}", "ki"]
+    )
     box, columns, rows = found["box"], 72, 54
     assert box["top" if sign > 0 else "bottom"] * sign > 0
     for index in range(0, len(found["stable"]), 97):  # the cells' corners
