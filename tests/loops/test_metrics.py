@@ -138,6 +138,7 @@ def test_jumps_are_crossings() -> None:
     y = Loop(Plant([1.0], [1.0], dead_time=1.0), PI(k=0.5, ki=0.1)).step(until=3.0)
     assert y.crossings(0.3) == pytest.approx([1.0], rel=1e-14)
     assert y.crossings(0.55) == pytest.approx([1.5, 2.0], rel=1e-13)
+    assert y.last_crossing(0.3) == pytest.approx(1.0, rel=1e-14)
     assert y.peak().value == pytest.approx(0.6, rel=1e-13)  # the limit from the left at t = 2
     assert y.peak().time == pytest.approx(2.0, rel=1e-13)
 
@@ -316,6 +317,7 @@ def test_extrema_and_crossings_of_waves(wave: Wave, level: float) -> None:
     chain = np.sign(dense - level).ravel()
     chain = chain[chain != 0]
     assert y.crossings(level).size == np.count_nonzero(chain[1:] != chain[:-1])
+    assert y.last_crossing(level) == max(y.crossings(level), default=0.0)
 
 
 def test_a_signal_at_rest_has_no_integrals() -> None:

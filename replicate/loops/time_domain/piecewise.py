@@ -280,20 +280,33 @@ class Piecewise(SetOnce):
     def crossings(self, level: float) -> Array:
         """Return all times at which the response crosses ``level``, jumps included, ascending."""
         level = checks.finite("the level", level)
-        low, high = self._samples.min(axis=1), self._samples.max(axis=1)
-        slack = MARGIN * (high - low)
-        times: list[float] = []
-        for piece in np.nonzero((low - slack <= level) & (high + slack >= level) & (high > low))[0]:
-            roots = self._crossing_roots(int(piece), level)
-            times += [self._time(int(piece), x) for x in roots]
-        ends, starts = self._samples[:-1, -1] - level, self._samples[1:, 0] - level
-        jumps = np.nonzero(ends * starts < 0.0)[0]
-        negligible = NOISE * float(np.max(np.abs(self._samples)))
-        times += [float(self.breaks[j + 1]) for j in jumps if np.abs(ends[j] - starts[j]) > negligible]
-        merged = np.sort(np.asarray(times))
+        times = [time for piece in self._pieces_at(level) for time in self._crossings_in(piece, level)]
+        merged = np.sort(np.concatenate([times, self._jumps_across(level)]))
         if merged.size > 1:  # a crossing exactly at a break is found from both sides
             merged = merged[np.concatenate([[True], np.diff(merged) > SAME * merged[1:]])]
         return merged
+
+    def last_crossing(self, level: float) -> float:
+        """Return the last time at which the response crosses ``level``, jumps included; 0 if it never does."""
+        level = checks.finite("the level", level)
+        within = (self._crossings_in(piece, level) for piece in reversed(self._pieces_at(level)))
+        last = next((times[-1] for times in within if times), 0.0)
+        return max(last, float(self._jumps_across(level).max(initial=0.0)))
+
+    def _pieces_at(self, level: float) -> list[int]:
+        """Return the pieces that may cross a level."""
+        low, high = self._samples.min(axis=1), self._samples.max(axis=1)
+        slack = MARGIN * (high - low)
+        return list(np.nonzero((low - slack <= level) & (high + slack >= level) & (high > low))[0].tolist())
+
+    def _crossings_in(self, piece: int, level: float) -> list[float]:
+        return [self._time(piece, x) for x in self._crossing_roots(piece, level)]
+
+    def _jumps_across(self, level: float) -> Array:
+        """Return the breaks at which the response jumps across a level."""
+        ends, starts = self._samples[:-1, -1] - level, self._samples[1:, 0] - level
+        negligible = NOISE * float(np.max(np.abs(self._samples)))
+        return self.breaks[1:-1][(ends * starts < 0.0) & (np.abs(ends - starts) > negligible)]
 
     def _crossing_roots(self, piece: int, level: float) -> Array:
         series = self.coefficients[piece].copy()

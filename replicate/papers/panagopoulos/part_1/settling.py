@@ -19,5 +19,5 @@ def two_sided(response: Signal, band: float = BAND) -> float:
 
 def one_sided(response: Signal, dead_time: float = 0.0, level: float = BAND) -> float:
     """Return the last time at which a response that ends at zero is above a level, from the end of the dead time."""
-    crossings = response.crossings(level)
-    return float(crossings[-1]) - dead_time if crossings.size else 0.0
+    last = response.last_crossing(level)
+    return last - dead_time if last else 0.0

@@ -71,7 +71,7 @@ def largest(table: str, row: str, signal: SignalName) -> float:
 @cache
 def last_crossing(table: str, row: str, signal: SignalName, level: float) -> float:
     """Return the last time at which a deviation crosses a level; 0 where it does not."""
-    return float(max(deviation(table, row, signal).crossings(level), default=0.0))
+    return deviation(table, row, signal).last_crossing(level)
 
 
 def definitions() -> Iterator[Definition]:

@@ -53,8 +53,8 @@ ONE_SIDED = 0.05  # as in paper I: the last time above +5 % of the step, undersh
 def one_sided_settling(table: str, row: str) -> float:
     """Return the settling time by paper I's definition, from the end of the dead time, for the printed gains."""
     process, _ = split(row)
-    crossings = load_experiment(process, printed(table, row)).output.crossings(ONE_SIDED)
-    return float(crossings[-1]) - PLANTS[process].dead_time if crossings.size else 0.0
+    last = load_experiment(process, printed(table, row)).output.last_crossing(ONE_SIDED)
+    return last - PLANTS[process].dead_time if last else 0.0
 
 
 def _designs(table: Table, problem: Problem) -> Callable[[], pd.DataFrame]:
