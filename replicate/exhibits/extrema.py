@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from scipy.optimize import minimize_scalar
 Array = NDArray[np.float64]
 
 
-def largest(f: Callable[[float], float], grid: Array, values: Array | None = None) -> tuple[float, float]:
+def largest(f: Callable[[Any], Any], grid: Array, values: Array | None = None) -> tuple[float, float]:
     """Return where a function is largest between the ends of a grid, and how large.
 
     Parameters
@@ -21,7 +22,7 @@ def largest(f: Callable[[float], float], grid: Array, values: Array | None = Non
     grid
         Shape (n,), ascending.
     values
-        The function on the grid, shape (n,), if they are known.
+        The function on the grid, shape (n,), if they are known; ``f(grid)`` for one that works elementwise.
 
     Examples
     --------
@@ -29,15 +30,15 @@ def largest(f: Callable[[float], float], grid: Array, values: Array | None = Non
     >>> round(at, 6), round(value, 6)
     (0.5, 0.25)
     """
-    known = np.array([f(float(x)) for x in grid]) if values is None else values
+    known = np.array([float(f(float(x))) for x in grid]) if values is None else values
     best = int(np.argmax(known))
     at, value = float(grid[best]), float(known[best])
     inside = (float(grid[max(best - 1, 0)]), float(grid[min(best + 1, grid.size - 1)]))
-    found = minimize_scalar(lambda x: -f(float(x)), bounds=inside, method="bounded", options={"xatol": 1e-10})
+    found = minimize_scalar(lambda x: -float(f(float(x))), bounds=inside, method="bounded", options={"xatol": 1e-10})
     return (float(found.x), -float(found.fun)) if -found.fun > value else (at, value)
 
 
-def smallest(f: Callable[[float], float], grid: Array, values: Array | None = None) -> tuple[float, float]:
+def smallest(f: Callable[[Any], Any], grid: Array, values: Array | None = None) -> tuple[float, float]:
     """Return where a function is smallest between the ends of a grid, and how small.
 
     Parameters

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from scipy.special import lambertw
 
 from replicate.papers.khan import paper
-from replicate.papers.khan.sweep import stability_limit, sweep
+from replicate.papers.khan.sweep import overshoot, stability_limit
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -44,9 +44,7 @@ def double_pole(ph: float) -> float:
 def visible(ph: float, percent: float) -> float:
     """Return the gain at which the overshoot reaches a level."""
     top = 0.9 * stability_limit(ph)
-    return float(
-        brentq(lambda kh: float(sweep(ph, np.array([kh])).overshoot[0]) - percent, np.exp(-1.0 - ph), top, xtol=1e-10)
-    )
+    return float(brentq(lambda kh: overshoot(ph, kh) - percent, np.exp(-1.0 - ph), top, xtol=1e-10))
 
 
 @breakpoint_table.reading("as-written", "Formula, double pole, visible overshoot")

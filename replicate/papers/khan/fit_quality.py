@@ -15,7 +15,7 @@ from replicate.papers.khan.fits import (
     CASES,
     cases_of,
     complex_below,
-    overshoot_fit,
+    fit_of_case,
     overshoot_fits,
     positive_from,
     rise_time_fit,
@@ -193,15 +193,17 @@ def largest_jump(
     estimates have kinks where they reach zero, so the edge is bracketed finely before the maximum is found.
     """
 
-    def place(t: float) -> tuple[float, float]:
+    def place(t: Array | float) -> tuple[Array | float, Array | float]:
         return start[0] + t * (end[0] - start[0]), start[1] + t * (end[1] - start[1])
 
-    def jump(t: float) -> float:
-        first, second = (overshoot_fit(*place(t), case) for case in cases)
-        return second - first
+    def jump(t: Array | float) -> Array:
+        first, second = (fit_of_case(case, *place(t)) for case in cases)
+        return np.asarray(second - first)
 
-    t, _ = largest(lambda t: abs(jump(t)), np.linspace(0.0, 1.0, 2001))
-    return (jump(t), *place(t))
+    grid = np.linspace(0.0, 1.0, 2001)
+    t, _ = largest(lambda t: abs(jump(t)), grid, np.abs(jump(grid)))
+    ph, kh = place(t)
+    return float(jump(t)), float(ph), float(kh)
 
 
 def _later_peak_from(ph: float) -> float:

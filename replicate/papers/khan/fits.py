@@ -62,13 +62,17 @@ def m_of_case(case: str, ph: Array | float, kh: Array | float, coefficients: Coe
     return np.asarray(a + b * kh)
 
 
+def fit_of_case(case: str, ph: Array | float, kh: Array | float, coefficients: Coefficients | None = None) -> Array:
+    """Return Max[0, M] of one case in per cent; 0 where M is complex."""
+    return np.asarray(np.maximum(np.nan_to_num(m_of_case(case, ph, kh, coefficients)), 0.0))
+
+
 def overshoot_fit(ph: float, kh: float, case: str | None = None) -> float:
     """Return Max[0, M] of (2) in per cent; 0 where M is complex, ``nan`` where no case covers the point."""
     case = case or case_of(ph, kh)
     if case is None:
         return float("nan")
-    m = float(m_of_case(case, ph, kh))
-    return 0.0 if np.isnan(m) else max(0.0, m)
+    return float(fit_of_case(case, ph, kh))
 
 
 def overshoot_fits(ph: Array, kh: Array) -> Array:
@@ -77,7 +81,7 @@ def overshoot_fits(ph: Array, kh: Array) -> Array:
     found = np.full(ph.shape, np.nan)
     for case in CASES:
         mask = cases == case
-        found[mask] = np.maximum(np.nan_to_num(m_of_case(case, ph[mask], kh[mask])), 0.0)
+        found[mask] = fit_of_case(case, ph[mask], kh[mask])
     return found
 
 

@@ -17,7 +17,7 @@ from replicate.papers.khan.fits import (
     CASES,
     Coefficients,
     cases_of,
-    m_of_case,
+    fit_of_case,
     printed_coefficients,
     rise_time_fit,
 )
@@ -135,7 +135,7 @@ def _with(c: Coefficients, case: str, x: Array) -> Coefficients:
 
 
 def _clipped(case: str, loops: Sweep, c: Coefficients) -> Array:
-    return np.maximum(np.nan_to_num(m_of_case(case, loops.ph, loops.kh, c)), 0.0)
+    return fit_of_case(case, loops.ph, loops.kh, c)
 
 
 def _rise_time(loops: Sweep, c: Coefficients) -> Array:

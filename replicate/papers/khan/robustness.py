@@ -7,9 +7,12 @@ from functools import cache
 
 import numpy as np
 
-from replicate.exhibits.extrema import largest
+from replicate.exhibits import extrema
 from replicate.loops import Loop
 from replicate.papers.khan.processes import loop
+
+# of log ph, one for each case of the rule
+PARTS = (np.linspace(np.log(0.01), np.log(0.2), 16), np.linspace(np.log(0.2 + 1e-9), np.log(20.0), 25))
 
 
 @cache
@@ -32,9 +35,17 @@ def smallest(of_loop: Callable[[Loop], float], variant: str) -> tuple[float, flo
     The two cases of the rule, which meet at ph = 0.2 with a jump, are searched apart.
     """
 
-    def negative(x: float) -> float:
-        return -of_loop(loop("Proposed", 1.0, float(np.exp(x)), variant))
+    def quantity(x: float) -> float:
+        return of_loop(loop("Proposed", 1.0, float(np.exp(x)), variant))
 
-    parts = (np.linspace(np.log(0.01), np.log(0.2), 16), np.linspace(np.log(0.2 + 1e-9), np.log(20.0), 25))
-    at, value = max((largest(negative, part) for part in parts), key=lambda found: found[1])
-    return float(np.exp(at)), -value
+    found = [
+        extrema.smallest(quantity, part, np.array([of_loop(closed) for closed in loops]))
+        for part, loops in zip(PARTS, _loops_on_parts(variant), strict=True)
+    ]
+    at, value = min(found, key=lambda one: one[1])
+    return float(np.exp(at)), value
+
+
+@cache
+def _loops_on_parts(variant: str) -> tuple[tuple[Loop, ...], ...]:
+    return tuple(tuple(loop("Proposed", 1.0, float(np.exp(x)), variant) for x in part) for part in PARTS)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import lambertw
 
-from replicate.loops import PI, Plant
+from replicate.loops import PI, Loop, Plant
 from replicate.loops import sweep as sweep_of_loops
 from replicate.loops.time_domain.responses import responses
 from replicate.papers.khan.peaks import ROUNDING, Responses
@@ -43,6 +43,8 @@ class Sweep:
         From 10 % to 90 % of the final value, in dead times.
     share
         The gain as a fraction of the stability limit.
+    peak_time
+        When the output is highest, in dead times; of no meaning without overshoot.
     """
 
     ph: Array
@@ -50,14 +52,17 @@ class Sweep:
     overshoot: Array
     rise_time: Array
     share: Array
+    peak_time: Array
 
     @cached_property
     def first_peak(self) -> Array:
         """The overshoot of the first local maximum; close to the stability limit a later peak can be higher."""
-        found = np.empty_like(self.kh)
+        found = np.zeros_like(self.kh)
         for ph in np.unique(self.ph):
-            mine = self.ph == ph
-            found[mine] = first_peak(float(ph), self.kh[mine])
+            mine = (self.ph == ph) & (self.overshoot > 0.0)
+            if mine.any():
+                until = np.ceil(self.peak_time[mine].max()) + 1.0  # the first peak is no later than the highest
+                found[mine] = first_peak(float(ph), self.kh[mine], min(float(until), HORIZON))
         return found
 
     def where(self, mask: NDArray[np.bool_]) -> Sweep:
@@ -66,7 +71,7 @@ class Sweep:
 
     def parts(self) -> tuple[Array, ...]:
         """Return all arrays in the order of the fields."""
-        return self.ph, self.kh, self.overshoot, self.rise_time, self.share
+        return self.ph, self.kh, self.overshoot, self.rise_time, self.share, self.peak_time
 
 
 @cache
@@ -93,15 +98,32 @@ def sweep(ph: float, kh: Array) -> Sweep:
     until = float(np.ceil(max(HORIZON, 2.0 + 3.5 / decay.min(initial=1.0))))
     gains = np.column_stack([kh, np.zeros_like(kh)])
     found = sweep_of_loops(_plant(ph), gains, ("overshoot", "peak_time", "rise_time"), until)
-    overshoot, at, rise_time = (found[name][0] for name in found.metrics)
-    if np.any((overshoot > 0.001) & (at > 0.7 * until)):
+    highest, at, rise_time = (found[name][0] for name in found.metrics)
+    _require_early(ph, highest, at, until)
+    return Sweep(np.full(kh.size, ph), kh, 100.0 * highest, rise_time, kh / stability_limit(ph), at)
+
+
+def overshoot(ph: float, kh: float) -> float:
+    """Return the overshoot of one loop, in per cent of the final value, without the rest that `sweep` returns."""
+    y = Loop(_plant(ph), PI(kh)).step(until=HORIZON)
+    found = y.overshoot()
+    _require_early(ph, np.array(found), np.array(y.peak().time), HORIZON)
+    return 100.0 * found
+
+
+def _require_early(ph: float, excess: Array, at: Array, until: float) -> None:
+    if np.any((excess > 0.001) & (at > 0.7 * until)):
         msg = f"ph = {ph:g}: the highest peak comes late; {until:g} dead times are too few"
         raise ValueError(msg)
-    return Sweep(np.full(kh.size, ph), kh, 100.0 * overshoot, rise_time, kh / stability_limit(ph))
 
 
-def first_peak(ph: float, kh: Array) -> Array:
+def first_peak(ph: float, kh: Array, until: float = HORIZON) -> Array:
     """Return how far the first local maximum exceeds the final value, in per cent of that; 0 where it does not.
+
+    Parameters
+    ----------
+    until
+        A whole number of dead times, by which there has been a maximum, if there is one.
 
     Raises
     ------
@@ -109,7 +131,7 @@ def first_peak(ph: float, kh: Array) -> Array:
         If a gain is not in (0, stability limit).
     """
     kh = _stable(ph, kh)
-    found = responses(_plant(ph), [PI(float(k)) for k in kh], HORIZON, setpoint=1.0, load=0.0)
+    found = responses(_plant(ph), [PI(float(k)) for k in kh], until, setpoint=1.0, load=0.0)
     length = float(found[0][0][1])  # all pieces are equal: the horizon is a whole number of dead times
     final = kh / (kh + ph)
     excess = Responses(np.array([y for _, y, _ in found]), length, final).first_maximum() / final - 1.0

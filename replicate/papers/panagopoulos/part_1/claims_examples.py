@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from scipy.optimize import Bounds, differential_evolution
@@ -13,6 +13,7 @@ from replicate.exhibits import Finding
 from replicate.exhibits.evidence import number
 from replicate.exhibits.extrema import largest
 from replicate.loops import Loop, design_pi
+from replicate.loops.sweep.stability_counts import polynomial_roots
 from replicate.papers.panagopoulos.part_1.claims_specifications import claims
 from replicate.papers.panagopoulos.part_1.corner import corner_limit, slope_limit
 from replicate.papers.panagopoulos.part_1.designs import (
@@ -114,17 +115,18 @@ def negative_gain() -> Finding:
     name, a = "G12 a=0.1", 0.1
     plant = PLANTS[name]
 
-    def damping(gains: Sequence[float]) -> float:
-        return _damping(np.polyadd(np.polymul([1.0, 0.0], plant.den), 9.0 * np.asarray(gains)))
+    def lost(gains: Any) -> Any:  # of pairs in columns; scipy's types know no vectorized functions
+        characteristic = np.repeat(np.append(plant.den, 0.0)[:, None], gains.shape[1], axis=1)
+        characteristic[-2:] += 9.0 * gains
+        return -_damping(characteristic)
 
     # k and ki between nothing and three, far beyond the stability limit
-    def lost(gains: np.ndarray) -> float:
-        return -damping(gains.tolist())
-
-    searched = differential_evolution(lost, Bounds([0.0, 0.0], [3.0, 3.0]), seed=1, tol=1e-10, polish=False)
+    searched = differential_evolution(
+        lost, Bounds([0.0, 0.0], [3.0, 3.0]), seed=1, tol=1e-10, polish=False, vectorized=True, updating="deferred"
+    )
     best = -float(searched.fun)
     found = design(name, HIGH)
-    own = damping([found.k, found.ki])
+    own = -float(lost(np.array([[found.k], [found.ki]]))[0])
     return Finding(
         "holds" if best <= a / 6.0 * (1.0 + 1e-6) < own else "fails",
         own,
@@ -133,12 +135,16 @@ def negative_gain() -> Finding:
     )
 
 
-def _damping(characteristic: np.ndarray) -> float:
-    """Return the relative damping of the complex pair of highest frequency, negative if unstable."""
-    poles = np.roots(characteristic)
-    pair = poles[poles.imag > 1e-9]
-    fastest = pair[np.argmax(np.abs(pair))] if pair.size else -1.0
-    return float(-np.real(fastest) / abs(fastest))
+def _damping(characteristic: np.ndarray) -> np.ndarray:
+    """Return the relative damping of the complex pairs of highest frequency, negative if unstable, one if none.
+
+    The polynomials stand in columns.
+    """
+    poles, _ = polynomial_roots(characteristic)
+    size = np.where(poles.imag > 1e-9, np.abs(poles), 0.0)
+    fastest = np.argmax(size, axis=0)[None]
+    highest, real = (np.take_along_axis(x, fastest, axis=0)[0] for x in (size, poles.real))
+    return np.asarray(np.divide(-real, highest, out=np.ones_like(highest), where=highest > 0.0))
 
 
 @claims.claim(

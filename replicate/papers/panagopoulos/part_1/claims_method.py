@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import fsolve
 
 from replicate.exhibits import Finding
@@ -82,12 +83,13 @@ def monotone() -> Finding:
         low, high = (theorem_1.interval(plant, 1.4)[0], theorem_1.interval(plant, 2.0)[1])
         grid = np.log(np.geomspace(max(low, 1e-3 * high) * 1e-3, high, 301))
 
-        def slope(log_w: float, part: str, g: Plant = PLANTS[plant]) -> float:
+        def slope(log_w: NDArray[np.float64], g: Plant = PLANTS[plant]) -> NDArray[np.complex128]:
             s = 1j * np.exp(log_w)
-            return float(getattr(s * complex(g.log_derivative(s)), part))
+            return np.asarray(s * g.log_derivative(s))
 
-        slopes[plant] = largest(lambda x, of=slope: of(x, "real"), grid)[1] + 0.0  # type: ignore[misc]
-        rising += largest(lambda x, of=slope: of(x, "imag"), grid)[1] > 1e-9  # type: ignore[misc]
+        known = slope(grid)
+        slopes[plant] = largest(lambda x, of=slope: of(x).real, grid, known.real)[1] + 0.0  # type: ignore[misc]
+        rising += largest(lambda x, of=slope: of(x).imag, grid, known.imag)[1] > 1e-9  # type: ignore[misc]
     steepest = max(slopes, key=lambda key: slopes[key])
     return Finding(
         "holds" if slopes[steepest] < 1.0 and not rising else "fails",

@@ -75,7 +75,7 @@ def setpoint_peak(plant: str, ms: float, b: float) -> float:
     def gain(log_w: Array) -> Array:
         s = 1j * np.exp(log_w)
         value = loop(plant, ms)(s)
-        return np.abs((found.ki + s * b * found.k) / (found.ki + s * found.k) * value / (1.0 + value))
+        return np.asarray(np.abs((found.ki + s * b * found.k) / (found.ki + s * found.k) * value / (1.0 + value)))
 
     grid = np.log(found.frequency) + np.log(np.geomspace(1e-2, 10.0, 301))
-    return max(1.0, largest(lambda x: float(gain(np.array(x))), grid, gain(grid))[1])
+    return max(1.0, largest(gain, grid, gain(grid))[1])

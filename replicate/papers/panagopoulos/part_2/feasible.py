@@ -18,6 +18,7 @@ from scipy.optimize import root
 
 from replicate.loops import PID, Circle, Loop, Plant
 from replicate.loops.design.nyquist_constraints import Constraint, LoopJet, constraint_slope
+from replicate.loops.sweep.stability_counts import polynomial_roots
 from replicate.papers.panagopoulos.part_2.processes import G4
 
 Array = NDArray[np.float64]
@@ -56,11 +57,22 @@ def _of_ellipses() -> tuple[Array, ...]:
     return r, CIRCLE.center * g.real / r, -CIRCLE.center * W * g.imag / r**2, W / r, W**2
 
 
-def ki_range(k: float, kd: float) -> tuple[float, float]:
-    """Return the ends of the ki that keep a stable loop outside the circle; ``nan`` where there are none.
+def ki_ranges(k: Array, kd: float) -> Array:
+    """Return, for each k, the ends of the ki that keep a stable loop outside the circle; ``nan`` where there are none.
 
     Of several gaps between the ellipses the highest stable one counts.
     """
+    gaps = [_gaps(float(x), kd) for x in k]
+    owners = np.repeat(np.arange(k.size), [len(ends) for ends in gaps])
+    ends = np.concatenate(gaps)
+    stable = _stable(k[owners], ends.mean(axis=1), kd)
+    found = np.full((k.size, 2), np.nan)
+    found[owners[stable]] = ends[stable]  # of those of one k the last stays, the highest
+    return np.asarray(found)
+
+
+def _gaps(k: float, kd: float) -> Array:
+    """Return the ends of the positive ki between the ellipses, below the highest one, ascending, shape (gaps, 2)."""
     r, offset, level, slope, square = _of_ellipses()
     inside = CIRCLE.radius**2 - (r * k + offset) ** 2
     blocked = np.nonzero(inside > 0.0)[0]
@@ -70,24 +82,21 @@ def ki_range(k: float, kd: float) -> tuple[float, float]:
     order = np.argsort(low)
     low, high = low[order], np.maximum.accumulate(high[order])
     floor = np.maximum(np.concatenate([[0.0], high[:-1]]), 0.0)
-    for i in np.nonzero(low > floor)[0][::-1]:
-        if _stable(k, 0.5 * (floor[i] + low[i]), kd):
-            return float(floor[i]), float(low[i])
-    return float("nan"), float("nan")
+    return np.asarray(np.column_stack([floor, low])[low > floor])
 
 
-def _stable(k: float, ki: float, kd: float) -> bool:
-    # plain roots: the region needs thousands of answers, and the plant has neither dead time nor delicate poles
-    characteristic = np.polyadd(np.append(G4.den, 0.0), np.polymul([kd, k, ki], G4.num))
-    return bool(np.roots(characteristic).real.max() < 0.0)
+def _stable(k: Array, ki: Array, kd: float) -> NDArray[np.bool_]:
+    """Say of each loop whether it is stable, from plain roots: the plant has no dead time and no delicate poles."""
+    characteristic = np.repeat(np.append(G4.den, 0.0)[:, None], k.size, axis=1)
+    characteristic[-3:] += float(G4.num[-1]) * np.stack([np.full(k.size, kd), k, ki])
+    return np.asarray(polynomial_roots(characteristic)[0].real.max(axis=0) < 0.0)
 
 
 @cache
 def region(kd: float, highest: float = 1.6, points: int = 161) -> tuple[Array, Array, Array]:
     """Return k, and the lower and upper end of ki over it."""
     k = np.linspace(0.0, highest, points)
-    ends = np.array([ki_range(float(x), kd) for x in k])
-    return k, ends[:, 0], ends[:, 1]
+    return k, *ki_ranges(k, kd).T
 
 
 @cache
@@ -117,7 +126,7 @@ def best(kd: float) -> Best | None:
         return None
     i = int(np.nanargmax(upper))
     fine = np.linspace(k[max(i - 1, 0)], k[min(i + 1, k.size - 1)], 41)
-    tops = np.array([ki_range(float(x), kd)[1] for x in fine])
+    tops = ki_ranges(fine, kd)[:, 1]
     i = int(np.nanargmax(tops))
     gains = np.array([fine[i], tops[i], kd])
     value, _ = _plant_on_grid().values("sensitivity", CIRCLE, gains)

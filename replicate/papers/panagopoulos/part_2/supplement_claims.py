@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from replicate.exhibits import Finding
@@ -20,6 +21,8 @@ from replicate.papers.panagopoulos.part_2.example_controllers import CONTROLLERS
 from replicate.papers.panagopoulos.part_2.noise_figures import NOISE_FREQUENCY, filtered
 from replicate.papers.panagopoulos.part_2.processes import G4
 from replicate.papers.panagopoulos.part_2.shape import largest_over
+
+Array = NDArray[np.float64]
 
 LOG_W = np.log(np.geomspace(0.01, 100.0, 401))
 STEP = LOG_W[1] - LOG_W[0]
@@ -139,15 +142,16 @@ def faster_less_damped() -> Finding:
 def gain_greater() -> Finding:
     one, three = (Loop(G4, c) for c in CONTROLLERS.values())
 
-    def ratio(log_w: float) -> float:
+    def ratio(log_w: Array | float) -> Array:
         s = 1j * np.exp(log_w)
-        return float(abs(three(s)) / abs(one(s)))
+        return np.asarray(np.abs(three(s)) / np.abs(one(s)))
 
-    at, least = smallest(ratio, LOG_W)
-    below = [x for x in LOG_W if ratio(x) < 1.0]
+    ratios = ratio(LOG_W)
+    at, least = smallest(ratio, LOG_W, ratios)
+    below = LOG_W[ratios < 1.0]
     ends = [
-        float(np.exp(brentq(lambda x: ratio(x) - 1.0, *bracket)))
-        for bracket in ((min(below) - STEP, at), (at, max(below) + STEP))
+        float(np.exp(brentq(lambda x: float(ratio(x)) - 1.0, *bracket)))
+        for bracket in ((below.min() - STEP, at), (at, below.max() + STEP))
     ]
     return Finding(
         "holds" if least >= 1.0 else "holds-partly",
@@ -176,12 +180,13 @@ def cusp() -> Finding:
     c = CONTROLLERS["kd=3"]
     loop = Loop(G4, c)
 
-    def speed(log_w: float) -> float:
+    def speed(log_w: Array | float) -> Array:
         s = 1j * np.exp(log_w)
         turn = s * G4.log_derivative(s) + s * (c.kd - c.ki / s**2) / (c.k + c.ki / s + c.kd * s)
-        return float(abs(complex(loop(s) * turn)))
+        return np.asarray(np.abs(loop(s) * turn))
 
-    _, slowest = smallest(speed, np.log(np.geomspace(0.1, 5.0, 401)))
+    grid = np.log(np.geomspace(0.1, 5.0, 401))
+    _, slowest = smallest(speed, grid, speed(grid))
     curvature = largest_over("curvature", G4, c, (0.1, 5.0))
     return Finding(
         "holds-partly",

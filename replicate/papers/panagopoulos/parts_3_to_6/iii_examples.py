@@ -109,12 +109,13 @@ def robustness(weighting: str) -> Robustness:
     weight = weights()[weighting]
     gap = nu_gap(PROCESS, TRUE_PROCESS, weight)
 
-    def differences(w: NDArray[np.float64]) -> NDArray[np.float64]:
+    def differences(log_w: NDArray[np.float64]) -> NDArray[np.float64]:
+        w = np.exp(log_w)
         margin = 1.0 / singular_value(PROCESS, PRINTED, w, weight)
         return margin - chordal_distance(PROCESS, TRUE_PROCESS, w, weight)
 
     grid = np.log(np.geomspace(1e-4, 1e4, 401))
-    _, least = smallest(lambda x: float(differences(np.array([np.exp(x)]))[0]), grid)
+    _, least = smallest(lambda x: float(differences(np.array([x]))[0]), grid, differences(grid))
     return Robustness(stability_margin(PROCESS, PRINTED, weight), gap.value, gap.frequency, least)
 
 

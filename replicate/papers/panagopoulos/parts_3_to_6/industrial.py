@@ -156,7 +156,7 @@ def _never_above_one(k: float, ki: float, kd: float) -> float:
     # the plant's velocity gain is P0(0) = Kp, so 1/G_sp = 1 + s^2 (kd + 1/Kp)/ki + O(s^3): the limit at zero frequency
     at_rest = float(np.sqrt(2.0 * (kd + DRYING.den[-2] / DRYING.num[-1]) / ki))
     grid = np.linspace(np.log(1e-3), np.log(3.0), 800)
-    return max(at_rest, largest(lambda x: float(needed(np.array(x))), grid, needed(grid))[1])
+    return max(at_rest, largest(needed, grid, needed(grid))[1])
 
 
 def beside_the_peak(w: float) -> tuple[float, float]:

@@ -186,7 +186,8 @@ def gain_reduction() -> pd.DataFrame:
         loop_gain = complex(EXAMPLE.plant(s)) * np.polyval(num, s) / np.polyval(den, s)
         damped = EXAMPLE.damped(k_b)
         gain = float(abs(damped(s)))
-        _, highest = largest(lambda x, plant=damped: float(abs(plant(1j * np.exp(x)))), grid)  # type: ignore[misc]
+        on_grid = np.abs(damped(1j * np.exp(grid)))
+        _, highest = largest(lambda x, plant=damped: abs(plant(1j * np.exp(x))), grid, on_grid)  # type: ignore[misc]
         rows[name] = [
             k_b,
             float(loop_gain.real),
