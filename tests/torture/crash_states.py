@@ -1,4 +1,4 @@
-"""What a disk holds if a command is killed at any of its file operations. Run as a script in a process of its own.
+"""What a disk holds if a command is killed at any of its file operations.
 
 The audit events of Python tell of every file operation before it happens, whatever the code that asks for it looks
 like. At each one inside the watched folder, either the process is killed by SIGKILL (`killed_swaps`), or, where that
@@ -19,8 +19,14 @@ EVENTS = {"os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.link", "os.symli
 TORN = b"half a fi"
 
 
-def watch(folder: Path, at_each: Callable[[str, str], None], ignore: str = "cache") -> None:
-    """Call ``at_each(event, path)`` before every file operation inside a folder; ``torn`` is a half-written file."""
+def watch(folder: Path, at_each: Callable[[str, str], None], ignore: str = "cache") -> Callable[[], None]:
+    """Call ``at_each(event, path)`` before every file operation inside a folder; ``torn`` is a half-written file.
+
+    Returns
+    -------
+    function
+        What ends the watch.
+    """
     busy = False
 
     def hook(event: str, arguments: tuple[object, ...]) -> None:
@@ -39,7 +45,12 @@ def watch(folder: Path, at_each: Callable[[str, str], None], ignore: str = "cach
         finally:
             busy = False
 
+    def end() -> None:
+        nonlocal busy
+        busy = True
+
     sys.addaudithook(hook)
+    return end
 
 
 def kill_at(number: int, folder: Path) -> None:
@@ -57,8 +68,8 @@ def kill_at(number: int, folder: Path) -> None:
     watch(folder, maybe)
 
 
-def snapshot_each(folder: Path, states: Path) -> None:
-    """Copy the folder before each of its file operations to ``states/<number>``."""
+def snapshot_each(folder: Path, states: Path) -> Callable[[], None]:
+    """Copy the folder before each of its file operations to ``states/<number>``, until what is returned is called."""
     count = 0
 
     def copy(event: str, path: str) -> None:
@@ -69,19 +80,4 @@ def snapshot_each(folder: Path, states: Path) -> None:
         if event == "torn":
             (to / Path(path).relative_to(folder)).write_bytes(TORN)
 
-    watch(folder, copy)
-
-
-def main() -> None:
-    """Run ``crash_states.py FOLDER STATES SITE ARGUMENTS``: the command line, with a copy at each step."""
-    folder, states, site, *arguments = sys.argv[1:]
-    sys.path.insert(0, site)
-    from replicate import cli
-
-    sys.argv = ["replicate", *arguments]
-    snapshot_each(Path(folder), Path(states))
-    cli.main()
-
-
-if __name__ == "__main__":
-    main()
+    return watch(folder, copy)

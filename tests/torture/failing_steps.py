@@ -1,8 +1,9 @@
-"""Let each file operation of a command fail in turn, and say what became of the folder. Run as a script.
+"""Copy a folder at each file operation of a command, then let each fail in turn and say what became of the folder.
 
-``failing_steps.py HOW FOLDER SITE EVERY ARGUMENTS`` runs the command line in forks of a process that has imported
-everything. HOW is ``once``, where one operation fails, or ``full``, where from then on nothing can be created. Prints a
-JSON list of [case, what went wrong].
+Run as a script: ``failing_steps.py HOW FOLDER SITE EVERY ARGUMENTS`` runs the command line, which leaves copies in
+``states/<number>`` and ``new`` beside the folder, and again in forks of the process, which has imported everything by
+then. HOW is a list of ``once``, where one operation fails, and ``full``, where from then on nothing can be created, or
+empty. Prints a JSON object of lists of [case, what went wrong].
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 
-from crash_states import watch
+from crash_states import snapshot_each, watch
 
 PROGRESS = re.compile(r"computed \d|\d+ of \d+ (results kept|sheets)|.*(removed|finished|put back) what a run")
 CREATING = {"open", "torn", "os.mkdir", "os.link", "os.symlink", "shutil.copyfile"}
@@ -86,22 +87,34 @@ def keep_server() -> None:
 
 
 def main() -> None:
-    how, where, site, every, *arguments = sys.argv[1:]
+    ways, where, site, every, *arguments = sys.argv[1:]
     sys.path.insert(0, site)
     folder = Path(where)
     kept = folder.parent / "kept"
     shutil.copytree(folder, kept, symlinks=True)
     old = tree(folder)
-    command(arguments)  # and imports everything
+    end = snapshot_each(folder, folder.parent / "states")
+    status = command(arguments)  # and imports everything
+    end()
+    assert status in (0, 1), status
+    shutil.copytree(folder, folder.parent / "new", symlinks=True)
     new = tree(folder)
     assert old != new
     keep_server()
     if (folder / "build/cache").is_dir():  # forks compute nothing
         shutil.copytree(folder / "build/cache", kept / "build/cache", dirs_exist_ok=True)
-    found = []
-    for number in count(1, int(every)):
+    found = {how: attempts(how, folder, arguments, int(every), old, new) for how in ways.split()}
+    sys.__stdout__.write(f"\n{json.dumps(found)}\n")  # type: ignore[union-attr]
+
+
+def attempts(
+    how: str, folder: Path, arguments: list[str], every: int, old: dict[str, bytes], new: dict[str, bytes]
+) -> list[tuple[str, str]]:
+    """Let operations fail, one at each run, until a run has fewer."""
+    found: list[tuple[str, str]] = []
+    for number in count(1, every):
         shutil.rmtree(folder)
-        shutil.copytree(kept, folder, symlinks=True)
+        shutil.copytree(folder.parent / "kept", folder, symlinks=True)
         os.chdir(folder)
         reached = folder.parent / "reached"
         reached.unlink(missing_ok=True)
@@ -109,7 +122,7 @@ def main() -> None:
         if not reached.exists():
             break
         found.append((f"operation {number} fails ({how})", judge(status, said, tree(folder), old, new)))
-    sys.__stdout__.write(f"\n{json.dumps(found)}\n")  # type: ignore[union-attr]
+    return found
 
 
 def judge(status: int, said: str, now: dict[str, bytes], old: dict[str, bytes], new: dict[str, bytes]) -> str:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
@@ -27,19 +28,20 @@ MEMORY = Path("/dev/shm")  # noqa: S108  -- a folder of its own is made inside
 SCENARIOS = ("report", "report behind a link", "accept")
 
 
-@pytest.fixture
-def quick(tmp_path: Path) -> Iterator[Path]:
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     if not os.access(MEMORY, os.W_OK):
-        yield tmp_path
+        yield tmp_path_factory.mktemp("quick")
         return
     with tempfile.TemporaryDirectory(dir=MEMORY) as folder:
         yield Path(folder)
 
 
-def run(script: str, *arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-    environment = {**os.environ, "PYTHONPATH": str(HERE), "NO_COLOR": "1"}
+def run(*command: str, cwd: Path | None = None, path: Path = HERE) -> subprocess.CompletedProcess[str]:
+    """Run Python in a process of its own, in which the modules of a folder are found."""
+    environment = {**os.environ, "PYTHONPATH": str(path), "NO_COLOR": "1"}
     environment.pop("GITHUB_STEP_SUMMARY", None)
-    command = [sys.executable, str(HERE / script), *arguments]
+    command = (sys.executable, *command)
     return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd, env=environment)
 
 
@@ -47,7 +49,9 @@ def run(script: str, *arguments: str, cwd: Path | None = None) -> subprocess.Com
 @pytest.mark.parametrize("scenario", SCENARIOS)
 @pytest.mark.parametrize(("kind", "words", "every"), [("killed", "killed twice", 9), ("signalled", "two signals", 13)])
 def test_swaps(attack: Attack, quick: Path, kind: str, words: str, every: int, scenario: str) -> None:
-    done = run("killed_swaps.py", kind, scenario, str(quick / "build"), "1" if attack.everything else str(every))
+    build = quick / f"{kind} {scenario}" / "build"
+    build.parent.mkdir()
+    done = run(str(HERE / "killed_swaps.py"), kind, scenario, str(build), "1" if attack.everything else str(every))
     assert done.returncode == 0, done.stderr
     cases = json.loads(done.stdout)
     attack.report(f"{words} at any file operation: {scenario}", len(cases), [(case, why) for case, why in cases if why])
@@ -87,7 +91,8 @@ def left(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         (here / "build/report/main.tex").write_text("thesis")
         (here / "roster.csv").write_text("student,name\n1,Ada\n2,Emil\n", encoding="utf-8")
         for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
-            replicate(folder, asked(earlier, "0.3"))
+            done = run("-m", "replicate", *asked(earlier, "0.3"), cwd=here, path=site)
+            assert done.returncode in (0, 1), done.stderr
         return folder
 
     return left
@@ -99,35 +104,55 @@ def asked(command: str, value: str) -> list[str]:
     return [*(part.format(value) for part in COMMANDS[command]), *jobs]
 
 
-def prepared(quick: Path, left: Path, command: str) -> list[str]:
-    """Copy what a command has left, change the paper, and return the command that will then write something else."""
-    shutil.copytree(left, quick, symlinks=True, dirs_exist_ok=True)
-    edit(quick / "site", "2**0.5, 3**0.51")
-    return asked(command, "0.4")
+@dataclass(frozen=True)
+class Attacked:
+    """What became of a folder in which a command ran again after its paper had changed.
+
+    Attributes
+    ----------
+    here
+        The folder; beside it ``states/<number>`` are copies of it before each file operation.
+    old, new
+        What it held before and after.
+    cases
+        For each way in which operations failed: which failed, and what went wrong.
+    """
+
+    here: Path
+    old: dict[str, bytes]
+    new: dict[str, bytes]
+    cases: dict[str, list[tuple[str, str]]]
 
 
-def replicate(quick: Path, arguments: list[str], states: Path | None = None) -> None:
-    """Run the command line, and copy the folder before each of its file operations."""
-    unused = quick / "unused"
-    done = run(
-        "crash_states.py",
-        str(quick / "here"),
-        str(states or unused),
-        str(quick / "site"),
-        *arguments,
-        cwd=quick / "here",
-    )
-    shutil.rmtree(unused, ignore_errors=True)
-    assert done.returncode in (0, 1), done.stderr
+#: How operations fail, and which commands are tried so without ``--torture``.
+WAYS = {"once": {"report", "accept"}, "full": set(COMMANDS)}
+
+
+@pytest.fixture(scope="module")
+def attacked(request: pytest.FixtureRequest, quick: Path, left: Callable[[str], Path]) -> Callable[[str], Attacked]:
+    """Run a command that writes something else than before, once for all attacks on it."""
+    everything = request.config.getoption("--torture")
+
+    @cache
+    def attacked(command: str) -> Attacked:
+        folder = quick / command
+        here, site = folder / "here", folder / "site"
+        shutil.copytree(left(command), folder, symlinks=True)
+        edit(site, "2**0.5, 3**0.51")
+        ways = [how for how, commands in WAYS.items() if hasattr(os, "fork") and (everything or command in commands)]
+        script = [str(HERE / "failing_steps.py"), " ".join(ways), str(here), str(site), "1" if everything else "17"]
+        old = tree(here)
+        done = run(*script, *asked(command, "0.4"), cwd=here)
+        assert done.returncode == 0, done.stderr
+        return Attacked(here, old, tree(folder / "new"), json.loads(done.stdout.splitlines()[-1]))
+
+    return attacked
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_commands_that_are_killed(attack: Attack, quick: Path, left: Callable[[str], Path], command: str) -> None:
-    here, states = quick / "here", quick / "states"
-    arguments = prepared(quick, left(command), command)
-    old = tree(here)
-    replicate(quick, arguments, states)
-    new = tree(here)
+def test_commands_that_are_killed(attack: Attack, attacked: Callable[[str], Attacked], command: str) -> None:
+    found = attacked(command)
+    states, old, new = found.here.with_name("states"), found.old, found.new
     assert old != new
 
     def held(number: int) -> str:
@@ -144,21 +169,16 @@ def test_commands_that_are_killed(attack: Attack, quick: Path, left: Callable[[s
 
     numbers = range(1, len(list(states.iterdir())) + 1)
     attack(f"killed at any file operation: {command}", numbers, held, short=12)
+    shutil.rmtree(states)
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system with fork")
-@pytest.mark.parametrize("how", ["once", "full"])
+@pytest.mark.parametrize("how", WAYS)
 @pytest.mark.parametrize("command", COMMANDS)
-def test_commands_whose_disk_fails(
-    attack: Attack, quick: Path, left: Callable[[str], Path], command: str, how: str
-) -> None:
-    if not attack.everything and how == "once" and command not in ("report", "accept"):
+def test_commands_whose_disk_fails(attack: Attack, attacked: Callable[[str], Attacked], command: str, how: str) -> None:
+    if not attack.everything and command not in WAYS[how]:
         pytest.skip("in the long form only")
-    arguments = prepared(quick, left(command), command)
-    every = "1" if attack.everything else "17"
-    done = run("failing_steps.py", how, str(quick / "here"), str(quick / "site"), every, *arguments, cwd=quick / "here")
-    assert done.returncode == 0, done.stderr
-    cases = json.loads(done.stdout.splitlines()[-1])
+    cases = attacked(command).cases[how]
     words = {"once": "one file operation fails", "full": "the disk is full from any operation on"}[how]
     attack.report(f"{words}: {command}", len(cases), [(case, why) for case, why in cases if why])
 
