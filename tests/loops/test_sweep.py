@@ -11,6 +11,7 @@ from typing import Any, cast
 import numpy as np
 import pandas as pd
 import pytest
+from scipy.optimize import brentq
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from replicate.loops import PI, PID, Loop, LoopError, Plant, Signal, SweepResult, sweep
@@ -445,9 +446,13 @@ def test_two_integrators_leave_no_integrated_error_however_slow_their_last_mode_
     gains = np.array([[0.4, 1e-7], [0.3, 2e-7], [0.15, 3e-8], [0.6, 2e-8], [0.5, 1e-6]])
     found = sweep(plant, gains, metrics=["ie", "iae", "itae"])
     np.testing.assert_allclose(found["ie"][0], 0.0, atol=1e-9 * found["iae"].max())
-    for i, row in enumerate(gains):
-        y = Loop(plant, PI(*row)).step()
-        np.testing.assert_allclose([found["iae"][0, i], found["itae"][0, i]], [y.iae(), y.itae()], rtol=1e-9)
+    for i, (k, ki) in enumerate(gains):
+        y = Loop(plant, PI(k, ki)).step(until=4000.0)
+        # e changes its sign once, E(0) = 0 and -E'(0) = -1/(0.3 ki): both integrals follow from what is before
+        turn = brentq(lambda t, y=y: y(t) - 1.0, 30.0, 4000.0)
+        before = Loop(plant, PI(k, ki)).step(until=turn)
+        expected = [2.0 * before.iae(), 1.0 / (0.3 * ki) + 2.0 * before.itae()]
+        np.testing.assert_allclose([found["iae"][0, i], found["itae"][0, i]], expected, rtol=1e-10)
 
 
 def test_an_oscillation_that_a_dead_time_sees_little_of_has_its_moment() -> None:
@@ -458,3 +463,14 @@ def test_an_oscillation_that_a_dead_time_sees_little_of_has_its_moment() -> None
     for i, row in enumerate(gains):
         y = Loop(plant, PI(*row)).step()
         np.testing.assert_allclose([found["iae"][0, i], found["itae"][0, i]], [y.iae(), y.itae()], rtol=1e-9)
+
+
+def test_loops_whose_integral_action_is_slow_stay_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    # a real mode leads, and others, an oscillation among them, are known beside it
+    plant, gains = Plant.foptd(1.0, 10.0, 1.0), np.column_stack([np.linspace(3.6, 6.4, 6), np.linspace(0.8, 0.45, 6)])
+    expected = [Loop(plant, PI(*row)).step() for row in gains]
+    monkeypatch.delattr(running, "loop_metrics")
+    found = sweep(plant, gains, metrics=["iae", "ise", "itae", "itse", "settling_time", "ie", "overshoot"])
+    for name in found.metrics:
+        values = [getattr(y, name)() for y in expected]
+        np.testing.assert_allclose(found[name][0], values, rtol=1e-9, err_msg=name)

@@ -26,12 +26,13 @@ Array = NDArray[np.float64]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
 Flags = NDArray[np.bool_]
 
+MOST = 0.7  # share of the loops that still move above which it does not pay to leave the others out
 SAME = 1e-8  # relative distance of points that are one pole
 
 
 def rightmost_poles(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
     """Return the rightmost poles, Im >= 0, in the unit of time of the columns, and which of them are proven."""
-    poles = _polished(loops, _starts(loops))
+    poles = polished(loops, _starts(loops))
     order = np.argsort(np.where(np.isfinite(poles), -poles.real, np.inf), axis=0)
     poles = np.take_along_axis(poles, order, axis=0)
     first, rest = poles[0], np.concatenate([poles[1:], np.full_like(poles[:1], np.nan)])  # there may be no other
@@ -63,16 +64,24 @@ def _starts(loops: LoopColumns) -> ComplexArray:
     return np.take_along_axis(found, order[:STARTS], axis=0)
 
 
-def _polished(loops: LoopColumns, s: ComplexArray) -> ComplexArray:
-    """Return where Newton's method leads; ``nan`` where it does not converge to a simple pole."""
+def polished(loops: LoopColumns, start: ComplexArray, converged: float = CONVERGED) -> ComplexArray:
+    """Return where Newton's method leads, Im >= 0; ``nan`` where it does not converge to a simple pole.
+
+    ``converged`` is its last relative step.
+    """
+    s, at = start.copy(), np.arange(len(loops))
     settled = np.zeros(s.shape, dtype=bool)
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
-            step = loops.newton_step(s)
-            s = np.where(settled, s, s - step)
-            settled |= np.abs(step) <= CONVERGED * np.abs(s)
-            if settled.all():
+            now = s[:, at]
+            step = loops.newton_step(now)
+            s[:, at] = np.where(settled[:, at], now, now - step)
+            settled[:, at] |= np.abs(step) <= converged * np.abs(now)
+            moving = np.nonzero(~settled[:, at].all(axis=0))[0]
+            if moving.size == 0:
                 break
-    upper = s.real + 1j * np.abs(s.imag)
-    upper = np.where(np.abs(s.imag) > REAL * np.abs(s), upper, s.real)
+            if moving.size < MOST * at.size:
+                at, loops = at[moving], loops.take(moving)
+        upper = s.real + 1j * np.abs(s.imag)
+        upper = np.where(np.abs(s.imag) > REAL * np.abs(s), upper, s.real)
     return np.where(settled, upper, np.nan)

@@ -88,12 +88,15 @@ class LoopColumns:
     @cached_property
     def controller_zeros(self) -> Array:
         """Coefficients of the controller's own numerator, measurement filter left out; descending powers of s."""
-        rows = [self.k, self.ki] if self.form.ki else [self.k]
+        return self._numerator(self.k, self.kd, self.ki)
+
+    def _numerator(self, k: Array, kd: Array, ki: Array) -> Array:
+        rows = [k, ki] if self.form.ki else [k]
         if self.form.kd:
             # (base)(lag s + 1) + kd s times the integrator
-            lag, none = self.form.derivative_filter, np.zeros_like(self.k)
+            lag, none = self.form.derivative_filter, np.zeros_like(k)
             rows = [high + lag * low for high, low in zip([none, *rows], [*rows, none], strict=True)]
-            rows[0] = rows[0] + self.kd
+            rows[0] = rows[0] + kd
         elif not self.form.k:
             rows = rows[1:]
         return np.stack(rows) if rows else np.zeros((0, len(self)))
@@ -150,10 +153,35 @@ class LoopColumns:
 
     def newton_step(self, s: ComplexArray) -> ComplexArray:
         """Return f(s)/f'(s) of the characteristic function f = D + N exp(-delay s)."""
+        return np.divide(*self._characteristic(s))
+
+    def residues(self, s: ComplexArray, setpoint: float, load: float) -> ComplexArray:
+        """Return the residues of the output's transform at closed-loop poles, after steps of set-point and load."""
+        turn, (filter_num, filter_den) = np.exp(-self.delay * s), self.form.measurement_filter_polynomials()
+        passed, drive = np.polyval(self.plant.num, s) * turn, np.zeros(s.shape, dtype=complex)
+        if setpoint:
+            num, den = self.form.setpoint_filter_polynomials()
+            # at a pole N exp(-delay s) is -D: whichever loses less to rounding
+            fed_back, opened = horner(self.num, s) * turn, -np.polyval(self.den, s)
+            largest = horner(np.abs(self.num), np.abs(s)) * np.abs(turn)
+            same = np.where(largest.real <= np.polyval(np.abs(self.den), np.abs(s)), fed_back, opened)
+            drive += same / np.polyval(filter_num, s)
+            if not np.all(self.b == 1.0) or self.form.c != 1.0:  # weights: not all that is fed back is fed forward
+                drive += passed * horner(
+                    self._numerator(self.k * (self.b - 1.0), self.kd * (self.form.c - 1.0), 0.0 * self.ki), s
+                )
+            drive *= setpoint * np.polyval(num, s) / np.polyval(den, s)
+        if load:
+            drive += load * passed * np.polyval(self.controller_poles, s)
+        _, slope = self._characteristic(s)
+        return np.asarray(drive * np.polyval(filter_den, s) / (s * slope))
+
+    def _characteristic(self, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Return f = D + N exp(-delay s) and its derivative."""
         turn = np.exp(-self.delay * s)
         n, n_slope = horner_with_slope(self.num, s)
         d, d_slope = horner_with_slope(self.den[:, None], s)
-        return np.asarray((d + n * turn) / (d_slope + (n_slope - self.delay * n) * turn))
+        return d + n * turn, d_slope + (n_slope - self.delay * n) * turn
 
     def final(self, setpoint: float, load: float) -> tuple[Array, Array]:
         """Return the steady-state values of output and control signal; ``nan`` where there is none."""

@@ -2,8 +2,8 @@
 
 The map of a piece (`replicate.loops.time_domain.method_of_steps`) does not contain the gains, so that it is the same
 for all loops; the control law acts column by column. A loop leaves the block when its response has come to rest, or
-when what is left is one mode (`replicate.loops.sweep.last_mode`), whose rest is known in closed form. Without dead time
-each loop has a map of its own, and pieces are made longer as soon as all that is quick has decayed.
+when what is left is a few modes (`replicate.loops.sweep.mode_search`), whose rest is known in closed form. Without dead
+time each loop has a map of its own, and pieces are made longer as soon as all that is quick has decayed.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from replicate.loops.numerics import chebyshev
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.closed_law import ClosedLaw
-from replicate.loops.sweep.last_mode import LastModes, last_modes
+from replicate.loops.sweep.last_modes import LastModes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
+from replicate.loops.sweep.mode_search import DEAD_TIMES, ModeSearch
 from replicate.loops.sweep.paces import PACE
 from replicate.loops.sweep.piece_law import POINTS, WEIGHTS, PieceLaw
 from replicate.loops.time_domain.chain import Chain, build_chain
@@ -32,8 +33,10 @@ RESOLVED = 1e-12  # size of the last coefficients of the plant's input, relative
 STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
 ROUNDED = 1e-14  # of a horizon: what is shorter is no piece
-FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which the last mode is first looked for, and the factor to the next look
-AT_ONCE = 64  # pieces for which there is memory at once: many small pieces of it would be asked for again and again
+AT_ONCE = (
+    8  # pieces for which there is memory at once: much of it would go back to the system and come anew for each block
+)
+FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which modes are first looked for, and the factor to the next look
 WORTH = 0.1  # share of loops that must have left before the others move together
 PATIENCE = 24  # pieces after which longer ones are tried, without dead time
 ENOUGH = 0.5  # share of loops for which longer ones must do: the others are marched again by themselves
@@ -174,7 +177,7 @@ class _March:
             ends.append(done / splits if self.loops.delay else ends[-1] + state.length)
             if not self.loops.delay and done % PATIENCE == 0:
                 state.lengthen(found)
-            if self.until is not None or done % splits or done <= 3 * splits:
+            if self.until is not None or done % splits or done <= DEAD_TIMES * splits:
                 continue
             leaving = state.at_rest()
             # without dead time the unit is short beside slow modes: over it two of them pass for one
@@ -215,12 +218,13 @@ class _Moving:
         self.law: PieceLaw | ClosedLaw = (PieceLaw if self.loops.delay else ClosedLaw).of(
             self.loops, chain, 1.0 / splits, march.setpoint, march.load
         )
+        self.search = ModeSearch(self.loops, march.setpoint, march.load)
         self.band, self.count, self.longer = march.band[columns], 0, 1.0
         self.state = self.law.begun(np.repeat(chain.start[:, None] * march.setpoint, columns.size, axis=1))
         self.entering = deque(np.zeros((POINTS + chain.e.size + 1, columns.size)) for _ in range(splits))
         for inputs in self.entering:
             inputs[-1] = march.setpoint
-        self.recent: deque[Array] = deque(maxlen=3 * splits)
+        self.recent: deque[Array] = deque(maxlen=DEAD_TIMES * splits)
         self.impulse = self.law.gains[3] * chain.setpoint_impulse * march.setpoint
         self.size, self.high, self.input_size, self.tail = (np.zeros(columns.size) for _ in range(4))
         self.left = np.zeros(columns.size, dtype=bool)
@@ -284,7 +288,7 @@ class _Moving:
         return np.asarray(resting)
 
     def last_modes(self, elapsed: float) -> LastModes:
-        return last_modes(self.loops, list(self.recent), elapsed, self.size, self.band, self.high)
+        return self.search.look(list(self.recent), elapsed, self.size, self.band, self.high, control=self.march.control)
 
     def leave(self, leaving: Flags, found: Responses) -> Flags:
         """Note which loops leave now; return all that have left but still move along."""
@@ -301,12 +305,12 @@ class _Moving:
         unusable[stay] = unresolved[stay] = False
         found.unresolved[self.columns[unresolved]] = True
         found.failed[self.columns[unusable]] = True
-        self.columns, self.loops, self.law = self.columns[stay], self.loops.take(stay), self.law.take(stay)
+        self.columns, self.search, self.law = self.columns[stay], self.search.take(stay), self.law.take(stay)
         for name in ("band", "impulse", "size", "high", "input_size", "tail", "left"):
             setattr(self, name, getattr(self, name)[stay])
         self.state, self.room = self.state.take(stay, axis=1), []
         self.entering = deque(inputs.take(stay, axis=1) for inputs in self.entering)
-        self.recent = deque((values.take(stay, axis=1) for values in self.recent), maxlen=3 * self.splits)
+        self.recent = deque((values.take(stay, axis=1) for values in self.recent), maxlen=DEAD_TIMES * self.splits)
 
 
 def _restriction(share: float) -> Array:

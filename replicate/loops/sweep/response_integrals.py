@@ -19,7 +19,7 @@ Places = NDArray[np.intp]
 
 NEGLIGIBLE = 3e-11  # share of an integral that all pieces together may have which are looked at no further
 NEAR_ENOUGH = 1e-5  # last step of Newton's method: the next is of its square, and an integral errs by a square again
-UNSURE = 3e-10  # share of an integral that the error of a last mode may have: one that is slow makes much of it
+UNSURE = 3e-10  # share of an integral that what is left beside the last modes may have
 FLAT = 1e-13  # of a control signal's size: a slope that is rounding
 
 
@@ -38,7 +38,7 @@ class ResponseIntegrals(ResponsePieces):
         """Return the integrated error, for a load response the integrated deviation."""
         modes = self.responses.modes
         total = self._areas.sum(axis=0) + modes.integral()
-        self._require_sure(1.0 / self._decay, np.abs(self._areas).sum(axis=0) + np.abs(modes.integral()))
+        self._require_sure(1.0 / modes.beyond, np.abs(self._areas).sum(axis=0) + np.abs(modes.integral()))
         return np.asarray(np.where(self.final == 0.0, total, -total))
 
     def ise(self) -> Array:
@@ -51,7 +51,7 @@ class ResponseIntegrals(ResponsePieces):
         squares = np.where(self._exists, squares, 0.0) * (0.5 * self.responses.lengths)[:, None]
         modes = self.responses.modes
         found = squares.sum(axis=0) + modes.square_integral()
-        return self._require_sure(np.abs(modes.coefficient) / self._decay, found)
+        return self._require_sure(modes.size / modes.beyond, found)
 
     def itse(self) -> Array:
         """Return the integrated squared error, weighted with the time from the step."""
@@ -63,9 +63,9 @@ class ResponseIntegrals(ResponsePieces):
             times = middle[index] + half[index] * points
             total[index, piece.columns] = (half[index] * times * weights) @ (matrix @ piece.values) ** 2
         total = np.where(self._exists, total, 0.0)
-        modes, decay = self.responses.modes, self._decay
+        modes, decay = self.responses.modes, self.responses.modes.beyond
         found = total.sum(axis=0) + modes.square_moment()
-        return self._require_sure(np.abs(modes.coefficient) * (modes.start + 0.5 / decay) / decay, found)
+        return self._require_sure(modes.size * (modes.start + 0.5 / decay) / decay, found)
 
     def iae(self) -> Array:
         """Return the integrated absolute error."""
@@ -74,8 +74,8 @@ class ResponseIntegrals(ResponsePieces):
         if piece.size:
             (area,) = _absolute(self._gathered(piece, column), _area_up_to())
             total[piece, column] = area * (0.5 * self.responses.lengths[piece])
-        found = total.sum(axis=0) + self.responses.modes.absolute_integral()
-        return self._require_sure(1.0 / self._decay, found)
+        modes = self.responses.modes
+        return self._require_sure(1.0 / modes.beyond, total.sum(axis=0) + modes.absolute_integral())
 
     def itae(self) -> Array:
         """Return the integrated absolute error, weighted with the time from the step."""
@@ -90,17 +90,12 @@ class ResponseIntegrals(ResponsePieces):
         if piece.size:
             area, moment = _absolute(self._gathered(piece, column), _area_up_to(), _moment_up_to())
             total[piece, column] = half[piece] * (middle[piece] * area + half[piece] * moment)
-        modes, decay = self.responses.modes, self._decay
+        modes, decay = self.responses.modes, self.responses.modes.beyond
         found = total.sum(axis=0) + modes.absolute_moment()
         return self._require_sure((modes.start + 1.0 / decay) / decay, found)
 
-    @property
-    def _decay(self) -> Array:
-        """How fast the last modes decay."""
-        return -self.responses.modes.pole.real
-
     def _require_sure(self, weight: Array, total: Array) -> Array:
-        """Return integrals; leave to the single loop those to which an error of the last mode's coefficient matters.
+        """Return integrals; leave to the single loop those to which it matters what else may be left than last modes.
 
         It enters with a weight.
         """

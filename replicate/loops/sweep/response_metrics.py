@@ -126,9 +126,8 @@ class ResponseMetrics(ResponseIntegrals):
             outside[piece[~some], column[~some]] = False
             column = column[~some & outside[:, column].any(axis=0)]
         modes = self.responses.modes
-        lasting = modes.found & (modes.pole.imag == 0.0) & (np.abs(modes.coefficient) > width)
-        time = np.where(lasting, modes.last_outside(width), time)
-        return time, unsettled & ~modes.found
+        lasting = modes.last_outside(width)
+        return np.where(np.isnan(lasting), time, lasting), unsettled & ~modes.found
 
     # ---- reaching a level ------------------------------------------------------------------------------------------
 
