@@ -12,7 +12,7 @@ from synthetic import FolderPaper
 
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import FigureResult, Results, TableResult
-from replicate.report.pages import build_report
+from replicate.report import build_report
 from replicate.verdicts.inputs import Inputs
 from replicate.verdicts.judge import judge
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -154,3 +156,113 @@ def test_what_else_is_asked_for_is_done(
     command, _ = written
     assert replicate(*command, *options)[0] == 0
     assert pages == ["written"]
+
+
+def _replace(name: str, old: str, new: str) -> Change:
+    def change(paper: Path, _out: Path) -> None:
+        text = (paper / name).read_text()
+        assert old in text
+        (paper / name).write_text(text.replace(old, new))
+
+    return change
+
+
+PARTS: dict[str, Change] = {
+    "figure": _replace("exhibits.py", "t / 3.0", "t / 4.0"),
+    "claim": _replace("exhibits.py", "It is 1.41.", "It is 1.414."),
+    "cell of a table": _replace("printed/table-1.csv", "1.414", "1.415"),
+    "ledger": _replace("ledger.toml", "The last digit is wrong", "Its last digit is wrong"),
+    "notes": _append("notes.md", "\nOne more sentence.\n"),
+}
+
+
+@pytest.fixture
+def two(replicate: Run, folder: Path) -> Path:
+    """Write a project of two papers, its report, and return the first paper's folder."""
+    for name in ("one", "other"):
+        shutil.copytree(folder, Path("papers") / name, ignore=shutil.ignore_patterns("__pycache__"))
+        for path in Path("papers", name).glob("*.py"):
+            path.write_text(path.read_text().replace("lab_paper", name).replace('id="lab"', f'id="{name}"'))
+    Path("replicate.toml").write_text('title = "Two"\n')
+    assert replicate("report")[0] == 0
+    return Path("papers/one")
+
+
+def _as_anew(replicate: Run) -> None:
+    """Compare a report, file by file, with one that is written into an empty folder; count files that were kept."""
+    assert replicate("report", "--no-cache", "--out", "fresh")[0] == 0
+    kept, fresh = (
+        {path.relative_to(out): path.read_bytes() for path in Path(out).rglob("*") if path.is_file()}
+        for out in ("build", "fresh")
+    )
+    hidden = {path for path in (*kept, *fresh) if path.parts[0] in {"cache", ".replicate"}}
+    assert {path: text for path, text in kept.items() if path not in hidden} == {
+        path: text for path, text in fresh.items() if path not in hidden
+    }
+    shutil.rmtree("fresh")
+
+
+@pytest.mark.parametrize("change", PARTS.values(), ids=PARTS)
+def test_what_is_left_as_it_stands_is_what_a_run_in_an_empty_folder_writes(
+    replicate: Run, two: Path, monkeypatch: pytest.MonkeyPatch, change: Change
+) -> None:
+    from replicate.report import pages as module
+    from replicate.report.weight import within_limits as original
+
+    filled: list[str] = []
+
+    def noted(views: Any, page: Any) -> str:
+        text = original(views, page)
+        filled.append(text)
+        return text
+
+    monkeypatch.setattr(module, "within_limits", noted)
+    change(two, Path("build"))
+    assert replicate("report")[0] in {0, 1}
+    assert len(filled) == 1, "of the other paper nothing has changed"
+    _as_anew(replicate)
+
+
+def test_papers_that_come_and_go_leave_no_page(replicate: Run, two: Path) -> None:
+    shutil.move(two, "aside")
+    assert replicate("report")[0] == 0
+    assert not Path("build/report/one.html").exists()
+    _as_anew(replicate)
+    shutil.move("aside", two)
+    assert replicate("report")[0] == 0
+    _as_anew(replicate)
+    with (two / "notes.md").open("a") as file:
+        file.write("\nMore.\n")
+    assert replicate("report", "other")[0] == 0
+    assert replicate("report")[0] == 0
+    _as_anew(replicate)
+
+
+def test_nothing_of_others_is_believed(replicate: Run, two: Path) -> None:
+    """A note that another user wrote, beside a page of that user's, is worth nothing."""
+    page, note = Path("build/report/other.html"), Path("build/cache/report.json")
+    manifest = Path("build/.replicate/manifest.json")
+    before = hashlib.sha256(page.read_bytes()).hexdigest()
+    forged = page.read_text().replace("<h1>", "<h1>Forged ")
+    page.write_text(forged)
+    after = hashlib.sha256(forged.encode()).hexdigest()
+    for path in (note, manifest):
+        assert before in path.read_text()
+        path.write_text(path.read_text().replace(before, after))
+    with (two / "notes.md").open("a") as file:
+        file.write("\nMore.\n")
+    assert replicate("report")[0] == 0
+    assert "Forged" not in page.read_text()
+    _as_anew(replicate)
+
+
+def test_a_page_is_renewed_when_what_it_shows_of_a_module_beside_it_has_changed(replicate: Run, two: Path) -> None:
+    """The results stay the same to the last digit, and the source that the page shows does not."""
+    text = (two / "exhibits.py").read_text()
+    (two / "exhibits.py").write_text(text.replace("t / 3.0", "1.0 * t / 3.0"))
+    assert replicate("report")[0] == 0
+    _as_anew(replicate)
+    (two / "exhibits.py").write_text(text)
+    assert replicate("report")[0] == 0
+    assert "1.0 * t" not in Path("build/report/one.html").read_text()
+    _as_anew(replicate)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Sequence
+import json
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_type_hints
@@ -93,6 +94,14 @@ class Computing:
                 lines.print(f"computed {name}\n    because {why}", markup=False, highlight=False, soft_wrap=True)
 
         return KeptTexts(None if self.no_cache else self.folder / "cache", rooms, distributions, report)
+
+    def distributions(self, packages: Iterable[str]) -> set[str]:
+        """Return the distributions that packages of papers use."""
+        from replicate.run.modules import distributions_used, numerical_imports
+
+        keep = self.kept_texts(("loops",), ())
+        core = json.loads(keep("imports of the numerical core", lambda: json.dumps(numerical_imports())))
+        return distributions_used(packages, core)
 
 
 def _options(

@@ -12,10 +12,12 @@ from replicate.errors import TemplateError
 from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from replicate.exhibits import Paper
+    from replicate.report.scope import Scope
     from replicate.report.site import Site
+    from replicate.report.standing import Standing
     from replicate.run.outcome import Outcome
 
 
@@ -29,27 +31,28 @@ def report(
 
     Of papers that are named, their pages are written and what all pages share.
     """
+    from replicate.report.standing import keep, kept_files, material, read_note, units_shown
+
     # What is read below must not be newer than what is said to have been read.
-    texts = "" if papers or single_file or run.no_cache else _texts(run)
-    if texts and _stands(run, texts):
+    texts = {} if papers or single_file or run.no_cache else _texts(run)
+    note = read_note(run.folder) if texts else None
+    if note and _stands(run, texts, note):
         return
 
     from replicate import whatif
     from replicate.display import markdown
+    from replicate.display.environment import versions
     from replicate.report.data import expected_files, write_outputs
     from replicate.report.pages import build_report, single_page
-    from replicate.report.scope import Scope
     from replicate.report.site import INDEX
-    from replicate.report.standing import keep
     from replicate.report.texts import placed, unreadable
-    from replicate.staging import files_of, staged
+    from replicate.staging import staged
     from replicate.terminal.console import console
     from replicate.terminal.summary import counts_of, print_summary
 
     chosen = run.within.papers(papers or ())
     named = {paper.id for paper in chosen}
-    pages_there = [name.removeprefix("report/") for name in files_of(run.folder, "report")] if papers else []
-    scope = Scope.among(named, pages_there, run.within.ids())
+    scope = _scope(run, named, beside=bool(papers))
     in_order = [one.name for one in run.within.known if one.name in {*named, *scope.others}]
     everyone = run.within.papers(in_order) if scope.others else chosen
     about = _about(run, everyone)
@@ -57,15 +60,19 @@ def report(
         # The overview and the lists speak of all papers; what has been kept of the others is not computed again.
         outcome = run.recompute(everyone)
         outcome = outcome.without(whatif.unreadable_loops(outcome.papers, outcome.results))
+        made_of = material(run.folder, chosen, units_shown(chosen) if texts else [], texts)
+        keeps = kept_files(run.folder, note, made_of)
         kept = run.kept_texts(markdown.ROOMS, markdown.DISTRIBUTIONS)
-        build = partial(build_report, out_dir=fresh / "report", about=about, keep=kept)
+        build = partial(
+            build_report, out_dir=fresh / "report", about=about, keep=kept, keeps=keeps, uses=run.distributions
+        )
         try:
             pages = build(outcome.papers, outcome.results, outcome.judgement)
         except TemplateError:  # one paper's text must not take the pages of the others
             outcome = outcome.without(unreadable(outcome))
             with placed(run.within.project):
                 pages = build(outcome.papers, outcome.results, outcome.judgement)
-        data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh)
+        data = write_outputs(outcome.papers, outcome.results, outcome.judgement, fresh, keeps)
         kept = run.kept_texts(whatif.ROOMS, whatif.DISTRIBUTIONS)
         whatif.write_whatif(outcome.papers, outcome.results, fresh / "report", back=INDEX, keep=kept)
         mailed = [paper for paper in outcome.papers if paper.id in named] if single_file else []
@@ -76,18 +83,22 @@ def report(
     outcome = outcome.of(named)
     counts = counts_of(outcome)
     print_summary(counts, console())
-    if (
-        texts
-        and not run.within.broken
-        and not outcome.broken
-        and not outcome.failures
-        and not outcome.judgement.unreadable
-    ):
-        keep(run.folder, chosen, texts, [run.folder / path for path in written], counts, outcome.judgement.unused)
+    if texts and not (run.within.broken or outcome.broken or outcome.failures or outcome.judgement.unreadable):
+        stamp = versions(run.distributions(paper.package for paper in chosen))
+        keep(run.folder, made_of, units_shown(chosen), stamp, written, counts, outcome.judgement.unused)
     echo(f"\nreport: {run.folder / 'report' / pages[0].name}")
     for paper in mailed:
         echo(f"in one file: {run.folder / paper.id}.html")
     exit_with(run.within, outcome)
+
+
+def _scope(run: Computing, named: set[str], *, beside: bool) -> Scope:
+    """Return the scope of a run, beside the pages of other papers that the report has, or in place of them."""
+    from replicate.report.scope import Scope
+    from replicate.staging import files_of
+
+    pages = [name.removeprefix("report/") for name in files_of(run.folder, "report")] if beside else []
+    return Scope.among(named, pages, run.within.ids())
 
 
 def _about(run: Computing, papers: Sequence[Paper]) -> Site:
@@ -97,15 +108,15 @@ def _about(run: Computing, papers: Sequence[Paper]) -> Site:
     return site_of(run.within.project, bundled=all(run.within.is_bundled(paper.id) for paper in papers))
 
 
-def _texts(run: Computing) -> str:
-    """Return the digest of all that the report is made of besides results; empty if a paper cannot be used."""
+def _texts(run: Computing) -> dict[str, str]:
+    """Return by paper the digest of what the report is made of besides results; nothing if a paper cannot be used."""
     from replicate.report.standing import texts_of
 
     papers = run.within.found()
-    return texts_of(papers, _about(run, papers)) if papers else ""
+    return texts_of(papers, _about(run, papers)) if papers else {}
 
 
-def _stands(run: Computing, texts: str) -> bool:
+def _stands(run: Computing, texts: Mapping[str, str], note: Standing) -> bool:
     """Say what the report says, if there is nothing to write anew; return whether that is so."""
     from replicate.report.site import INDEX
     from replicate.report.standing import standing
@@ -114,10 +125,10 @@ def _stands(run: Computing, texts: str) -> bool:
     from replicate.terminal.summary import print_summary
 
     finish_interrupted(run.folder)
-    found = standing(run.folder, run.within.found(), texts)
+    found = standing(run.folder, run.within.found(), texts, note)
     if found is None:
         return False
-    run.tell_kept(found.results)
+    run.tell_kept(found.shown)
     print_summary(found.counts, console())
     echo(f"\nreport: {run.folder / 'report' / INDEX}")
     for line in found.unused:

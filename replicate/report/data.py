@@ -5,16 +5,19 @@ Same results, same bytes: no clock, no absolute paths, rows in the order of the 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from replicate.display.addresses import address, pages_of
 from replicate.display.consequences import errors
 from replicate.display.csv_text import csv_text, curves_text, table_text
 from replicate.display.junit import junit
+from replicate.display.keeping import Keep, made_anew
 from replicate.exhibits import Figure, Paper, Table
-from replicate.exhibits.results import FigureResult, Results, TableResult
+from replicate.exhibits.results import FigureResult, Result, Results, TableResult
 from replicate.report.columns import COLUMN_COLUMNS, column_rows, named_curves, named_drawing
 from replicate.report.pages import DATA
 from replicate.staging import write
@@ -72,7 +75,13 @@ def expected_files(papers: Iterable[Paper]) -> list[str]:
     return found
 
 
-def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgement, folder: Path) -> dict[str, bytes]:
+def write_outputs(
+    papers: Sequence[Paper],
+    results: Results,
+    judgement: Judgement,
+    folder: Path,
+    keeps: Mapping[str, Keep] = MappingProxyType({}),
+) -> dict[str, bytes]:
     """Write everything but the report into a folder.
 
     Parameters
@@ -83,6 +92,8 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
         Of all of them together.
     folder
         An existing folder; see `replicate.staging.staged` for how to replace an earlier state safely.
+    keeps
+        By paper: keeps the files of its exhibits as long as nothing that they are made of has changed.
 
     Returns
     -------
@@ -94,7 +105,7 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
     OSError
         If a file cannot be written.
     """
-    files = data_files(papers, results, judgement)
+    files = data_files(papers, results, judgement, keeps)
     for name, content in files.items():
         write(folder / name, content)
         # The same bytes inside the report, so that the report can be mailed whole.
@@ -103,7 +114,12 @@ def write_outputs(papers: Sequence[Paper], results: Results, judgement: Judgemen
     return files
 
 
-def data_files(papers: Sequence[Paper], results: Results, judgement: Judgement) -> dict[str, bytes]:
+def data_files(
+    papers: Sequence[Paper],
+    results: Results,
+    judgement: Judgement,
+    keeps: Mapping[str, Keep] = MappingProxyType({}),
+) -> dict[str, bytes]:
     """Return the files of the data by name."""
     pages = {paper.id: pages_of(paper) for paper in papers}
     found: dict[str, str | bytes] = {
@@ -114,18 +130,26 @@ def data_files(papers: Sequence[Paper], results: Results, judgement: Judgement) 
         "ranges.csv": _records(judgement.ranges, RANGE_COLUMNS),
         "columns.csv": csv_text(COLUMN_COLUMNS, (one for paper in papers for one in column_rows(paper, results))),
     }
-    for (paper, exhibit), result in results.items():
-        if isinstance(result, TableResult):
-            for reading, frame in result.frames.items():
-                found[f"tables/{paper}/{exhibit}.{reading}.csv"] = table_text(frame)
-        elif isinstance(result, FigureResult) and not result.error:
-            place = f"figures/{paper}/{exhibit}"
-            found |= {
-                f"{place}.svg": named_drawing(result.svg),
-                f"{place}.png": result.png,
-                f"{place}.csv": curves_text(named_curves(result)),
-            }
+    for (paper, _), result in results.items():
+        kept = keeps.get(paper, made_anew)
+        for name, make in _of_exhibit(result).items():
+            found[name] = make if isinstance(make, bytes) else kept(name, make)
     return {name: text.encode() if isinstance(text, str) else text for name, text in found.items()}
+
+
+def _of_exhibit(result: Result) -> dict[str, bytes | Callable[[], str]]:
+    """Return the files of one exhibit by name: their content, or what makes it."""
+    if isinstance(result, TableResult):
+        place = f"tables/{result.paper}/{result.exhibit}"
+        return {f"{place}.{reading}.csv": partial(table_text, frame) for reading, frame in result.frames.items()}
+    if isinstance(result, FigureResult) and not result.error:
+        place = f"figures/{result.paper}/{result.exhibit}"
+        return {
+            f"{place}.svg": partial(named_drawing, result.svg),
+            f"{place}.png": result.png,
+            f"{place}.csv": lambda: curves_text(named_curves(result)),
+        }
+    return {}
 
 
 def _records(records: Iterable[ResultRow | VerdictRow | ExhibitRow | RangeRow], columns: Sequence[str]) -> str:

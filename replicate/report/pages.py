@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 from itertools import dropwhile, takewhile
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from replicate.display.addresses import address, page_name, pages_of, parts
@@ -30,7 +31,7 @@ from replicate.report.notes import Piece, pieces, place
 from replicate.report.search import KINDS, hits
 from replicate.report.single_file import self_contained
 from replicate.report.site import INDEX, Site
-from replicate.report.views import ExhibitView, exhibit_views
+from replicate.report.views import ExhibitView, outlines, whole
 from replicate.report.weight import within_limits
 from replicate.resources import templates_dir
 from replicate.run.modules import distributions_used
@@ -101,6 +102,8 @@ def build_report(
     out_dir: Path,
     about: Site | None = None,
     keep: Keep = made_anew,
+    keeps: Mapping[str, Keep] = MappingProxyType({}),
+    uses: Callable[[Iterable[str]], set[str]] = distributions_used,
 ) -> list[Path]:
     """Write the report.
 
@@ -118,6 +121,10 @@ def build_report(
         Folder of the pages; figures and tables are expected in ``../figures`` and ``../tables``.
     keep
         Keeps texts of the pages as they were converted, between runs.
+    keeps
+        By paper: keeps its pages as long as nothing that they are made of has changed.
+    uses
+        Returns the distributions that packages of papers use.
 
     Returns
     -------
@@ -137,7 +144,7 @@ def build_report(
     advised = {id: advice(exhibit for page in pages for exhibit in page.exhibits) for id, pages in site.items()}
     found = sheets(papers, judgement)
     grave = [_listed(found, row) for row in consequential(judgement.verdicts)[:_MOST_GRAVE]]
-    stamp = versions(distributions_used(paper.package for paper in papers))
+    stamp = versions(uses(paper.package for paper in papers))
     overview: dict[str, Any] = {"stamp": stamp, "site": site, "papers": papers, "advised": advised, "grave": grave}
     texts = {INDEX: render("index.html", INDEX, **overview, **shared)}
     name = METHODS if about.methods else VERDICTS
@@ -148,28 +155,30 @@ def build_report(
     texts[ERRATA] = render("errata.html", ERRATA, sheets=found, **shared)
     listed = hits(papers, judgement, {sheet.paper.id: sheet.errata for sheet in found})
     texts[SEARCH] = render("search.html", SEARCH, hits=listed, kinds=KINDS, **shared)
-    for pages in site.values():
-        for page in pages:
+    for paper in papers:
+        kept = keeps.get(paper.id, made_anew)
+        for page in site[paper.id]:
             fill = partial(
                 render,
                 "paper.html",
                 page.file,
-                pages=pages,
+                pages=site[paper.id],
                 mistakes=[erratum for erratum in mistakes if erratum.page == page.file],
                 unexplained=[erratum for erratum in unexplained if erratum.page == page.file],
                 in_one_file=False,
                 **shared,
             )
-            texts[page.file] = within_limits(page.exhibits, _filling(fill, page))
+            texts[page.file] = kept(f"report/{page.file}", partial(_filled, fill, page, results))
     out_dir.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         (out_dir / name).write_bytes(text.encode())
     return [out_dir / name for name in texts]
 
 
-def _filling(fill: Callable[..., str], page: Page) -> Callable[[Sequence[ExhibitView]], str]:
-    """Return what makes a page with other views of its exhibits."""
-    return lambda views: fill(page=replace(page, exhibits=list(views)))
+def _filled(fill: Callable[..., str], page: Page, results: Results) -> str:
+    """Return a page with all that its exhibits show, light enough for a phone."""
+    views = [whole(view, page.paper.exhibits[view.id], results.get((page.paper.id, view.id))) for view in page.exhibits]
+    return within_limits(views, lambda lighter: fill(page=replace(page, exhibits=list(lighter))))
 
 
 def _listed(found: Iterable[Sheet], row: VerdictRow) -> tuple[Paper, Erratum, VerdictRow, str]:
@@ -200,8 +209,9 @@ def single_page(
         If prose asks for something that does not exist or cannot be converted.
     """
     about = about or Site()
-    views = exhibit_views(paper, results, judgement, pages_of(paper))
-    texts = [text for _, text in _texts(paper, results, judgement, views)]
+    outline = outlines(paper, judgement, pages_of(paper))
+    texts = [text for _, text in _texts(paper, results, judgement, outline)]
+    views = [whole(view, paper.exhibits[view.id], results.get((paper.id, view.id))) for view in outline]
     page = Page(paper, "", paper.title, pieces("\n\n".join(texts)), views)
     (sheet,) = sheets([paper], judgement)
     text = render(
@@ -220,12 +230,12 @@ def single_page(
 
 
 def paper_pages(paper: Paper, results: Results, judgement: Judgement) -> list[Page]:
-    """Return the pages of a paper, the main page first."""
-    views = exhibit_views(paper, results, judgement, pages_of(paper))
+    """Return the pages of a paper, the main page first; their exhibits are outlines."""
+    views = outlines(paper, judgement, pages_of(paper))
     pages = []
-    for part, whole in _texts(paper, results, judgement, views):
+    for part, notes in _texts(paper, results, judgement, views):
         here = [view for view in views if view.page == page_name(paper.id, part)]
-        title, text = _title(whole, f"Part {part}") if part else (paper.title, whole)
+        title, text = _title(notes, f"Part {part}") if part else (paper.title, notes)
         pages.append(Page(paper, part, title, pieces(text), here))
     return pages
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import html
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 from markupsafe import Markup
 
@@ -19,7 +18,7 @@ from replicate.display.tables import TableView, classes, table_view
 from replicate.exhibits import Claim, Claims, Exhibit, Figure, Finding, Paper, Table
 from replicate.exhibits.numerals import parse_number
 from replicate.exhibits.printed import PrintedValue
-from replicate.exhibits.results import ClaimsResult, FigureResult, Result, Results, TableResult
+from replicate.exhibits.results import ClaimsResult, FigureResult, Result, TableResult
 from replicate.verdicts.rows import ExhibitRow, Judgement, VerdictRow
 
 
@@ -59,7 +58,7 @@ class ClaimView:
 
 @dataclass(frozen=True)
 class ExhibitView:
-    """One exhibit; exactly one of `table`, `figure`, `claims` is set if it could be computed."""
+    """One exhibit; exactly one of `table`, `figure`, `claims` is set where it is `whole` and could be computed."""
 
     id: str
     label: str
@@ -90,10 +89,8 @@ class ExhibitView:
         )
 
 
-def exhibit_views(
-    paper: Paper, results: Results, judgement: Judgement, page_of: Mapping[str, str]
-) -> list[ExhibitView]:
-    """Return the views of a paper's exhibits in the order of its inventory.
+def outlines(paper: Paper, judgement: Judgement, page_of: Mapping[str, str]) -> list[ExhibitView]:
+    """Return a paper's exhibits in the order of its inventory, without what they show.
 
     Parameters
     ----------
@@ -107,54 +104,47 @@ def exhibit_views(
     for verdict in (verdict for verdict in judgement.verdicts if verdict.paper == paper.id):
         verdicts.setdefault(verdict.exhibit, []).append(verdict)
     return [
-        _view(
-            exhibit,
-            results.get((paper.id, exhibit.id)),
-            _common(exhibit, rows[exhibit.id], verdicts.get(exhibit.id, []), page_of[exhibit.id]),
-        )
+        _outline(exhibit, rows[exhibit.id], verdicts.get(exhibit.id, []), page_of[exhibit.id])
         for exhibit in paper.exhibits.values()
     ]
 
 
-def _common(exhibit: Exhibit, row: ExhibitRow, verdicts: list[VerdictRow], page: str) -> dict[str, Any]:
-    """Return the fields that every kind of exhibit has."""
+def _outline(exhibit: Exhibit, row: ExhibitRow, verdicts: list[VerdictRow], page: str) -> ExhibitView:
     label, title = heading(exhibit.id, exhibit.title)
-    return {
-        "id": exhibit.id,
-        "label": label,
-        "title": title,
-        "kind": exhibit.kind,
-        "status": row.status,
-        "reason": row.reason,
-        "page": page,
-        "score": scores.claims(verdicts) if isinstance(exhibit, Claims) else scores.values(verdicts),
-        "verdicts": verdicts,
-    }
+    return ExhibitView(
+        id=exhibit.id,
+        label=label,
+        title=title,
+        kind=exhibit.kind,
+        status=row.status,
+        reason=row.reason,
+        page=page,
+        score=scores.claims(verdicts) if isinstance(exhibit, Claims) else scores.values(verdicts),
+        verdicts=verdicts,
+    )
 
 
-def _view(exhibit: Exhibit, result: Result | None, common: dict[str, Any]) -> ExhibitView:
+def whole(outline: ExhibitView, exhibit: Exhibit, result: Result | None) -> ExhibitView:
+    """Return an exhibit with its table, figure or claims, if there is a result, and their sources."""
     match exhibit, result:
         case Table(), TableResult():
             base = f"data/tables/{result.paper}/{exhibit.id}"
-            return ExhibitView(
-                **common,
-                table=table_view(exhibit, result, common["verdicts"]),
+            return replace(
+                outline,
+                table=table_view(exhibit, result, outline.verdicts),
                 caption=exhibit.caption,
                 sources=sources([reading.compute for reading in exhibit.readings.values()]),
                 files=[(f"CSV, {id}" if len(result.frames) > 1 else "CSV", f"{base}.{id}.csv") for id in result.frames],
             )
         case Figure(), FigureResult():
-            return ExhibitView(
-                **common,
-                figure=_figure(exhibit, result),
-                caption=exhibit.caption,
-                sources=sources([exhibit.draw]),
+            return replace(
+                outline, figure=_figure(exhibit, result), caption=exhibit.caption, sources=sources([exhibit.draw])
             )
         case Claims(), ClaimsResult():
             checks = [claim.check for claim in exhibit.claims.values()]
-            return ExhibitView(**common, claims=list(_claims(exhibit, result)), sources=sources(checks))
+            return replace(outline, claims=list(_claims(exhibit, result)), sources=sources(checks))
         case _:
-            return ExhibitView(**common)
+            return outline
 
 
 def _figure(figure: Figure, result: FigureResult) -> FigureView:

@@ -58,12 +58,12 @@ class Cache:
         return None, why or NEVER
 
     def state(self, paper: Paper, unit: Unit) -> str:
-        """Return the digest of the result of a unit that holds, without reading it; empty if there is none."""
+        """Return the digest of the result of a unit that holds and of all it depends on; empty if there is none."""
         for path in self._entries(unit) if self.folder is not None else ():
             with contextlib.suppress(UselessError, OSError, ValueError, TypeError, LookupError):
-                text = self._text(path, paper, unit)
+                recorded, text = self._text(path, paper, unit)
                 os.utime(path)  # used just now: the last to be removed
-                return hashlib.sha256(text).hexdigest()
+                return hashlib.sha256(json.dumps(recorded).encode() + text).hexdigest()
         return ""
 
     def put(self, unit: Unit, result: Result, dependencies: Dependencies) -> None:
@@ -119,18 +119,19 @@ class Cache:
             return None, DAMAGED
 
     def _whole(self, path: Path, paper: Paper, unit: Unit) -> Result:
-        result = from_text(self._text(path, paper, unit))
+        _, text = self._text(path, paper, unit)
+        result = from_text(text)
         if not fits(result, unit, paper.exhibits[unit.exhibit]):
             raise UselessError(OTHER)
         return result
 
-    def _text(self, path: Path, paper: Paper, unit: Unit) -> bytes:
-        """Return the result of an entry as it was written, if all that it depends on is as it was."""
+    def _text(self, path: Path, paper: Paper, unit: Unit) -> tuple[Dependencies, bytes]:
+        """Return an entry as it was written, if all that its result depends on is as it was."""
         recorded, text = read_entry(path, _identity(unit))
         difference = self._looked.difference(paper, _checked(recorded))
         if difference:
             raise UselessError(difference)
-        return text
+        return recorded, text
 
 
 @dataclass(frozen=True)

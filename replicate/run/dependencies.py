@@ -59,6 +59,7 @@ class Looked:
         self._folders: dict[tuple[str, str], dict[str, str]] = {}
         self._modules: dict[str, str] = {}
         self._versions: dict[str, str] = {}
+        self._rooms: dict[tuple[str, ...], dict[str, str]] = {}
         self._projects: dict[Path, dict[str, str]] = {}
         self._used: dict[tuple[str, frozenset[str]], PaperModules] = {}
         self._environment = {
@@ -109,10 +110,9 @@ class Looked:
 
     def now(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> Dependencies:
         """Return the present state of everything that was recorded, and of files that came beside it."""
-        rooms = sorted({name.split("/")[0] for name in recorded["framework"]})
         return {
             "python": self._environment,
-            "framework": {name: digest for room in rooms for name, digest in self._room(room).items()},
+            "framework": self._framework(tuple(recorded["framework"])),
             "paper": {
                 name: _NAMED if recorded["paper"].get(name) == _NAMED else digest
                 for name, digest in self._folder("paper", paper.package, paper.folder()).items()
@@ -126,6 +126,13 @@ class Looked:
     def difference(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> str:
         """Return what has changed since, in words; empty if nothing has."""
         return first_difference(recorded, self.now(paper, recorded), paper.id)
+
+    def _framework(self, files: tuple[str, ...]) -> dict[str, str]:
+        """Return the present files of the rooms of some files, which most results of a run share."""
+        if files not in self._rooms:
+            rooms = sorted({name.split("/")[0] for name in files})
+            self._rooms[files] = {name: digest for room in rooms for name, digest in self._room(room).items()}
+        return self._rooms[files]
 
     def rooms(self, rooms: Iterable[str], distributions: Iterable[str]) -> Dependencies:
         """Return the present state of rooms of the framework and of installed distributions."""

@@ -89,7 +89,7 @@ class PaperModules:
             body = self._texts[home].functions.get(function) if home in self._texts else None
             if body is not None and (home, function) not in seen:
                 seen.add((home, function))
-                if self._changes(home, effects_of(body.body), seen, within=within and home == name):
+                if self._changes(home, effects_of(body), seen, within=within and home == name):
                     return True
         return False
 

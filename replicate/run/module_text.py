@@ -8,9 +8,9 @@ from __future__ import annotations
 import ast
 import importlib.util
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 
 _BLOCKS = (ast.stmt, ast.excepthandler, ast.match_case)
@@ -58,17 +58,24 @@ class ModuleText:
         What it imports by the names that it uses: ``TABLE`` may be ``paper.tables.TABLE``.
     finds
         Whether it may reach modules that it does not import.
-    effects
-        Of importing it.
-    functions
-        Its functions by name.
+    body
+        Its statements.
     """
 
     imports: tuple[str, ...] = ()
     names: Mapping[str, str] = field(default_factory=dict)
     finds: bool = True
-    effects: Effects = field(default_factory=lambda: effects_of([]))
-    functions: Mapping[str, ast.FunctionDef | ast.AsyncFunctionDef] = field(default_factory=dict)
+    body: Sequence[ast.stmt] = ()
+
+    @cached_property
+    def effects(self) -> Effects:
+        """Those of importing it."""
+        return effects_of(self.body)
+
+    @cached_property
+    def functions(self) -> dict[str, Sequence[ast.stmt]]:
+        """The statements of its functions by name."""
+        return {node.name: node.body for node in self.body if isinstance(node, _FUNCTIONS)}
 
 
 @cache
@@ -97,8 +104,7 @@ def module_text(path: Path, name: str) -> ModuleText:
             imports += [base, *full.values()]
             names |= full
     finds = _FINDS.search(text) is not None or "*" in names
-    functions = {node.name: node for node in tree.body if isinstance(node, _FUNCTIONS)}
-    return ModuleText(tuple(imports), names, finds, effects_of(tree.body), functions)
+    return ModuleText(tuple(imports), names, finds, tree.body)
 
 
 def _statements(tree: ast.AST) -> Iterator[ast.AST]:

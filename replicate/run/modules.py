@@ -7,9 +7,10 @@ import importlib.metadata
 import os
 import sys
 import sysconfig
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from types import MappingProxyType
 
 from replicate.run.module_text import module_text
 
@@ -69,11 +70,24 @@ def imports_of(name: str) -> tuple[str, ...]:
     return module_text(path, name).imports if path is not None and path.suffix == ".py" else ()
 
 
-def distributions_used(packages: Iterable[str]) -> set[str]:
+def numerical_imports() -> dict[str, tuple[str, ...]]:
+    """Return what each module of the numerical core imports, loaded or not."""
+    folder = Path(__file__).parents[1]
+    parts = [path.relative_to(folder.parent).with_suffix("").parts for path in sorted(folder.glob("loops/**/*.py"))]
+    names = [".".join(part[:-1] if part[-1] == "__init__" else part) for part in parts]
+    return {name: imports_of(name) for name in names}
+
+
+def distributions_used(packages: Iterable[str], known: Mapping[str, Sequence[str]] = MappingProxyType({})) -> set[str]:
     """Return the distributions that packages import anywhere in their code, or in that of the modules of ours they use.
 
     Only statements count, so the answer does not depend on what was run. The framework's rooms do not count: what they
     import belongs to every report.
+
+    Parameters
+    ----------
+    known
+        What modules import, of those of which it need not be looked up.
     """
     packages = tuple(packages)
     found: set[str] = set()
@@ -89,7 +103,7 @@ def distributions_used(packages: Iterable[str]) -> set[str]:
         if not ours:
             found.update(installed()[top])
         elif top != _ROOT or any(_is_in(name, room) for room in (*_NUMERICS, *packages)):
-            waiting += imports_of(name)
+            waiting += known[name] if name in known else imports_of(name)
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from replicate.display.addresses import trial_label, trial_table
 from replicate.exhibits import Paper
 from replicate.exhibits.results import Results, TableResult
 from replicate.exhibits.trials import TableTrials
-from replicate.loops import Plant
+from replicate.loops import PID, Plant
 from replicate.loops.errors import LoopError
 from replicate.loops.notation import parse_controller, parse_plant
 
@@ -54,7 +55,7 @@ def why_not_drawn(row: Row) -> str:
     LoopError
         If plant or controller is not understood.
     """
-    plant, controller = parse_plant(row.plant), parse_controller(row.controller)
+    plant, controller = _parsed(row.plant, row.controller)
     if not plant.is_rational or plant.den.size > MOST_POLES + 1:
         return f"the page draws rational plants with one dead time, of order {MOST_POLES} at most, not {row.plant}"
     gains = (controller.k, controller.ki, controller.kd, controller.b, controller.c, controller.derivative_filter)
@@ -82,6 +83,12 @@ def why_not_drawn(row: Row) -> str:
         ),
     ]
     return next((reason for wrong, reason in refused if wrong), "")
+
+
+@cache
+def _parsed(plant: str, controller: str) -> tuple[Plant, PID]:
+    """Return a loop; papers have the same ones in many tables."""
+    return parse_plant(plant), parse_controller(controller)
 
 
 def _spread(plant: Plant, gain: float) -> float:
@@ -114,8 +121,7 @@ def unreadable_loops(papers: Iterable[Paper], results: Results) -> dict[str, str
         for exhibit, trials in _trials(paper, results):
             for row, case, plant, controller in trials.all:
                 try:
-                    parse_plant(plant)
-                    parse_controller(controller)
+                    _parsed(plant, controller)
                 except LoopError as error:
                     found.setdefault(paper.id, f"{paper.id}/{exhibit}: {', '.join(filter(None, (row, case)))}: {error}")
     return found
