@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.text import Annotation, Text
 
+from replicate.figures.attributes import attribute
 from replicate.figures.placing import without_layout
 from replicate.figures.recorder import DPI, Drawn, RecordingRenderer
+from replicate.figures.settled_ticks import settled_ticks
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -27,7 +29,7 @@ def recorded(figure: Figure) -> Iterator[list[Drawn]]:
     """
     width, height = figure.get_size_inches()
     renderer = RecordingRenderer(width * DPI, height * DPI)
-    with _on_canvas(figure, renderer), renderer.drawing(figure):
+    with _on_canvas(figure, renderer), renderer.drawing(figure), settled_ticks(figure):
         figure.draw(renderer)
         renderer.recording = True
         with _attributed(figure, renderer):
@@ -47,8 +49,8 @@ def _on_canvas(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
         stack.callback(figure._set_dpi, dpi, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001
         figure._set_dpi(DPI, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001  -- no window changes its size
         # Artists may ask the canvas for a renderer, and animations begin unless a file is being saved.
-        stack.enter_context(_set(canvas, "get_renderer", lambda: renderer))
-        stack.enter_context(_set(canvas, "_is_saving", True))
+        stack.enter_context(attribute(canvas, "get_renderer", lambda: renderer))
+        stack.enter_context(attribute(canvas, "_is_saving", True))
         yield
         for artist in everything(figure):
             if isinstance(artist, Text) and getattr(artist, "_renderer", None) is renderer:
@@ -61,7 +63,7 @@ def _attributed(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
     with ExitStack() as stack:
         for artist in everything(figure):
             if artist is not figure:
-                stack.enter_context(_set(artist, "draw", _telling(artist, renderer)))
+                stack.enter_context(attribute(artist, "draw", _telling(artist, renderer)))
         yield
 
 
@@ -74,21 +76,6 @@ def _telling(artist: Artist, renderer: RecordingRenderer) -> Any:
             return original(*arguments, **options)
 
     return draw
-
-
-@contextmanager
-def _set(owner: Any, name: str, value: Any) -> Iterator[None]:
-    """Set an attribute of one object for a while, without a trace of it on the object afterwards."""
-    missing = object()
-    before = owner.__dict__.get(name, missing)
-    owner.__dict__[name] = value
-    try:
-        yield
-    finally:
-        if before is missing:
-            owner.__dict__.pop(name, None)
-        else:
-            owner.__dict__[name] = before
 
 
 def everything(figure: Figure) -> list[Artist]:

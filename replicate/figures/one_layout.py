@@ -2,14 +2,13 @@
 
 matplotlib lays a figure out anew for every file, because each kind measures texts in its own way: pixels with hinted
 letters, shapes with outlines. Here texts are outlines in both, so that their sizes are the same and one layout serves.
-What costs most in a layout is to read ``$...$``; what has been read is remembered for as long as the process lives.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import matplotlib as mpl
 from matplotlib.backend_bases import RendererBase
@@ -17,46 +16,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import RendererSVG
 from matplotlib.figure import Figure
-from matplotlib.mathtext import MathTextParser
-from matplotlib.textpath import TextToPath
 
-if TYPE_CHECKING:
-    from matplotlib.mathtext import VectorParse
+from replicate.figures.settled_ticks import settled_ticks
+from replicate.figures.text_outlines import POINTS, Outlines
 
-    _PathParser = MathTextParser[VectorParse]
-else:
-    _PathParser = MathTextParser
-
-_POINTS = 72  # of an inch: the resolution of an SVG
-_MOST_REMEMBERED = 20_000
-_SETTINGS = ("mathtext.", "font.", "text.")
-
-
-class _RememberingParser(_PathParser):
-    """Reads mathematical text once, however often it is asked for and at whatever size."""
-
-    def __init__(self) -> None:
-        super().__init__("path")
-        self._settings: tuple[str, ...] = ()
-        self._read: dict[tuple[Any, ...], Any] = {}
-
-    def parse(self, s: str, dpi: float = _POINTS, prop: Any = None, **options: Any) -> Any:
-        key = (s, dpi, None if prop is None else prop.copy(), *options.values())
-        if key not in self._read:
-            self._read[key] = super().parse(s, dpi, prop, **options)
-        return self._read[key]
-
-    def settle(self) -> None:
-        """Forget what was read with other settings."""
-        settings = tuple(f"{name}: {value}" for name, value in mpl.rcParams.items() if name.startswith(_SETTINGS))
-        if settings != self._settings or len(self._read) > _MOST_REMEMBERED:
-            self._settings = settings
-            self._read.clear()
-
-
-_PARSER = _RememberingParser()
-_OUTLINES = TextToPath()
-_OUTLINES.mathtext_parser = _PARSER
+_OUTLINES = Outlines()
 
 
 class _Pixels(RendererAgg):
@@ -74,14 +38,20 @@ class _Pixels(RendererAgg):
 
     def get_text_width_height_descent(self, s: str, prop: Any, ismath: Any) -> tuple[float, float, float]:
         width, height, descent = _OUTLINES.get_text_width_height_descent(s, prop, ismath)
-        scale = self.dpi / _POINTS
+        scale = self.dpi / POINTS
         return width * scale, height * scale, descent * scale
+
+    def _get_font_height_metrics(self, prop: Any) -> tuple[float | None, float | None, float | None]:
+        return _OUTLINES.line_height(prop, self.dpi)
 
 
 class _Shapes(RendererSVG):
     def __init__(self, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)  # type: ignore[no-untyped-call]
         self._text2path = _OUTLINES
+
+    def _get_font_height_metrics(self, prop: Any) -> tuple[float | None, float | None, float | None]:
+        return _OUTLINES.line_height(prop, POINTS)
 
 
 class _Canvas(FigureCanvasAgg):
@@ -98,9 +68,9 @@ class _Canvas(FigureCanvasAgg):
 
     def print_svg(self, file: Any, *, metadata: Any = None, **_: Any) -> None:
         """Write to an open text file; as matplotlib's own, but for the renderer."""
-        dpi, self.figure.dpi = self.figure.dpi, _POINTS
+        dpi, self.figure.dpi = self.figure.dpi, POINTS
         width, height = self.figure.get_size_inches()
-        shapes = _Shapes(width * _POINTS, height * _POINTS, file, image_dpi=dpi, metadata=metadata)
+        shapes = _Shapes(width * POINTS, height * POINTS, file, image_dpi=dpi, metadata=metadata)
         renderer: Any = MixedModeRenderer(self.figure, width, height, dpi, shapes)  # type: ignore[no-untyped-call]
         self.figure.draw(renderer)
         renderer.finalize()
@@ -110,13 +80,16 @@ class _Canvas(FigureCanvasAgg):
 def laid_out(figure: Figure) -> Iterator[None]:
     """Place the parts of a figure; inside the ``with`` block, saving it as SVG or PNG only draws."""
     engine, canvas, dpi = figure.get_layout_engine(), figure.canvas, figure.dpi
-    _PARSER.settle()
+    _OUTLINES.settle()
     _Canvas(figure)  # which makes itself the figure's
     try:
         # A file that has been saved leaves the figure with the layout engine of the settings: none, for this while.
-        with mpl.rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
+        with (
+            mpl.rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}),
+            settled_ticks(figure),
+        ):
             if engine is not None:
-                figure.dpi = _POINTS
+                figure.dpi = POINTS
                 with suppress(ValueError):  # as `Figure.draw` does
                     engine.execute(figure)
                 figure.dpi = dpi
