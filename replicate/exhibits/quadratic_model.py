@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import combinations_with_replacement, product
 
 import numpy as np
@@ -79,6 +80,14 @@ def terms(scaled: np.ndarray) -> np.ndarray:
     return np.column_stack([np.ones(len(scaled)), scaled, *pairs])
 
 
+@cache
+def _grid(d: int) -> np.ndarray:
+    """Return the scaled points at which a model of d inputs is searched, shape (n, d)."""
+    grid = np.array(list(product(np.linspace(-1.0, 1.0, _FINENESS.get(d, _COARSE)), repeat=d)))
+    grid.setflags(write=False)  # shared
+    return grid
+
+
 @dataclass
 class Search:
     """Functions over a box, found out as well as the tolerances ask for.
@@ -133,8 +142,9 @@ class Search:
     def range(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the smallest and largest value of each function; NaN where it has none somewhere."""
         for part, scaled in self.searched():
-            guesses = part(scaled)
-            for place in np.nonzero(part.good & ~part.monotonic)[0]:
+            curved = np.nonzero(part.good & ~part.monotonic)[0]
+            guesses = part(scaled) if curved.size else np.empty((0, 0))
+            for place in curved:
                 for extreme in {int(np.argmin(guesses[:, place])), int(np.argmax(guesses[:, place]))}:
                     if np.abs(scaled[extreme]).min(initial=1.0) < 1.0:  # the corners are known
                         self.at(part.point(scaled[extreme]))
@@ -143,8 +153,7 @@ class Search:
 
     def searched(self) -> Iterator[tuple[Part, np.ndarray]]:
         """Yield every part with a fine grid of scaled points."""
-        d = len(self.centre)
-        grid = np.array(list(product(np.linspace(-1.0, 1.0, _FINENESS.get(d, _COARSE)), repeat=d)))
+        grid = _grid(len(self.centre))
         for part in self.parts:
             yield part, grid
 

@@ -40,7 +40,8 @@ import numpy as np
 from numpy.polynomial import chebyshev as cheb
 
 from replicate.loops.bounds import intervals
-from replicate.loops.bounds.intervals import ComplexInterval, Interval
+from replicate.loops.bounds.axis_jets import AxisJet
+from replicate.loops.bounds.intervals import Interval
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
 from replicate.loops.loop import Loop
@@ -240,70 +241,36 @@ def no_peak_between(
 def _keeps_sign(plant: Plant, box: GainBox, w: Interval, complementary: bool) -> bool:
     """Say whether the derivative of ``|1 + L|^2`` (of ``|1 + 1/L|^2``) certainly does not vanish in an interval.
 
-    With L = n/d it is -2 Im(a conj(b)) / |d|^4, a = n' d - n d', b = (n + d) d; for 1/L n and d are exchanged. The
-    imaginary part is bounded by its value at the middle of the box and its derivatives with respect to the gains and
-    the lag, which loses less than intervals in their places do.
+    With L = n/d it is -2 Im(a conj(b)) / |d|^4, a = n' d - n d', b = (n + d) d; for 1/L, where n and d are exchanged,
+    b = (n + d) n, and a has the other sign. The imaginary part is bounded by its value at the middle of the box and
+    its derivatives with respect to the gains and the lag, which loses less than intervals in their places do.
     """
     num, den = _exact(plant.num), [*_exact(plant.den), NOTHING]
-    gains = (box.kd, box.k, box.ki)
 
-    def rational(n: Sequence[Interval], d: Sequence[Interval]) -> _Rational:
-        return _Rational.of(n, d, w, plant.dead_time, exchanged=complementary)
+    def loop(k: Interval, ki: Interval, kd: Interval, lag: Interval) -> tuple[AxisJet, AxisJet]:
+        return numerator(kd, k, ki), AxisJet.polynomial(_lagged(den, lag, box.order), w)
 
-    middle = rational(
-        intervals.product(num, [intervals.exactly(gain.middle) for gain in gains]),
-        _lagged(den, intervals.exactly(box.lag.middle), box.order),
-    )
-    found = (middle.a * middle.b.conjugate()).imag
-    whole = rational(intervals.product(num, gains), _lagged(den, box.lag, box.order))
-    changes = [
-        (gain, intervals.product(num, [_ONE if place == other else NOTHING for other in range(3)]), [NOTHING])
-        for place, gain in enumerate(gains)
-    ]
+    def numerator(*descending: Interval) -> AxisJet:
+        found = AxisJet.polynomial(intervals.product(num, descending), w)
+        return found.delayed(plant.dead_time, w) if plant.dead_time else found
+
+    sides = (box.k, box.ki, box.kd, box.lag)
+    n, d = loop(*(intervals.exactly(side.middle) for side in sides))
+    found = n.wronskian(d).cross((n.value + d.value) * (n if complementary else d).value)
+    n, d = loop(*sides)
+    last, both = (n if complementary else d).value, n.value + d.value
+    a, b = n.wronskian(d), both * last
+
+    for side, power in ((box.ki, 0), (box.k, 1), (box.kd, 2)):
+        dn = numerator(_ONE, *[NOTHING] * power)
+        db = dn.value * (last + both if complementary else last)
+        found += (dn.wronskian(d).cross(b) + a.cross(db)) * side.around
     if box.order:
-        changes.append((box.lag, [NOTHING], intervals.product(_lagged(den, box.lag, box.order - 1), [_ONE, NOTHING])))
-    for side, n, d in changes:
-        times = Interval(-side.reach, side.reach) * intervals.exactly(float(box.order) if side is box.lag else 1.0)
-        found = found + whole.slope(rational(n, d)).imag * times
+        dd = AxisJet.polynomial(intervals.product(_lagged(den, box.lag, box.order - 1), (_ONE, NOTHING)), w)
+        db = dd.value * (last if complementary else last + both)
+        times = box.lag.around * intervals.exactly(float(box.order))
+        found += (n.wronskian(dd).cross(b) + a.cross(db)) * times
     return not found.holds(0.0)
-
-
-@dataclass(frozen=True)
-class _Rational:
-    """Numerator and denominator of a loop transfer function and their derivatives, at points of an interval."""
-
-    n: ComplexInterval
-    d: ComplexInterval
-    dn: ComplexInterval
-    dd: ComplexInterval
-
-    @classmethod
-    def of(
-        cls, num: Sequence[Interval], den: Sequence[Interval], w: Interval, dead_time: float, *, exchanged: bool
-    ) -> _Rational:
-        (n, d), (dn, dd) = (
-            [intervals.on_the_axis(part, w) for part in parts]
-            for parts in ((num, den), (intervals.derivative(num), intervals.derivative(den)))
-        )
-        if dead_time:
-            length, angle = intervals.exactly(dead_time), w * intervals.exactly(dead_time)
-            turn = ComplexInterval(intervals.cosine(angle), -intervals.sine(angle))
-            n, dn = n * turn, (dn - n * ComplexInterval(length, NOTHING)) * turn
-        return cls(d, n, dd, dn) if exchanged else cls(n, d, dn, dd)
-
-    @property
-    def a(self) -> ComplexInterval:
-        return self.dn * self.d - self.n * self.dd
-
-    @property
-    def b(self) -> ComplexInterval:
-        return (self.n + self.d) * self.d
-
-    def slope(self, change: _Rational) -> ComplexInterval:
-        """Return the derivative of a conj(b) in the direction of a change of numerator and denominator."""
-        a = change.dn * self.d + self.dn * change.d - change.n * self.dd - self.n * change.dd
-        b = (change.n + change.d) * self.d + (self.n + self.d) * change.d
-        return a * self.b.conjugate() + self.a * b.conjugate()
 
 
 def _lagged(den: Sequence[Interval], lag: Interval, order: int) -> list[Interval]:

@@ -13,9 +13,9 @@ from math import cos, exp, inf, nextafter, sin
 _LIBRARY_ERROR = 1e-15  # more than that of a sine or cosine of the mathematical library
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True, unsafe_hash=True)  # a frozen one takes three times as long to make, and a proof makes millions
 class Interval:
-    """All numbers from `low` to `high`.
+    """All numbers from `low` to `high`; never changed once made.
 
     Examples
     --------
@@ -36,6 +36,11 @@ class Interval:
     def reach(self) -> float:
         """How far its numbers are from the middle at most."""
         return nextafter(max(self.high - self.middle, self.middle - self.low), inf)
+
+    @property
+    def around(self) -> Interval:
+        """What its numbers differ from the middle by."""
+        return Interval(-self.reach, self.reach)
 
     def holds(self, number: float) -> bool:
         """Say whether a number lies in it."""
@@ -76,7 +81,7 @@ class Interval:
         return Interval(max(found.low, 0.0), found.high)
 
 
-@dataclass(frozen=True)
+@dataclass(slots=True, unsafe_hash=True)
 class ComplexInterval:
     """All complex numbers with real and imaginary part in two intervals."""
 
@@ -97,9 +102,9 @@ class ComplexInterval:
             self.real * other.real - self.imag * other.imag, self.real * other.imag + self.imag * other.real
         )
 
-    def conjugate(self) -> ComplexInterval:
-        """Return the conjugate."""
-        return ComplexInterval(self.real, -self.imag)
+    def cross(self, other: ComplexInterval) -> Interval:
+        """Return the imaginary part of the product with the conjugate of another."""
+        return self.imag * other.real - self.real * other.imag
 
 
 def exactly(number: float) -> Interval:

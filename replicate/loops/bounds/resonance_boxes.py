@@ -81,9 +81,12 @@ class ResonanceBox:
 
     def size(self, w: Interval) -> Interval:
         """Return an interval that holds the square of ``|T|`` for all controllers and frequencies."""
+        return self._size(w, self.excess(w))
+
+    def _size(self, w: Interval, excess: Interval) -> Interval:
         x = w.square()
         top = x * self.integral.square() + (_ONE - x * self.integral * self.derivative).square()
-        bottom = _ONE + x * self.excess(w)
+        bottom = _ONE + x * excess
         return top / bottom if bottom.low > 0.0 else Interval(0.0, math.inf)
 
     def no_resonance_where(self, excludes: Excludes) -> bool:
@@ -99,7 +102,8 @@ class ResonanceBox:
             if not waiting:
                 return True
             w = waiting.pop()
-            if not (excludes(w, self.excess(w)) or self.size(w).high < self._least or self._no_peak(w)):
+            excess = self.excess(w)
+            if not (excludes(w, excess) or self._size(w, excess).high < self._least or self._no_peak(w)):
                 if w.high - w.low < _NARROWEST * w.high:
                     return False  # what is left open is the width of the box, not that of the interval
                 waiting += [Interval(w.low, w.middle), Interval(w.middle, w.high)]
@@ -108,9 +112,12 @@ class ResonanceBox:
     def none_largest_where(self, excludes: Excludes, frequencies: Iterable[float]) -> bool:
         """Say the same of the frequency of a grid at which ``|T|`` is largest."""
         points = [exactly(float(w)) for w in frequencies]
-        sizes = [self.size(w) for w in points]
+        excesses = [self.excess(w) for w in points]
+        sizes = [self._size(w, excess) for w, excess in zip(points, excesses, strict=True)]
         largest = max(size.low for size in sizes)
-        return all(size.high < largest or excludes(w, self.excess(w)) for w, size in zip(points, sizes, strict=True))
+        return all(
+            size.high < largest or excludes(w, excess) for w, excess, size in zip(points, excesses, sizes, strict=True)
+        )
 
     def _no_peak(self, w: Interval) -> bool:
         return w.low > 0.0 and no_peak_between(self.plant, self.gains, w.low, w.high, complementary=True, parts=1)
