@@ -23,6 +23,7 @@ import os
 import platform
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -45,6 +46,33 @@ _NAMED = "by name"  # in place of the digest of a file that counts only by being
 _LENGTH = 24  # of a digest; 96 bits
 
 
+@dataclass(frozen=True)
+class _Loaded:
+    """Loaded modules, by how they count: rooms of the framework, distributions, others by content, and the paper's."""
+
+    rooms: set[str]
+    distributions: set[str]
+    by_content: set[str]
+    of_paper: PaperModules
+
+    @classmethod
+    def among(cls, modules: Iterable[str], paper: Paper) -> _Loaded:
+        """Sort the modules that are loaded for a paper."""
+        rooms: set[str] = set()
+        distributions: set[str] = set()
+        by_content: set[str] = set()
+        own = {name for name in modules if _is_own(paper, name)}
+        for name in modules:
+            if name == _ROOT or name.startswith(f"{_ROOT}."):
+                rooms.add(name.split(".")[1] if "." in name else "__init__")
+            elif not is_standard(name):
+                found = distributions_of(name)
+                distributions.update(found)
+                if not found and name not in own:
+                    by_content.add(name)
+        return cls(rooms - {"papers"}, distributions, by_content, PaperModules(paper.package, own | by_content))
+
+
 class Looked:
     """Looks at what is there now, each thing once: results of one run share nearly everything.
 
@@ -61,7 +89,7 @@ class Looked:
         self._versions: dict[str, str] = {}
         self._rooms: dict[tuple[str, ...], dict[str, str]] = {}
         self._projects: dict[Path, dict[str, str]] = {}
-        self._used: dict[tuple[str, frozenset[str]], PaperModules] = {}
+        self._loaded: dict[tuple[str, frozenset[str]], _Loaded] = {}
         self._environment = {
             "version": f"{platform.python_version()} {platform.system()} {platform.machine()}",
             **{name: os.environ.get(name, "") for name in _KERNELS},
@@ -75,36 +103,22 @@ class Looked:
         modules
             Names of the modules that were loaded for it.
         """
-        distributions: set[str] = set()
-        by_content: set[str] = set()
-        of_paper: set[str] = set()
-        rooms: set[str] = set()
-        for name in modules:
-            is_own = _is_own(paper, name)
-            if is_own:
-                of_paper.add(name)
-            if name == _ROOT or name.startswith(f"{_ROOT}."):
-                rooms.add(name.split(".")[1] if "." in name else "__init__")
-            elif not is_standard(name):
-                found = distributions_of(name)
-                distributions.update(found)
-                if not found and not is_own:
-                    by_content.add(name)
+        key = (paper.package, frozenset(modules))
+        if key not in self._loaded:
+            self._loaded[key] = _Loaded.among(key[1], paper)
+        loaded = self._loaded[key]
         groups = {
-            "framework": dict.fromkeys(rooms - {"papers"}, ""),
-            "paper": dict.fromkeys(self._unused(paper, exhibit, frozenset(of_paper | by_content)), _NAMED),
-            "distribution": dict.fromkeys(distributions, ""),
-            "module": dict.fromkeys(by_content, ""),
+            "framework": dict.fromkeys(loaded.rooms, ""),
+            "paper": dict.fromkeys(self._files(paper, loaded.of_paper.unused(exhibit)), _NAMED),
+            "distribution": dict.fromkeys(loaded.distributions, ""),
+            "module": dict.fromkeys(loaded.by_content, ""),
             "data": dict.fromkeys(paper.data_of(exhibit), ""),
         }
         return {group: dict(sorted(names.items())) for group, names in self.now(paper, groups).items()}
 
-    def _unused(self, paper: Paper, exhibit: Exhibit, modules: frozenset[str]) -> set[str]:
-        """Return the files of modules that an exhibit does not use, by their names in the paper's folder."""
-        if (paper.package, modules) not in self._used:
-            self._used[paper.package, modules] = PaperModules(paper.package, modules)
-        unused = self._used[paper.package, modules].unused(exhibit)
-        inside = [name.removeprefix(f"{paper.package}.").replace(".", "/") for name in unused]
+    def _files(self, paper: Paper, modules: Iterable[str]) -> set[str]:
+        """Return the files of modules, by their names in the paper's folder."""
+        inside = [name.removeprefix(f"{paper.package}.").replace(".", "/") for name in modules]
         files = {file for name in inside for file in (f"{name}.py", f"{name}/__init__.py")}
         return files & self._folder("paper", paper.package, paper.folder()).keys()
 

@@ -8,7 +8,7 @@ import os
 import sys
 import sysconfig
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from types import MappingProxyType
 
@@ -18,16 +18,23 @@ _ROOT = __name__.partition(".")[0]
 _NUMERICS = (f"{_ROOT}.loops", f"{_ROOT}.papers")
 
 
-def modules_of(package: str, others: Collection[str]) -> set[str]:
+def modules_of(package: str, others: Collection[str]) -> frozenset[str]:
     """Return the loaded modules that code of a package may use.
 
     That is every loaded one, except those of other packages that the same process has served: they count only if
     something that the package imports, directly or not, imports them.
     """
-    loaded = {name for name in sys.modules if not _is_inner(name)}
+    return _modules_of(package, frozenset(others), tuple(sys.modules))
+
+
+@lru_cache(maxsize=16)  # most units load nothing new
+def _modules_of(package: str, others: frozenset[str], names: Sequence[str]) -> frozenset[str]:
+    loaded = frozenset(name for name in names if not _is_inner(name))
     foreign = {name for name in loaded if any(_is_in(name, other) for other in others if other != package)}
+    if not foreign:
+        return loaded
     start = {name for name in loaded - foreign if not is_standard(name) and not distributions_of(name)}
-    return loaded - foreign | (_reached(start) if foreign else set())
+    return loaded - foreign | _reached(start)
 
 
 def _is_inner(name: str) -> bool:
@@ -36,8 +43,8 @@ def _is_inner(name: str) -> bool:
     Several packages carry one called ``_cyutility``, and which of them a process has depends on what it loaded first.
     Each counts with its package.
     """
-    file = getattr(sys.modules.get(name), "__file__", None)
-    if file is None or "." in name:
+    file = None if "." in name else getattr(sys.modules.get(name), "__file__", None)
+    if file is None:
         return False
     path = _real(file)
     site = next((site for site in _sites() if path.startswith(site + os.sep)), None)
