@@ -2,24 +2,40 @@
 
 Nothing here is exact, on purpose. A replication sometimes has to repeat what an author's tools did in order
 to explain the digits that were printed, and then show how far those are from the truth; this module does the
-repeating, with python-control, and shares no code with the exact core.
+repeating. It shares nothing with the exact core but textbook forms: python-control, which has them too, takes a second
+to import.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.errors import LoopError
+from replicate.loops.numerics.controller_form import controller_form
+from replicate.loops.numerics.pade import dead_time_polynomials
 
 if TYPE_CHECKING:
     from replicate.loops import PI, Plant
 
 Array = NDArray[np.float64]
-StateSpace = Any  # control.StateSpace: python-control publishes no types, and is imported only where it is used
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """A model x' = A x + b u, y = c x + d u with one input and one output, shapes (n, n), (n,), (n,) and scalar."""
+
+    a: Array
+    b: Array
+    c: Array
+    d: float
+
+    def poles(self) -> NDArray[np.complex128]:
+        """Return the eigenvalues of A."""
+        return np.asarray(np.linalg.eigvals(self.a), dtype=complex)
 
 
 def pade_loop(
@@ -40,16 +56,14 @@ def pade_loop(
 
     Returns
     -------
-    control.StateSpace
-        Single input, single output.
+    StateSpace
+        From the set point or the load to the output.
 
     Raises
     ------
     LoopError
         If the plant is not rational, or the controller has filters, which this model leaves out.
     """
-    import control
-
     if not plant.is_rational:
         msg = f"a Padé model needs a rational plant, not {plant!r}"
         raise LoopError(msg)
@@ -57,12 +71,12 @@ def pade_loop(
         msg = f"the Padé model is made for a PI controller without filters, not {controller!r}"
         raise LoopError(msg)
 
-    delay_num, delay_den = control.pade(plant.dead_time, order) if plant.dead_time else ([1.0], [1.0])
+    delay_num, delay_den = dead_time_polynomials(plant.dead_time, order if plant.dead_time else 0)
     num = np.polymul(plant.num, delay_num)
     den = np.polymul(plant.den, delay_den)
     characteristic = np.polyadd(np.polymul([1.0, 0.0], den), np.polymul([controller.k, controller.ki], num))
     weights = [controller.b * controller.k, controller.ki] if response == "setpoint" else [1.0, 0.0]
-    return control.ss(control.tf(np.polymul(weights, num), characteristic))
+    return StateSpace(*controller_form(np.polymul(weights, num), np.asarray(characteristic, dtype=float)))
 
 
 def dominant_pole(system: StateSpace) -> complex:
@@ -72,7 +86,7 @@ def dominant_pole(system: StateSpace) -> complex:
     error apart; their mean is accurate to the rounding error itself and is what is returned for such a
     cluster.
     """
-    poles = np.asarray(system.poles(), dtype=complex)
+    poles = system.poles()
     rightmost = poles[np.argmax(poles.real)]
     cluster = poles[np.abs(poles - rightmost) <= 1e-5 * abs(rightmost)]
     if len(cluster) > 1:
@@ -151,14 +165,14 @@ def sampled_step(system: StateSpace, until: float, steps: int) -> SampledRespons
     """
     from scipy.linalg import expm
 
-    order = system.nstates
+    order = system.b.size
     # x' = A x + B and the constant input 1 as one autonomous system
     flow = np.zeros((order + 1, order + 1))
-    flow[:order, :order], flow[:order, order] = system.A, system.B[:, 0]
+    flow[:order, :order], flow[:order, order] = system.a, system.b
     step = expm(flow * (until / steps))
     states = np.eye(order + 1)[:, -1:]
     while states.shape[1] <= steps:  # twice as many in each turn
         states = np.hstack([states, step @ states])
         step = step @ step
-    output = (np.hstack([system.C, system.D]) @ states)[0, : steps + 1]
+    output = (np.append(system.c, system.d) @ states)[: steps + 1]
     return SampledResponse(np.linspace(0.0, until, steps + 1), output)

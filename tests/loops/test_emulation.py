@@ -1,9 +1,10 @@
-"""The emulated toolchain (made of python-control) against scipy, mpmath and hand-made samples."""
+"""The emulated toolchain against python-control, scipy, mpmath and hand-made samples."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+import control
 import mpmath as mp
 import numpy as np
 import pytest
@@ -54,6 +55,17 @@ def test_load_response_agrees_with_scipy_for_a_second_order_plant() -> None:
     response = sampled_step(system, 12.0, 600)
     _, expected = signal.step((np.polymul(num, [1.0, 0.0]), closed), T=response.time)
     np.testing.assert_allclose(response.output, expected, atol=1e-10)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3, 6])
+def test_the_pade_loop_is_that_of_python_control(order: int) -> None:
+    plant = control.tf([2.0], [1.0, 3.0, 2.0]) * control.tf(*control.pade(0.4, order))
+    closed = control.feedback(plant * control.tf([0.7, 0.9], [1.0, 0.0]))
+    system = pade_loop(Plant([2.0], [1.0, 3.0, 2.0], 0.4), PI(0.7, 0.9), order)
+    np.testing.assert_allclose(np.sort_complex(system.poles()), np.sort_complex(closed.poles()), rtol=1e-7)
+    s = 0.3 + 1.7j
+    transfer = system.c @ np.linalg.solve(s * np.eye(system.b.size) - system.a, system.b) + system.d
+    assert transfer == pytest.approx(complex(closed(s)), rel=1e-11)
 
 
 def test_without_dead_time_the_loop_is_the_rational_one() -> None:

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from replicate.loops.frequency_domain import stability
 from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.numerics import polynomials
+from replicate.loops.numerics.pade import dead_time_polynomials
 from replicate.loops.numerics.polynomials import horner_with_slope
 
 Array = NDArray[np.float64]
@@ -54,7 +54,7 @@ def proven_pole_with_others(transfer: LoopTransfer) -> list[complex] | None:
 
 def starts(transfer: LoopTransfer) -> list[complex]:
     """Return the rightmost poles, Im >= 0, of the loop with a rational function in place of the dead time."""
-    top, bottom = dead_time_polynomials(transfer.dead_time)
+    top, bottom = dead_time_polynomials(transfer.dead_time, ORDER)
     open_loop, fed_back = polynomials.product(transfer.den, bottom), polynomials.product(transfer.num, top)
     open_loop[open_loop.size - fed_back.size :] += fed_back
     companion = np.zeros((open_loop.size - 1, open_loop.size - 1))
@@ -62,20 +62,6 @@ def starts(transfer: LoopTransfer) -> list[complex]:
     companion[0] = open_loop[1:] / -open_loop[0]
     found = np.linalg.eigvals(companion).tolist()
     return sorted((complex(s) for s in found if s.imag >= 0.0), key=lambda s: -s.real)[:STARTS]
-
-
-def dead_time_polynomials(dead_time: float) -> tuple[Array, Array]:
-    """Return numerator and denominator of the Pade approximation of exp(-s dead_time), descending powers of s."""
-    coefficients = _pade() * dead_time ** np.arange(ORDER, -1, -1.0)
-    return coefficients * (1.0 - 2.0 * (np.arange(ORDER, -1, -1) % 2)), coefficients
-
-
-@cache
-def _pade() -> Array:
-    c = [1.0]
-    for j in range(1, ORDER + 1):
-        c.append(c[-1] * (ORDER - j + 1) / (j * (2 * ORDER - j + 1)))
-    return np.array(c[::-1])
 
 
 def polished_poles(transfer: LoopTransfer, near: list[complex]) -> list[complex]:

@@ -12,13 +12,14 @@ from replicate.loops.closed_loop_poles.proven_pole import (
     CONVERGED,
     CROWDED,
     FARTHEST,
+    ORDER,
     REACH,
     REAL,
     STARTS,
     STEPS,
     TIE,
-    dead_time_polynomials,
 )  # fmt: skip
+from replicate.loops.numerics.pade import dead_time_polynomials
 from replicate.loops.sweep.loop_columns import LoopColumns, column_products
 from replicate.loops.sweep.stability_counts import Characteristic, polynomial_roots, unstable_poles
 
@@ -54,7 +55,7 @@ def rightmost_poles(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
 
 def _starts(loops: LoopColumns) -> ComplexArray:
     """Return the rightmost poles of the loops with a rational function in place of the dead time."""
-    top, bottom = dead_time_polynomials(1.0) if loops.delay else (np.ones(1), np.ones(1))
+    top, bottom = dead_time_polynomials(1.0, ORDER) if loops.delay else (np.ones(1), np.ones(1))
     fed_back = column_products(loops.num, top)
     whole = np.zeros((loops.den.size + bottom.size - 1, len(loops)))
     whole += np.convolve(loops.den, bottom)[:, None]

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops import PID, Loop, Plant
+from replicate.loops.numerics.pade import dead_time_polynomials
 
 Array = NDArray[np.float64]
 
@@ -29,9 +30,7 @@ ITERATIONS = 30
 @cache
 def pade_plant(theta: float, order: int) -> Plant:
     """Return (1) with K = T = 1 and the dead time replaced by its Padé approximation of the given order."""
-    import control
-
-    num, den = control.pade(theta, order)
+    num, den = dead_time_polynomials(theta, order)
     return Plant(num, np.polymul(den, [1.0, -1.0]))
 
 
