@@ -48,8 +48,7 @@ def formula(text: str) -> Formula:
     >>> formula("tau/(K*(tau_cl + L))")({"tau": 1.0, "K": 1.0, "tau_cl": 0.25, "L": 1.0})
     0.8
     """
-    tree = _parsed(text)
-    return lambda symbols: _evaluate(tree, symbols)
+    return _function(_parsed(text))
 
 
 def formula_tree(text: str) -> float | str | list[Any]:
@@ -101,15 +100,18 @@ def _tree(node: ast.expr) -> float | str | list[Any]:
             raise AssertionError
 
 
-def _evaluate(node: ast.expr, symbols: Mapping[str, Number]) -> Number:
+def _function(node: ast.expr) -> Formula:
+    """Return the function of an expression, put together once of those of its parts."""
     match node:
         case ast.Constant(value=int() | float() as value):
-            return value
+            return lambda _: value
         case ast.Name(id=name):
-            return symbols[name]
+            return operator.itemgetter(name)
         case ast.UnaryOp(operand=operand):
-            return -_evaluate(operand, symbols)
+            positive = _function(operand)
+            return lambda symbols: -positive(symbols)
         case ast.BinOp(left=left, op=op, right=right):
-            return _OPERATIONS[type(op)](_evaluate(left, symbols), _evaluate(right, symbols))
-        case _:  # pragma: no cover - `formula` has refused everything else
+            operation, first, second = _OPERATIONS[type(op)], _function(left), _function(right)
+            return lambda symbols: operation(first(symbols), second(symbols))
+        case _:  # pragma: no cover - `_parsed` has refused everything else
             raise AssertionError
