@@ -17,7 +17,7 @@ from replicate.exhibits.printed import PrintedValue
 from replicate.loops import Loop, sweep
 from replicate.papers.bayhan import paper
 from replicate.papers.bayhan.claims import PROCESSES, claims
-from replicate.papers.bayhan.pole_assignment import assign
+from replicate.papers.bayhan.pole_assignment import assign, dominance
 from replicate.papers.bayhan.processes import EXAMPLE_41, EXAMPLE_42, PT326, Process, specifications
 
 _AT_A_TIME = 16  # loops of a sweep
@@ -30,8 +30,8 @@ def _limit_of_dominance(process: Process) -> float:
         return float(min(process.dominance(a)))
 
     grid = np.linspace(0.01, 4.0, 400)
-    signs = np.array([margin(a) > 0 for a in grid])
-    first = int(np.flatnonzero(~signs)[0])
+    holds = np.minimum(*dominance(process.K, process.L, process.tau, grid)) > 0.0  # type: ignore[arg-type]
+    first = int(np.flatnonzero(~holds)[0])
     return float(optimize.brentq(margin, grid[first - 1], grid[first], xtol=1e-13))
 
 

@@ -93,9 +93,12 @@ def fig_8_nyquist() -> Finding:
     lower, upper = _exact_corners()
     ends = {at: np.linspace(frequency(at, start), frequency(at, end), 101) for at in (lower, upper)}
 
+    arc = frequency_response(*upper, TAU, ends[upper])
+
     def distance(w: float) -> float:
         """Return how far a point of one arc is from the other."""
-        return smallest(lambda v: abs(response(lower, w) - response(upper, v)), ends[upper])[1]
+        here = response(lower, w)
+        return smallest(lambda v: abs(here - response(upper, v)), ends[upper], np.abs(here - arc))[1]
 
     def ratio(angle: float) -> float:
         """Return the difference of the magnitudes at the same lag: the graduation in ω drops out."""

@@ -11,6 +11,9 @@ stable loops. Angles are in radians here and in degrees in everything that is sh
 
 from __future__ import annotations
 
+import math
+from functools import cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
@@ -78,6 +81,7 @@ def phase_margin(a: ArrayLike, b: ArrayLike, tau: ArrayLike) -> Array:
     return np.asarray(np.degrees(np.pi + phase(a, b, tau, crossover(a, b))))  # (9)
 
 
+@cache
 def end_frequency(tau: float, phase_margin: float = 0.0) -> float:
     """Return the frequency at which θ(ω) + m = π: the upper end of the locus on the b axis.
 
@@ -109,8 +113,8 @@ def phase_crossover(a: float, b: float, tau: float) -> float:
     end = end_frequency(tau)
     a = max(a, 0.0)  # at the ends of the loci rounding may leave a little less
 
-    def excess(w: float) -> float:
-        return float(phase(a, b, tau, w)) + np.pi
+    def excess(w: float) -> float:  # `phase` + π of a single number
+        return math.atan2(b * w, a) + 0.5 * math.pi - math.atan(w) - tau * w
 
     if excess(end) >= 0.0:  # on the b axis
         return end
