@@ -16,7 +16,7 @@ from replicate.loops.sweep.controller_table import ControllerTable
 
 Places = NDArray[np.intp]
 
-MOST = 8192  # loops of a block: enough to make the price of a call small, few enough for memory
+MOST = 4096  # loops of a block: enough to make the price of a call small, few enough for memory
 
 
 @dataclass(frozen=True)

@@ -33,9 +33,7 @@ RESOLVED = 1e-12  # size of the last coefficients of the plant's input, relative
 STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
 ROUNDED = 1e-14  # of a horizon: what is shorter is no piece
-AT_ONCE = (
-    8  # pieces for which there is memory at once: much of it would go back to the system and come anew for each block
-)
+AT_ONCE = 16  # pieces for which there is memory at once: many small pieces of it would be asked for again and again
 FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which modes are first looked for, and the factor to the next look
 WORTH = 0.1  # share of loops that must have left before the others move together
 PATIENCE = 24  # pieces after which longer ones are tried, without dead time
