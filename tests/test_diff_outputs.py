@@ -14,22 +14,35 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
-from installed_paper import contents
+from installed_paper import contents, installed
 from rich.console import Console
 
+from replicate.diff.accept import accept
 from replicate.diff.accepted import TableState
 from replicate.diff.changes import Change
 from replicate.diff.comparison import Comparison, ExhibitDiff
+from replicate.run.library import Library
+from replicate.run.outcome import recompute
 from replicate.terminal.differences import print_changes
 
 Run = Callable[..., tuple[int, str, str]]
 VOID = {"br", "hr", "img", "input", "link", "meta"}
 
 
+@pytest.fixture(scope="module")
+def first(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the accepted state of the small paper, and with its kept results."""
+    here = tmp_path_factory.mktemp("first")
+    with installed(tmp_path_factory.mktemp("site")):
+        outcome = recompute([Library().paper("lab")], jobs=1, cache_dir=here / "build" / "cache")
+        accept(outcome, here / "accepted", "first", ["lab"])
+    return here
+
+
 @pytest.fixture
-def diff(replicate: Run) -> Run:
-    """Accept the small paper's state, and return a function that compares with it."""
-    assert replicate("accept", "lab", "--reason", "first", "--accepted", "accepted", "-j1")[0] == 0
+def diff(first: Path, replicate: Run) -> Run:
+    """Return a function that compares the small paper with its accepted state, in a folder of its own."""
+    shutil.copytree(first, Path.cwd(), dirs_exist_ok=True)
     return lambda *names: replicate("diff", *(names or ("lab",)), "--accepted", "accepted", "-j1")
 
 

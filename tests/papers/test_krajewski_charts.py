@@ -12,10 +12,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.bezier import BezierSegment
+from matplotlib.figure import Figure as Canvas
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from replicate.exhibits import Figure
+from replicate.figures import capture
+from replicate.figures.off_screen import curves_frame
 from replicate.loops import PI, Loop, Plant
 from replicate.papers.krajewski import paper
 from replicate.papers.krajewski.chart_values import TAUS
@@ -34,7 +37,6 @@ from replicate.papers.krajewski.normalised_loop import (
     phase_margin,
 )
 from replicate.papers.krajewski.sensitivity_locus import constant_sensitivity, sensitivity_points
-from replicate.run.drawing import capture
 
 RANDOM = np.random.default_rng(69)
 
@@ -80,7 +82,9 @@ def test_gain_margin_and_phase_crossover_by_a_higher_gain() -> None:
 def captured(id: str) -> pd.DataFrame:
     figure = paper.load().exhibits[id]
     assert isinstance(figure, Figure)
-    return capture("krajewski", figure).curves
+    canvas = Canvas(figsize=figure.size)
+    figure.draw(canvas)
+    return curves_frame(capture(canvas))
 
 
 def drawn(id: str, name: str) -> Iterator[tuple[str, NDArray[np.float64]]]:
