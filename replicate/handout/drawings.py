@@ -143,6 +143,13 @@ def captured(call: str, paper: str, figure: Figure) -> FigureResult:
         return found
 
 
+def pictures_of(call: str, paper: str, figure: Figure) -> tuple[str, bytes]:
+    """Draw a figure as `captured` does, without reading back what it shows; return its SVG and its PNG."""
+    with said_by(call):
+        svg, png = _drawing().drawn_as(f"{paper}-handout", figure, ("svg", "png"))
+        return svg.decode(), png
+
+
 @contextmanager
 def said_by(call: str) -> Iterator[None]:
     """Turn whatever a paper's own function raises into a message that the text's line is added to."""

@@ -44,7 +44,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult, errors_of
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
-from replicate.handout.drawings import Drawing, DrawnLater, Wanted, captured, said_by, undrawn
+from replicate.handout.drawings import Drawing, DrawnLater, Wanted, captured, pictures_of, said_by, undrawn
 from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_code import OwnCode
@@ -225,9 +225,9 @@ class Placing:
                 drawn = dot_figure(view, choice, name, size)
             if self.only_read:
                 return self._mark(undrawn(drawn, 1.0))
-            self.shared[key] = captured(f"dots('{exhibit}')", self.paper.id, drawn), drawn.alt
-        result, alt = self.shared[key]
-        return self._mark(Drawing(name, result.svg, result.png, alt, min(1.0, size[0] / TEXT_WIDTH)))
+            self.shared[key] = (*pictures_of(f"dots('{exhibit}')", self.paper.id, drawn), drawn.alt)
+        svg, png, alt = self.shared[key]
+        return self._mark(Drawing(name, svg, png, alt, min(1.0, size[0] / TEXT_WIDTH)))
 
     def _view(self, function: str, exhibit: str) -> TableView:
         found, result = self.paper.exhibits.get(exhibit), self.results.get((self.paper.id, exhibit))
