@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from pathlib import Path
 from typing import Literal
 
@@ -167,13 +168,16 @@ def compare(outcome: Outcome, folder: Path, known: Collection[str] | None = None
         Ids of all papers that there are: accepted exhibits of any other are reported as no longer computed. Not given:
         nothing is said of other papers.
     """
-    exhibits = [_compare(outcome, result, folder) for result in outcome.results.values()]
+    sums_of = cache(read_checksums)
+    exhibits = [_compare(outcome, result, folder, sums_of) for result in outcome.results.values()]
     if outcome.complete:
         exhibits += _no_longer_computed(outcome, folder, known)
     return Comparison(exhibits)
 
 
-def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
+def _compare(
+    outcome: Outcome, result: Result, folder: Path, sums_of: Callable[[Path], Mapping[str, str] | None]
+) -> ExhibitDiff:
     paper, exhibit = result.paper, result.exhibit
     kind: Kind = "table"
     if isinstance(result, FigureResult | ClaimsResult):
@@ -188,7 +192,7 @@ def _compare(outcome: Outcome, result: Result, folder: Path) -> ExhibitDiff:
     after = present_state(outcome, result)
     try:
         before = read_state(folder, paper, exhibit, type(result))
-        sums = read_checksums(folder / paper)
+        sums = sums_of(folder / paper)
     except AcceptedStateError as error:
         damaged = Change(paper, exhibit, "damaged", f"its accepted state is damaged: {error}")
         return ExhibitDiff(paper, exhibit, kind, [damaged], after=after)

@@ -11,9 +11,6 @@ from replicate.diff.redraw import MOST_CURVES, differences, overlay, picture
 from replicate.display.inline_svg import description, inline_svg
 from replicate.figures.pair import Pair
 
-#: Pictures of more figures than this would make the page too heavy; it says how to see the others.
-MOST_FIGURES = 24
-
 # Starting processes takes as long as drawing a few figures.
 _FEW = 4
 

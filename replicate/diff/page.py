@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from replicate.diff.accepted import FigureState
 from replicate.diff.cells import CellChange
 from replicate.diff.changes import relative
 from replicate.diff.comparison import Comparison, ExhibitDiff
 from replicate.diff.counts import summary
-from replicate.diff.drawings import MOST_FIGURES, Drawings, draw_all
 from replicate.display.addresses import address, pages_of
 from replicate.display.labels import heading
 from replicate.display.rendering import render
@@ -23,6 +23,12 @@ from replicate.exhibits.numerals import parse_number
 from replicate.figures.differences import percent
 from replicate.run.outcome import Outcome
 from replicate.verdicts.rows import CLAIM_COLUMN
+
+if TYPE_CHECKING:
+    from replicate.diff.drawings import Drawings
+
+#: Pictures of more figures than this would make the page too heavy; it says how to see the others.
+MOST_FIGURES = 24
 
 # A change of a rule may move every value of a table.
 _MOST_CELLS = 200
@@ -94,8 +100,7 @@ def page(
     papers = {paper.id: paper for paper in outcome.papers}
     names = {diff.name: _name(diff, papers.get(diff.paper)) for diff in comparison.changed}
     figures = [(diff, names[diff.name][0] or diff.name) for diff in comparison.changed if _has_pictures(diff)]
-    drawn = draw_all(figures[:MOST_FIGURES], jobs)
-    drawings = {diff.name: pictures for (diff, _), pictures in zip(figures, drawn, strict=False)}
+    drawings = _drawn(figures[:MOST_FIGURES], jobs)
     views = [
         DiffView(
             diff,
@@ -122,6 +127,15 @@ def _has_pictures(diff: ExhibitDiff) -> bool:
     """Whether it is a figure in one state at least, and not just its picture is missing or its words are others."""
     drawn = any(isinstance(state, FigureState) for state in (diff.before, diff.after))
     return drawn and any(change.where != "picture" and change.kind != "words" for change in diff.changes)
+
+
+def _drawn(figures: Sequence[tuple[ExhibitDiff, str]], jobs: int | None) -> dict[str, Drawings]:
+    """Return the pictures by exhibit; where nothing is drawn, nothing that draws is loaded."""
+    if not figures:
+        return {}
+    from replicate.diff.drawings import draw_all
+
+    return {diff.name: pictures for (diff, _), pictures in zip(figures, draw_all(figures, jobs), strict=True)}
 
 
 def _name(diff: ExhibitDiff, paper: Paper | None) -> tuple[str, str]:
