@@ -85,7 +85,7 @@ class ResonanceBox:
 
     def _size(self, w: Interval, excess: Interval) -> Interval:
         x = w.square()
-        top = x * self.integral.square() + (_ONE - x * self.integral * self.derivative).square()
+        top = x * self._square + (_ONE - x * self._both).square()
         bottom = _ONE + x * excess
         return top / bottom if bottom.low > 0.0 else Interval(0.0, math.inf)
 
@@ -127,11 +127,23 @@ class ResonanceBox:
         delay = self.plant.dead_time
         x, turn = w.square(), intervals.cosine(w * exactly(delay)) if delay else _ONE
         sine, half = _sine_over(w, delay), _sine_over(w, delay / 2.0)
-        both, inverse = self.integral * self.derivative, self.integral / self.k
         even, odd, size = (polynomial(part, -x) for part in self._quotient)
-        real = self.integral * turn + (both * x - _ONE) * sine + inverse * (even / size)
-        slope = both * turn - self.integral * sine + exactly(2.0) * half.square() + inverse * (odd / size)
+        real = self.integral * turn + (self._both * x - _ONE) * sine + self._inverse * (even / size)
+        slope = self._both * turn - self.integral * sine + exactly(2.0) * half.square() + self._inverse * (odd / size)
         return real, slope
+
+    @cached_property
+    def _square(self) -> Interval:
+        return self.integral.square()
+
+    @cached_property
+    def _both(self) -> Interval:
+        return self.integral * self.derivative
+
+    @cached_property
+    def _inverse(self) -> Interval:
+        """The inverse of the integral gain."""
+        return self.integral / self.k
 
     @cached_property
     def _quotient(self) -> tuple[list[Interval], list[Interval], list[Interval]]:

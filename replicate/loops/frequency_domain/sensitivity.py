@@ -165,17 +165,16 @@ def highest_peak(
     """
     m = magnitude(w) if known is None else known
     inner = np.nonzero((m[1:-1] >= m[:-2]) & (m[1:-1] >= m[2:]))[0] + 1
-    found = [FrequencyPeak(float(m[0]), float(w[0])), FrequencyPeak(float(m[-1]), float(w[-1]))]
     # A peak in the first or last interval can hide behind the end point: then the slope there points inwards.
     brackets = [(w[0], w[1], w[0]), (w[-2], w[-1], w[-1])] if w.size > 1 else []
     # polishing gains little on a grid this fine: only the highest few can win, and of these the steep ones
     reach = m[inner] + STEEP * (m[inner] - np.minimum(m[inner - 1], m[inner + 1]))
     inner = inner[reach >= np.max(m[inner], initial=0.0)]
     brackets += [(w[i - 1], w[i + 1], w[i]) for i in inner[np.argsort(-m[inner])][:6]]
-    for left, right, start in brackets:
-        frequency = _polish(slope, float(left), float(start), float(right))
-        found.append(FrequencyPeak(float(magnitude(np.array([frequency]))[0]), frequency))
-    return _highest(*found)
+    frequencies = [_polish(slope, float(left), float(start), float(right)) for left, right, start in brackets]
+    heights = magnitude(np.array(frequencies)).tolist()
+    ends = [(float(m[0]), float(w[0])), (float(m[-1]), float(w[-1]))]
+    return _highest(*(FrequencyPeak(*peak) for peak in [*ends, *zip(heights, frequencies, strict=True)]))
 
 
 def _highest(*peaks: FrequencyPeak) -> FrequencyPeak:

@@ -7,10 +7,10 @@ from functools import cache, lru_cache
 from replicate.loops import PID, Loop, Response
 from replicate.papers.panagopoulos.part_2.processes import PLANTS
 
-_MOST_LOOPS = 2000  # those of a table's printed gains and what rounds to them
+MOST_LOOPS = 2000  # those of a table's printed gains and what rounds to them
 
 
-@lru_cache(_MOST_LOOPS)
+@lru_cache(MOST_LOOPS)
 def loop_of(process: str, controller: PID) -> Loop:
     """Return one of the eight processes under a controller; what it has been asked it knows, for other readings too."""
     return Loop(PLANTS[process], controller)

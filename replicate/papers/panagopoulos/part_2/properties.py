@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 from replicate.loops import PID
-from replicate.papers.panagopoulos.part_2.load_experiment import load_experiment, loop_of
+from replicate.papers.panagopoulos.part_2.load_experiment import MOST_LOOPS, load_experiment, loop_of
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_as_printed, weight
 
 COLUMNS = ("k", "Ti", "Td", "b", "Tsp", "IE", "IE/IAE", "w0", "ts", "Mp")
@@ -46,6 +47,7 @@ class Properties:
     Mp: float
 
     @classmethod
+    @lru_cache(MOST_LOOPS)
     def of(cls, process: str, controller: PID) -> Properties:
         """Compute them for a stable loop around one of the eight processes.
 

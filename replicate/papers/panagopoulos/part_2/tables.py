@@ -34,13 +34,11 @@ LOST_TD = "G3 Ms=2.0"
 RowFunction = Callable[[str, Mapping[str, float]], dict[str, float]]
 
 
-@cache
 def design_properties(row: str, problem: Problem = "stated") -> Properties:
     """Return the properties of a design."""
     return Properties.of(split(row)[0], optimal(row, problem))
 
 
-@cache
 def printed_properties(table: str, row: str) -> Properties:
     """Return the properties that follow from the gains a table prints."""
     return Properties.of(split(row)[0], printed(table, row))
