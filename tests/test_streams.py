@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 import installed_paper
 import pytest
+
+from replicate.run.library import Library
+from replicate.run.outcome import recompute
 
 pytestmark = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 
@@ -22,6 +26,22 @@ def lab(tmp_path: Path) -> Path:
         pass
     (tmp_path / "here").mkdir()
     return tmp_path
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with the results of the small paper."""
+    here = tmp_path_factory.mktemp("results")
+    with installed_paper.installed(tmp_path_factory.mktemp("site")):
+        recompute([Library().paper("lab")], jobs=1, cache_dir=here / "build" / "cache")
+    return here
+
+
+@pytest.fixture
+def computed(lab: Path, results: Path) -> Path:
+    """Return what `lab` does, where nothing is left to compute: what is said at the end is the same."""
+    shutil.copytree(results, lab / "here", dirs_exist_ok=True)
+    return lab
 
 
 def run(lab: Path, arguments: tuple[str, ...], redirection: str) -> subprocess.CompletedProcess[str]:
@@ -44,21 +64,21 @@ def unexpected(text: str) -> list[str]:
 
 
 @pytest.mark.parametrize("arguments", COMMANDS, ids=lambda arguments: arguments[0])
-def test_a_full_disk_is_one_line(lab: Path, arguments: tuple[str, ...]) -> None:
-    done = run(lab, arguments, ">/dev/full")
+def test_a_full_disk_is_one_line(computed: Path, arguments: tuple[str, ...]) -> None:
+    done = run(computed, arguments, ">/dev/full")
     assert unexpected(done.stderr) == ["replicate: standard output: cannot be written: No space left on device"]
     assert done.returncode == 2
 
 
 @pytest.mark.parametrize("arguments", COMMANDS, ids=lambda arguments: arguments[0])
-def test_a_closed_pipe_is_silent_and_no_success(lab: Path, arguments: tuple[str, ...]) -> None:
-    done = run(lab, arguments, "| exec 0<&-")
+def test_a_closed_pipe_is_silent_and_no_success(computed: Path, arguments: tuple[str, ...]) -> None:
+    done = run(computed, arguments, "| exec 0<&-")
     assert unexpected(done.stderr) == []
     assert done.returncode == 2
 
 
-def test_a_pipe_that_takes_everything_is_a_success(lab: Path) -> None:
-    done = run(lab, ("report", "lab", "-j1"), "| cat")
+def test_a_pipe_that_takes_everything_is_a_success(computed: Path) -> None:
+    done = run(computed, ("report", "lab", "-j1"), "| cat")
     assert done.returncode == 0
     assert done.stdout.endswith("report: build/report/index.html\n")
 
