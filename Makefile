@@ -57,8 +57,8 @@ torture: $(VENV)/.developed ## attack every promise and count what held: killed,
 	$(BIN)/python -m pytest tests/torture --torture -n auto --dist load -q $(ARGS)
 
 .PHONY: bench
-bench: $(VENV)/.ready ## measure speed and error beside python-control and others: build/bench.md
-	$(BIN)/python -m benchmarks
+bench: $(VENV)/.ready ## measure speed and error beside python-control and others: build/bench.md; a report, too: ARGS=--report
+	$(BIN)/python -m benchmarks $(ARGS)
 
 .PHONY: scaling
 scaling: $(VENV)/.developed ## how sweeps of up to a million loops grow, on a cluster of one and of two workers
