@@ -97,11 +97,23 @@ class Computing:
 
     def distributions(self, packages: Iterable[str]) -> set[str]:
         """Return the distributions that packages of papers use."""
-        from replicate.run.modules import distributions_used, numerical_imports
+        from replicate.run.modules import distributions_used, imports_of, numerical_imports
 
         keep = self.kept_texts(("loops",), ())
-        core = json.loads(keep("imports of the numerical core", lambda: json.dumps(numerical_imports())))
-        return distributions_used(packages, core)
+
+        @functools.cache
+        def core() -> dict[str, list[str]]:
+            """Return what its modules import: it is large, and the same for all papers that use it."""
+            found: dict[str, list[str]] = json.loads(
+                keep("imports of the numerical core", lambda: json.dumps(numerical_imports()))
+            )
+            return found
+
+        def imports(name: str) -> Sequence[str]:
+            found = core().get(name) if name.startswith("replicate.loops") else None
+            return imports_of(name) if found is None else found
+
+        return distributions_used(packages, imports)
 
 
 def _options(

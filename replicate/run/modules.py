@@ -7,10 +7,9 @@ import importlib.metadata
 import os
 import sys
 import sysconfig
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
-from types import MappingProxyType
 
 from replicate.run.module_text import module_text
 
@@ -85,7 +84,7 @@ def numerical_imports() -> dict[str, tuple[str, ...]]:
     return {name: imports_of(name) for name in names}
 
 
-def distributions_used(packages: Iterable[str], known: Mapping[str, Sequence[str]] = MappingProxyType({})) -> set[str]:
+def distributions_used(packages: Iterable[str], imports: Callable[[str], Sequence[str]] = imports_of) -> set[str]:
     """Return the distributions that packages import anywhere in their code, or in that of the modules of ours they use.
 
     Only statements count, so the answer does not depend on what was run. The framework's rooms do not count: what they
@@ -93,8 +92,8 @@ def distributions_used(packages: Iterable[str], known: Mapping[str, Sequence[str
 
     Parameters
     ----------
-    known
-        What modules import, of those of which it need not be looked up.
+    imports
+        Returns what a module imports.
     """
     packages = tuple(packages)
     found: set[str] = set()
@@ -110,7 +109,7 @@ def distributions_used(packages: Iterable[str], known: Mapping[str, Sequence[str
         if not ours:
             found.update(installed()[top])
         elif top != _ROOT or any(_is_in(name, room) for room in (*_NUMERICS, *packages)):
-            waiting += known[name] if name in known else imports_of(name)
+            waiting += imports(name)
     return found
 
 
