@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from functools import partial
 from importlib import import_module
@@ -59,18 +60,27 @@ def by_jitcdde() -> Callable[[], Any] | None:
     """Return a function that computes the response at all times by jitcdde, or None if it is not installed."""
     if find_spec("jitcdde") is None:
         return None
-    module = import_module("jitcdde")
+    module, r = import_module("jitcdde"), import_module("symengine").Symbol("r")
     y, t = module.y, module.t
-    equations = [K * (1.0 - y(0, t - 1.0)) + KI * y(1, t - 1.0) - y(0), 1.0 - y(0)]
-    compiled = module.jitcdde(equations, max_delay=1.0)
+    # r is the set-point one dead time ago: zero at first
+    equations = [K * (r - y(0, t - 1.0)) + KI * y(1, t - 1.0) - y(0), 1.0 - y(0)]
+    compiled = module.jitcdde(equations, max_delay=1.0, control_pars=[r], verbose=False)
 
     def run() -> Any:
         compiled.purge_past()
-        # before the step the control signal is zero: y = 1 and no integral
-        compiled.constant_past([1.0, 0.0])
-        compiled.set_integration_parameters(rtol=TOLERANCE, atol=TOLERANCE)
-        compiled.step_on_discontinuities()
-        return np.array([compiled.integrate(float(max(t, compiled.t)))[0] for t in TIMES])
+        compiled.constant_past([0.0, 0.0], time=0.0)
+        compiled.set_parameters(0.0)
+        compiled.reset_integrator()
+        compiled.set_integration_parameters(rtol=TOLERANCE, atol=TOLERANCE, first_step=1e-3)
+        compiled.adjust_diff(shift_ratio=1e-12)
+        values = []
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # several times lie in one of its steps
+            for part in (TIMES[TIMES <= 1.0], TIMES[TIMES > 1.0]):
+                values += [compiled.integrate(float(time))[0] for time in part]
+                compiled.set_parameters(1.0)
+                compiled.adjust_diff(shift_ratio=1e-12)
+        return np.array(values)
 
     return run
 
