@@ -8,6 +8,7 @@ from functools import partial
 from importlib.util import find_spec
 from typing import Any, cast
 
+import control
 import numpy as np
 import pandas as pd
 import pytest
@@ -319,6 +320,12 @@ NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
         lambda: sweep(FOPTD, np.ma.array([[0.5, 0.4], [0.5, 0.3]], mask=[[False, True], [False, False]])),
         r"controllers\[0\]: the controller's ki must be a finite number, not nan",
     ),
+    "masked texts": (
+        lambda: sweep(FOPTD, np.ma.array([["a", "b"]], mask=[[False, True]])), "k must be a finite number, not 'a'",
+    ),
+    "a system of python-control": (
+        lambda: sweep(control.ss([[-1.0]], [[1.0]], [[1.0]], [[0.0]]), PI(1.0)), "Plant.from_control makes one of a",
+    ),
     "band": (lambda: sweep(FOPTD, PI(1.0), band=0.0), "the settling band must be"),
     "until": (lambda: sweep(FOPTD, PI(1.0), until=np.nan), "the horizon until must be"),
     "flat array": (lambda: sweep(FOPTD, np.array([1.0, 2.0])), r"one row for each, shape \(n, numbers\), not \(2,\)"),
@@ -343,7 +350,10 @@ def test_what_is_not_a_sweep_says_so_in_one_line(wrong: str) -> None:
 
 def test_the_names_promised_are_allowed() -> None:
     assert {*NAMES, "stable"} <= set(ALLOWED)
-    assert isinstance(sweep(FOPTD, PI(0.5), metrics="stable"), SweepResult)
+    result = sweep(FOPTD, PI(0.5), metrics="stable")
+    assert isinstance(result, SweepResult)
+    assert "stable" in result
+    assert "ms" not in result
 
 
 def test_a_sweep_uses_one_thread_and_leaves_their_number_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -27,7 +27,10 @@ NUMBERS = (float, int, np.float64)
 
 PLANT_COLUMNS = (("gain", "time_constant", "dead_time"), ("num", "den", "dead_time"), ("plant",))
 CONTROLLER_COLUMNS = tuple(field.name for field in fields(PID))
-PLANT_ROWS = "a Plant, a text, a row (gain, time constant, dead time), or a list, an array or a data frame of these"
+PLANT_ROWS = (
+    "a Plant (Plant.from_control makes one of a python-control system), a text, a row (gain, time constant, "
+    "dead time), or a list, an array or a data frame of these"
+)
 CONTROLLER_ROWS = (
     "a PI or PID, a text, a row (k, ki), (k, ki, kd) or (k, ki, kd, b), or a list, an array or a data frame of these"
 )
@@ -126,18 +129,17 @@ def _axis(
         raise LoopError(msg)
     labels = list(given.index) if hasattr(given, "index") and hasattr(given, "to_numpy") else None
     if isinstance(given, np.ma.MaskedArray):
-        given = np.ma.filled(given.astype(float), np.nan)  # what is masked is no number
+        given = np.ma.filled(given.astype(float if given.dtype.kind in "fiu" else object), np.nan)  # is no number
     if isinstance(given, np.ndarray):
         if given.dtype != object and given.ndim != 2:
             msg = f"an array of {name}s must have one row for each, shape (n, numbers), not {given.shape}"
             raise LoopError(msg)
         members: Any = given if given.ndim == 2 else given.ravel()
+    elif isinstance(given, Iterable):  # not all that can be indexed: a python-control system is one thing
+        members = list(given)
     else:
-        try:
-            members = list(given)
-        except TypeError:
-            msg = f"the {name}s of a sweep must be {rows}, not {checks.shown(given)}"
-            raise LoopError(msg) from None
+        msg = f"the {name}s of a sweep must be {rows}, not {checks.shown(given)}"
+        raise LoopError(msg)
     return Axis(
         name, range(len(members)) if labels is None else labels, lambda i: member(members[i]),
         numbers=_numbers(members, len(numbers)), valid=valid,

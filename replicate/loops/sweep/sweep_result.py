@@ -55,9 +55,12 @@ class SweepResult(Record):
     def __len__(self) -> int:
         return int(self.reason.size)
 
+    def __contains__(self, metric: object) -> bool:
+        return metric in tuple(self.values)  # by equality: a list has no hash
+
     def __getitem__(self, metric: str) -> NDArray[Any]:
         """Return the array of one metric; LoopError if it was not asked for."""
-        if metric not in tuple(self.values):  # by equality: a list has no hash
+        if metric not in self:
             msg = f"the sweep has no metric {checks.shown(metric)}: it has {', '.join(self.values)}"
             raise LoopError(msg)
         return self.values[metric]
