@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from matplotlib.text import Annotation, Text
 
-from replicate.figures.attributes import attribute
+from replicate.figures.attributes import attributes
 from replicate.figures.placing import without_layout
 from replicate.figures.recorder import DPI, Drawn, RecordingRenderer
 from replicate.figures.settled_ticks import settled_ticks
@@ -49,8 +49,7 @@ def _on_canvas(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
         stack.callback(figure._set_dpi, dpi, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001
         figure._set_dpi(DPI, forward=False)  # type: ignore[attr-defined]  # noqa: SLF001  -- no window changes its size
         # Artists may ask the canvas for a renderer, and animations begin unless a file is being saved.
-        stack.enter_context(attribute(canvas, "get_renderer", lambda: renderer))
-        stack.enter_context(attribute(canvas, "_is_saving", True))
+        stack.enter_context(attributes([(canvas, "get_renderer", lambda: renderer), (canvas, "_is_saving", True)]))
         yield
         for artist in everything(figure):
             if isinstance(artist, Text) and getattr(artist, "_renderer", None) is renderer:
@@ -60,10 +59,8 @@ def _on_canvas(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
 @contextmanager
 def _attributed(figure: Figure, renderer: RecordingRenderer) -> Iterator[None]:
     """Let every artist of a figure tell the renderer when it draws."""
-    with ExitStack() as stack:
-        for artist in everything(figure):
-            if artist is not figure:
-                stack.enter_context(attribute(artist, "draw", _telling(artist, renderer)))
+    telling = [(one, "draw", _telling(one, renderer)) for one in everything(figure) if one is not figure]
+    with attributes(telling):
         yield
 
 

@@ -86,18 +86,19 @@ def _worst(points: Points, chords: Sequence[tuple[int, int]]) -> list[_Chord]:
         return []
     starts, ends = np.array(chords).T
     inner = ends - starts - 1
-    first = np.r_[0, np.cumsum(inner)[:-1]]
+    first = np.cumsum(inner) - inner
     whose = np.repeat(np.arange(len(chords)), inner)
     index = np.arange(len(whose)) + (starts + 1 - first)[whose]
     along = points[ends] - points[starts]
     squared = np.einsum("ij,ij->i", along, along)
-    offset = points[index] - points[starts][whose]
-    projection = np.einsum("ij,ij->i", offset, along[whose])
-    fraction = np.clip(projection / np.where(squared > 0.0, squared, 1.0)[whose], 0.0, 1.0)
-    distance = np.linalg.norm(offset - fraction[:, None] * along[whose], axis=-1)
+    squared[squared == 0.0] = 1.0
+    x, y = (points[index] - points[starts[whose]]).T
+    across, up = along[whose].T
+    fraction = ((x * across + y * up) / squared[whose]).clip(0.0, 1.0)
+    distance = np.sqrt((x - fraction * across) ** 2 + (y - fraction * up) ** 2)
     largest = np.maximum.reduceat(distance, first)
     at = np.flatnonzero(distance == largest[whose])
-    split = index[at[np.unique(whose[at], return_index=True)[1]]]
+    split = index[at[np.searchsorted(at, first)]]
     return list(zip((-largest).tolist(), starts.tolist(), split.tolist(), ends.tolist(), strict=True))
 
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from matplotlib.axis import XAxis, YAxis
 
-from replicate.figures.attributes import attribute
+from replicate.figures.attributes import attributes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,13 +22,11 @@ if TYPE_CHECKING:
 @contextmanager
 def settled_ticks(figure: Figure) -> Iterator[None]:
     """Have the axes of a figure remember their ticks for the length of a ``with`` block, those of plain axes."""
-    with ExitStack() as stack:
-        for axes in figure.axes:
-            for axis in (axes.xaxis, axes.yaxis):
-                if type(axis) in {XAxis, YAxis}:
-                    ticks = _Ticks(axis)
-                    stack.enter_context(attribute(axis, "_update_ticks", ticks.updated))
-                    stack.enter_context(attribute(axis, "_get_ticklabel_bboxes", ticks.boxes))
+    plain = [axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) if type(axis) in {XAxis, YAxis}]
+    ticks = [(axis, _Ticks(axis)) for axis in plain]
+    found = [(axis, "_update_ticks", here.updated) for axis, here in ticks]
+    around = [(axis, "_get_ticklabel_bboxes", here.boxes) for axis, here in ticks]
+    with attributes([*found, *around]):
         yield
 
 

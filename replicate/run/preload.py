@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 from replicate.run.isolation import isolate_matplotlib
 
 isolate_matplotlib()
@@ -12,3 +14,6 @@ from replicate.run.modules import installed
 __all__ = ["performance"]
 
 installed()
+
+gc.collect()
+gc.freeze()  # what is here stays: no worker need look through it for garbage, again and again
