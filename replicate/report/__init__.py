@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from replicate.report.pages import build_report
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 __all__ = ["build_report"]
 
 
-def __getattr__(name: str) -> Any:
+def __getattr__(name: str) -> object:
     """Import what writes pages when it is asked for: a report that stands needs nothing of it."""
     if name not in __all__:
         msg = f"module {__name__!r} has no attribute {name!r}"
