@@ -235,6 +235,10 @@ def test_the_files_of_the_documentation_are_read(tmp_path: Path) -> None:
         (("--format", "xlsx"), "the format must be csv or parquet, not 'xlsx'"),
         (("--backend", "spark"), "--backend must be local or dask, not 'spark'"),
         (("--backend", "dask"), "--backend dask needs the address of a scheduler: --scheduler tcp://HOST:8786"),
+        (
+            ("--backend", "dask", "--scheduler", ""),
+            "--backend dask needs the address of a scheduler: --scheduler tcp://HOST:8786",
+        ),
         (("--scheduler", "tcp://here:1"), "--scheduler belongs to --backend dask"),
     ],
 )

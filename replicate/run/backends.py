@@ -164,7 +164,7 @@ def cluster_of(name: str, scheduler: str | None) -> DaskCluster | None:
     if find_spec("distributed") is None:
         msg = "--backend dask needs Dask, which is not installed: pip install 'paper-replicate[cluster]'"
         raise ReplicateError(msg)
-    if scheduler is None:
+    if not scheduler:
         msg = "--backend dask needs the address of a scheduler: --scheduler tcp://HOST:8786"
         raise ReplicateError(msg)
     return DaskCluster(scheduler)
