@@ -16,7 +16,7 @@ from replicate.errors import OutputError, PaperDefinitionError
 from replicate.exhibits.definitions import PAGES
 from replicate.new_paper import new_paper
 from replicate.new_project import new_project
-from replicate.report import pages
+from replicate.report import pages, site
 from replicate.run.library import Library
 from replicate.run.outcome import recompute
 from replicate.run.project import find_project
@@ -60,7 +60,7 @@ def test_ids_that_cannot_be_imported_are_refused(id: str, tmp_path: Path) -> Non
 
 
 def test_no_paper_has_the_name_of_a_page_of_the_report() -> None:
-    others = {pages.INDEX, pages.METHODS, pages.VERDICTS, pages.ERRATA, pages.SEARCH, TRIALS}
+    others = {site.INDEX, pages.METHODS, pages.VERDICTS, pages.ERRATA, pages.SEARCH, TRIALS}
     assert {f"{id}.html" for id in PAGES} == others
 
 

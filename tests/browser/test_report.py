@@ -17,7 +17,8 @@ from kept_results import kept_results
 
 from browser.sight import BY_COLOURS, BY_WIDTH, FOLD, SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
 from replicate import cli
-from replicate.report.pages import INDEX, SEARCH
+from replicate.report.pages import SEARCH
+from replicate.report.site import INDEX
 
 MOST_BYTES, MOST_ELEMENTS, MOST_SCRIPT = 2_000_000, 25_000, 30_000
 WRONG = {"misprint", "damaged", "discrepant", "unexplained"}
