@@ -1,7 +1,7 @@
 """Which modules of a paper an exhibit does not depend on, so that a changed figure leaves the paper's tables alone.
 
 An exhibit depends on the modules that define it, on all that these import, directly or not, and on every module that
-changes something else when it is imported: registers with it, stores in it. Where a module that is reached may find
+may change something else when it is imported: register with it, store in it. Where a module that is reached may find
 others by other ways than import statements, the exhibit depends on all.
 """
 
@@ -12,11 +12,10 @@ from collections.abc import Callable, Collection, Iterator
 from functools import cached_property, partial
 from typing import Any
 
-from replicate.exhibits import Claims, Exhibit, Figure, NotComputable, Paper, Table
-from replicate.run.module_text import Effects, ModuleText, effects_of, module_text
+from replicate.exhibits import Claims, Exhibit, Figure, Table
+from replicate.run.module_text import ModuleText, module_text
 from replicate.run.modules import file_of, is_framework
-
-_DESCRIBED = (Paper, Table, Figure, Claims, NotComputable)  # which remember the module that defines what they hold
+from replicate.run.quiet_imports import QuietImport
 
 
 class PaperModules:
@@ -63,38 +62,9 @@ class PaperModules:
 
     @cached_property
     def _changing(self) -> list[str]:
-        """The modules that change something else when they are imported."""
-        return [name for name, text in self._texts.items() if self._changes(name, text.effects, set())]
-
-    def _changes(self, name: str, effects: Effects, seen: set[tuple[str, str]], *, within: bool = True) -> bool:
-        """Say whether statements of a module change something else.
-
-        Parameters
-        ----------
-        seen
-            Functions that have been looked into.
-        within
-            Whether it is the module itself that is imported, and not another that calls its function.
-        """
-        text, values = self._texts[name], vars(sys.modules[name])
-        beyond = {root for root in (text.names if within else values) if root in values}
-        changeable = {root for root in beyond if not isinstance(values[root], _DESCRIBED)}
-        foreign = {root for root in text.names if not self._is_ours(text.names[root])}
-        if "*" in text.names or effects.touched & changeable or effects.decorating & changeable - foreign:
-            return True
-        if any(root in foreign and not is_framework(text.names[root]) for root in effects.bare):
-            return True
-        for root in effects.called:
-            home, _, function = text.names.get(root, f"{name}.{root}").rpartition(".")
-            body = self._texts[home].functions.get(function) if home in self._texts else None
-            if body is not None and (home, function) not in seen:
-                seen.add((home, function))
-                if self._changes(home, effects_of(body), seen, within=within and home == name):
-                    return True
-        return False
-
-    def _is_ours(self, name: str) -> bool:
-        return name in self._texts or name.rpartition(".")[0] in self._texts
+        """The modules that may change something else when they are imported."""
+        texts = self._texts
+        return [name for name in texts if not QuietImport(name, texts).changes_nothing()]
 
 
 def _text(name: str) -> ModuleText:

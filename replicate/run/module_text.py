@@ -1,4 +1,4 @@
-"""What the text of a module says of other modules: which it imports, whether it may find more, and what it changes.
+"""What the text of a module says of other modules: which it imports, and whether it may find more.
 
 Nothing is run. Only statements count, and where a text leaves room for more, more is assumed.
 """
@@ -8,42 +8,22 @@ from __future__ import annotations
 import ast
 import importlib.util
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from pathlib import Path
 
 _BLOCKS = (ast.stmt, ast.excepthandler, ast.match_case)
-_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 
 # Words by which code may reach what no import statement of its own names.
 _FINDS = re.compile(
-    rb"\b(?:__import__|__dict__|__subclasses__|__init_subclass__|exec|eval|globals|vars|setattr|delattr|_getframe|gc"
-    rb"|inspect|pkgutil|runpy|sys\.modules|importlib(?!\.(?:resources|metadata)\b))\b"
+    rb"\b(?:__import__|__dict__|__file__|__subclasses__|__init_subclass__|exec|eval|globals|vars|setattr|delattr"
+    rb"|_getframe|getattr\(\s*sys|from\s+sys\s+import|gc|inspect|pkgutil|runpy|pydoc|pickle|marshal|joblib|mock|subprocess"
+    rb"|multiprocessing|importlib(?!\.(?:resources|metadata)\b))\b"
+    rb"|\.modules\b"
     rb"|(?<!replicate)\.(?:exhibits|charts|readings|claims(?!\())\b(?!\s+import)"  # whichever module defined them
 )
-
-
-@dataclass(frozen=True)
-class Effects:
-    """What statements do besides giving names to values; each by the name with which it begins.
-
-    Attributes
-    ----------
-    called
-        Functions that are called, or decorate something.
-    bare
-        Functions that are called for the effect alone.
-    touched
-        What a method is called of for the effect alone, or something is stored in: ``TABLE`` of ``TABLE.rows.clear()``.
-    decorating
-        What has a method that decorates something.
-    """
-
-    called: frozenset[str]
-    bare: frozenset[str]
-    touched: frozenset[str]
-    decorating: frozenset[str]
 
 
 @dataclass(frozen=True)
@@ -68,14 +48,11 @@ class ModuleText:
     body: Sequence[ast.stmt] = ()
 
     @cached_property
-    def effects(self) -> Effects:
-        """Those of importing it."""
-        return effects_of(self.body)
-
-    @cached_property
-    def functions(self) -> dict[str, Sequence[ast.stmt]]:
-        """The statements of its functions by name."""
-        return {node.name: node.body for node in self.body if isinstance(node, _FUNCTIONS)}
+    def functions(self) -> dict[str, ast.FunctionDef]:
+        """Its functions by name; of one that is defined twice, neither."""
+        found = [node for node in self.body if isinstance(node, ast.FunctionDef)]
+        times = Counter(node.name for node in found)
+        return {node.name: node for node in found if times[node.name] == 1}
 
 
 @cache
@@ -114,40 +91,3 @@ def _statements(tree: ast.AST) -> Iterator[ast.AST]:
         node = waiting.pop()
         yield node
         waiting += [child for child in ast.iter_child_nodes(node) if isinstance(child, _BLOCKS)]
-
-
-def effects_of(statements: Iterable[ast.AST]) -> Effects:
-    """Return the effects of statements; what is in the functions that they define does not happen."""
-    called: set[str] = set()
-    bare: set[str] = set()
-    touched: set[str] = set()
-    decorating: set[str] = set()
-    waiting = list(statements)
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
-            (bare if isinstance(node.value.func, ast.Name) else touched).add(_root(node.value))
-        elif isinstance(node, ast.With | ast.AsyncWith):
-            touched.update(_root(item.context_expr) for item in node.items)
-        elif isinstance(node, ast.Assign | ast.Delete):
-            touched.update(_root(one) for one in node.targets if isinstance(one, ast.Attribute | ast.Subscript))
-        elif isinstance(node, ast.AugAssign):
-            touched.add(_root(node.target))
-        elif isinstance(node, (*_FUNCTIONS, ast.ClassDef)):
-            for one in node.decorator_list:
-                function = one.func if isinstance(one, ast.Call) else one
-                (called if isinstance(function, ast.Name) else decorating).add(_root(function))
-        for child in ast.iter_child_nodes(node):
-            if not isinstance(child, _BLOCKS):
-                inside = (inner.func for inner in ast.walk(child) if isinstance(inner, ast.Call))
-                called.update(function.id for function in inside if isinstance(function, ast.Name))
-            elif not isinstance(node, _FUNCTIONS):
-                waiting.append(child)
-    return Effects(frozenset(called), frozenset(bare), frozenset(touched), frozenset(decorating))
-
-
-def _root(node: ast.AST) -> str:
-    """Return the name with which an expression begins; empty if there is none."""
-    while isinstance(node, ast.Attribute | ast.Subscript | ast.Call):
-        node = node.func if isinstance(node, ast.Call) else node.value
-    return node.id if isinstance(node, ast.Name) else ""

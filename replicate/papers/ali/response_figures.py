@@ -27,5 +27,4 @@ class ResponseFigure:
 def add_figures(figures: Iterable[ResponseFigure]) -> None:
     """Add the figures to the paper, in the order given."""
     for figure in figures:
-        register = paper.figure(figure.id, figure.title, caption=figure.caption, alt=figure.alt, size=figure.size)
-        register(figure.draw)
+        paper.figure(figure.id, figure.title, caption=figure.caption, alt=figure.alt, size=figure.size)(figure.draw)
