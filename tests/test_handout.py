@@ -254,7 +254,7 @@ def test_a_changed_result_changes_the_handout(made: Made, monkeypatch: pytest.Mo
     changed: Results = {**made.outcome.results, (id, exhibit): replace(table, frames=frames)}
     drawing = next(result for result in made.outcome.results.values() if isinstance(result, FigureResult))
     # The figures are not what changes here.
-    monkeypatch.setattr("replicate.run.drawing.capture", lambda *_: drawing)
+    monkeypatch.setattr("replicate.run.drawing.drawn_as", lambda *_: (drawing.svg.encode(), drawing.png))
     before, after = markup(made.documents[False]), markup(made.edition(changed, solutions=False))
     assert not re.search(r"\b98\.[78]", before)
     assert re.search(r"\b98\.(?:8|77|765)\b", after)  # in the prose, with the digits of the sentence

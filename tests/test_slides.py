@@ -70,7 +70,7 @@ def test_dots_stand_where_the_numbers_are(make: Make) -> None:
 
 
 def test_who_only_reads_a_text_draws_nothing(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("replicate.handout.placing.captured", None)
+    monkeypatch.setattr("replicate.handout.placing.pictures_of", None)
     assert make(text_of(5, DOTS), only_read=True).drawings
     with pytest.raises(TemplateError, match="no column 'z'"):
         make(text_of(5, "{{ dots('table-1', columns=['z']) }}"), only_read=True)

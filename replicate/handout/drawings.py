@@ -9,6 +9,7 @@ from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from replicate.display.inline_svg import description
 from replicate.errors import ReplicateError, TemplateError
 from replicate.exhibits import Figure
 from replicate.exhibits.results import FigureResult
@@ -136,18 +137,18 @@ def have_drawn(pictures: Iterable[tuple[Drawing, Kind]], artist: Artist | None) 
         drawing.drawn_by(draw)
 
 
-def captured(call: str, paper: str, figure: Figure) -> FigureResult:
-    """Draw a figure that a call of a text places."""
-    with said_by(call):
-        found: FigureResult = _drawing().capture(f"{paper}-handout", figure)
-        return found
+def pictures_of(call: str, paper: str, figure: Figure) -> tuple[str, bytes, str]:
+    """Draw a figure that a call of a text places; return its SVG, its PNG and its words.
 
-
-def pictures_of(call: str, paper: str, figure: Figure) -> tuple[str, bytes]:
-    """Draw a figure as `captured` does, without reading back what it shows; return its SVG and its PNG."""
+    Only for a figure without words is read back what it shows.
+    """
+    owner = f"{paper}-handout"
     with said_by(call):
-        svg, png = _drawing().drawn_as(f"{paper}-handout", figure, ("svg", "png"))
-        return svg.decode(), png
+        if not figure.alt:
+            found: FigureResult = _drawing().capture(owner, figure)
+            return found.svg, found.png, description("", found.axes)
+        svg, png = _drawing().drawn_as(owner, figure, ("svg", "png"))
+        return svg.decode(), png, figure.alt
 
 
 @contextmanager

@@ -44,7 +44,7 @@ from replicate.exhibits.exercises import Exercises, Values
 from replicate.exhibits.results import FigureResult, Results, TableResult, errors_of
 from replicate.exhibits.variants import Inputs, Variation
 from replicate.handout.dots import DotChoice, dot_figure
-from replicate.handout.drawings import Drawing, DrawnLater, Wanted, captured, pictures_of, said_by, undrawn
+from replicate.handout.drawings import Drawing, DrawnLater, Wanted, pictures_of, said_by, undrawn
 from replicate.handout.formula_numbers import fixed, percent, tex
 from replicate.handout.key_table import Choice, key_table, legend, transposed_view
 from replicate.handout.own_code import OwnCode
@@ -225,7 +225,7 @@ class Placing:
                 drawn = dot_figure(view, choice, name, size)
             if self.only_read:
                 return self._mark(undrawn(drawn, 1.0))
-            self.shared[key] = (*pictures_of(f"dots('{exhibit}')", self.paper.id, drawn), drawn.alt)
+            self.shared[key] = pictures_of(f"dots('{exhibit}')", self.paper.id, drawn)
         svg, png, alt = self.shared[key]
         return self._mark(Drawing(name, svg, png, alt, min(1.0, size[0] / TEXT_WIDTH)))
 
@@ -257,9 +257,9 @@ class Placing:
                 return self._mark(undrawn(drawn, width))
             drawing_key = f"figure {name} {size}"
             if drawing_key not in self.shared:
-                self.shared[drawing_key] = captured(f"figure('{name}')", self.paper.id, drawn)
-            result = self.shared[drawing_key]
-            return self._mark(Drawing(name, result.svg, result.png, description(drawn.alt, result.axes), width))
+                self.shared[drawing_key] = pictures_of(f"figure('{name}')", self.paper.id, drawn)
+            svg, png, alt = self.shared[drawing_key]
+            return self._mark(Drawing(name, svg, png, alt, width))
         known = self.results.get((self.paper.id, name))
         if not isinstance(found, Figure) or not isinstance(known, FigureResult):
             figures = [id for id, other in self.paper.exhibits.items() if isinstance(other, Figure)]
