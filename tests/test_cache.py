@@ -102,7 +102,7 @@ def why(cache: Path, exhibits: list[tuple[str, str]] | None = None) -> dict[str,
     """Run, and return why each unit was computed."""
     steps: list[Progress] = []
     run([fresh()], exhibits, jobs=1, cache_dir=cache, progress=steps.append)
-    assert not any(step.errors for step in steps)
+    assert not [step.errors for step in steps if step.errors]
     return {str(step.unit): step.why for step in steps if not step.from_cache}
 
 
@@ -155,6 +155,28 @@ def test_what_changes_in_a_module_recomputes_the_exhibits_that_use_it(site: Path
         file.write("\n")
     changed = "lab/more.py has changed"  # exhibits.py imports by a name that no statement gives
     assert why(tmp_path / "cache", both) == {OF_TABLE_2: changed, "lab/fig-3": changed}
+
+
+def test_a_module_that_begins_to_change_another_is_used_by_all(site: Path, tmp_path: Path) -> None:
+    paper = site / "lab_paper"
+    figure = "from lab_paper import paper, state\n\n\n@paper.figure('fig-{0}', '{0}')\ndef _draw(figure):\n"
+    (paper / "state.py").write_text("LIMITS = [0, 1]\n\n\ndef limits():\n    return LIMITS\n")
+    (paper / "three.py").write_text(figure.format(3) + "    figure.add_subplot().plot(state.LIMITS)\n")
+    (paper / "four.py").write_text(figure.format(4) + "    figure.add_subplot().plot([0, 1])\n")
+    face = paper / "__init__.py"
+    face.write_text(face.read_text().replace('"exhibits",', '"four", "three",'))
+    figures = [("lab", "fig-3"), ("lab", "fig-4")]
+
+    def after(name: str, text: str) -> dict[str, str]:
+        (paper / name).write_text(text)
+        return why(tmp_path / "cache", figures)
+
+    four = (paper / "four.py").read_text()
+    assert set(after("four.py", four)) == {"lab/fig-3", "lab/fig-4"}
+    changed = "lab/four.py has changed"
+    assert after("four.py", four + "\n") == {"lab/fig-4": changed}
+    assert after("four.py", four + "state.LIMITS.append(3)\n") == {"lab/fig-3": changed, "lab/fig-4": changed}
+    assert after("four.py", four + "\nHERE = tuple(state.limits())\n") == {"lab/fig-4": changed}
 
 
 def test_another_version_of_a_library_makes_results_stale(site: Path, tmp_path: Path) -> None:

@@ -128,7 +128,7 @@ class Cache:
     def _text(self, path: Path, paper: Paper, unit: Unit) -> tuple[Dependencies, bytes]:
         """Return an entry as it was written, if all that its result depends on is as it was."""
         recorded, text = read_entry(path, _identity(unit))
-        difference = self._looked.difference(paper, _checked(recorded))
+        difference = self._looked.difference(paper, unit.exhibit, _checked(recorded))
         if difference:
             raise UselessError(difference)
         return recorded, text

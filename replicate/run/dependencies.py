@@ -5,7 +5,8 @@ A worker records what it has loaded when a unit is done:
 * the framework's own rooms, whole folders by content;
 * the paper's folder by content, without what only judges, explains or tries results (``ledger.toml``, ``notes.md``,
   ``handout.md``, ``handout.py``, ``slides.md``, ``test_*.py``, ``conftest.py``), so that editing it recomputes nothing,
-  and without what modules say that the exhibit does not use (`replicate.run.exhibit_modules`): they count by name;
+  and without modules that the exhibit does not use (`replicate.run.exhibit_modules`): one that has changed counts only
+  if it may be used now;
 * every other module that is not the standard library's: by content, or by the version of its distribution if it is
   an installed one;
 * the project file above the paper's folder, by what it says;
@@ -22,6 +23,7 @@ import importlib.metadata
 import os
 import platform
 import re
+import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -42,7 +44,7 @@ _ABOUT = re.compile(r"(ledger|notes|handout|slides)([-.]\w+)?\.(toml|md)|handout
 _KERNELS = ("OPENBLAS_CORETYPE", "NPY_DISABLE_CPU_FEATURES", "MKL_CBWR")
 _ROOT = __name__.split(".")[0]
 _GONE = "missing"
-_NAMED = "by name"  # in place of the digest of a file that counts only by being there
+_UNUSED = "unused "  # before the digest of a module that an exhibit does not use
 _LENGTH = 24  # of a digest; 96 bits
 
 
@@ -90,6 +92,7 @@ class Looked:
         self._rooms: dict[tuple[str, ...], dict[str, str]] = {}
         self._projects: dict[Path, dict[str, str]] = {}
         self._loaded: dict[tuple[str, frozenset[str]], _Loaded] = {}
+        self._uses: dict[tuple[str, frozenset[str]], PaperModules] = {}
         self._environment = {
             "version": f"{platform.python_version()} {platform.system()} {platform.machine()}",
             **{name: os.environ.get(name, "") for name in _KERNELS},
@@ -107,14 +110,16 @@ class Looked:
         if key not in self._loaded:
             self._loaded[key] = _Loaded.among(key[1], paper)
         loaded = self._loaded[key]
+        present = self._folder("paper", paper.package, paper.folder())
+        unused = self._files(paper, loaded.of_paper.unused(exhibit))
         groups = {
             "framework": dict.fromkeys(loaded.rooms, ""),
-            "paper": dict.fromkeys(self._files(paper, loaded.of_paper.unused(exhibit)), _NAMED),
+            "paper": {name: f"{_UNUSED}{present[name]}" for name in unused},
             "distribution": dict.fromkeys(loaded.distributions, ""),
             "module": dict.fromkeys(loaded.by_content, ""),
             "data": dict.fromkeys(paper.data_of(exhibit), ""),
         }
-        return {group: dict(sorted(names.items())) for group, names in self.now(paper, groups).items()}
+        return {group: dict(sorted(names.items())) for group, names in self.now(paper, exhibit.id, groups).items()}
 
     def _files(self, paper: Paper, modules: Iterable[str]) -> set[str]:
         """Return the files of modules, by their names in the paper's folder."""
@@ -122,24 +127,39 @@ class Looked:
         files = {file for name in inside for file in (f"{name}.py", f"{name}/__init__.py")}
         return files & self._folder("paper", paper.package, paper.folder()).keys()
 
-    def now(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> Dependencies:
+    def _still_unused(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> set[str]:
+        """Return the files of modules that an exhibit does not use as they are now, if they are loaded."""
+        if exhibit not in paper.exhibits:
+            return set()
+        loaded = [name for name in sys.modules if _is_own(paper, name) or name in recorded["module"]]
+        key = (paper.package, frozenset(loaded))
+        if key not in self._uses:
+            self._uses[key] = PaperModules(*key)
+        return self._files(paper, self._uses[key].unused(paper.exhibits[exhibit]))
+
+    def now(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> Dependencies:
         """Return the present state of everything that was recorded, and of files that came beside it."""
         return {
             "python": self._environment,
             "framework": self._framework(tuple(recorded["framework"])),
-            "paper": {
-                name: _NAMED if recorded["paper"].get(name) == _NAMED else digest
-                for name, digest in self._folder("paper", paper.package, paper.folder()).items()
-            },
+            "paper": self._of_paper(paper, exhibit, recorded),
             "project": self._project(Path(str(paper.folder()))),
             "distribution": {name: self._version(name) for name in recorded["distribution"]},
             "module": {name: self._module(name) for name in recorded["module"]},
             "data": {name: self._data(paper, name) for name in recorded["data"]},
         }
 
-    def difference(self, paper: Paper, recorded: Mapping[str, Mapping[str, str]]) -> str:
+    def _of_paper(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
+        """Return the present files of a paper; a module that was and is not used stands as it was recorded."""
+        present = self._folder("paper", paper.package, paper.folder())
+        unused = {name: known for name, known in recorded["paper"].items() if known.startswith(_UNUSED)}
+        changed = {name for name, known in unused.items() if name in present and known != f"{_UNUSED}{present[name]}"}
+        used = changed - self._still_unused(paper, exhibit, recorded) if changed else set()
+        return {name: unused[name] if name in unused.keys() - used else digest for name, digest in present.items()}
+
+    def difference(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> str:
         """Return what has changed since, in words; empty if nothing has."""
-        return first_difference(recorded, self.now(paper, recorded), paper.id)
+        return first_difference(recorded, self.now(paper, exhibit, recorded), paper.id)
 
     def _framework(self, files: tuple[str, ...]) -> dict[str, str]:
         """Return the present files of the rooms of some files, which most results of a run share."""

@@ -55,15 +55,17 @@ class ModuleText:
         return {node.name: node for node in found if times[node.name] == 1}
 
 
-@cache
 def module_text(path: Path, name: str) -> ModuleText:
     """Return what the file of a module says; of one that is no Python, that it may reach anything."""
     try:
-        text = path.read_bytes()
-        tree = ast.parse(text)
+        return _module_text(path.read_bytes(), name if path.name == "__init__.py" else name.rpartition(".")[0])
     except (OSError, SyntaxError, ValueError, RecursionError):
         return ModuleText()
-    package = name if path.name == "__init__.py" else name.rpartition(".")[0]
+
+
+@cache
+def _module_text(text: bytes, package: str) -> ModuleText:
+    tree = ast.parse(text)
     imports: list[str] = []
     names: dict[str, str] = {}
     for node in _statements(tree):
