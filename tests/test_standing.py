@@ -69,13 +69,33 @@ def test_nothing_is_loaded_that_an_untouched_report_does_not_need(
     with monkeypatch.context() as patched:
         patched.setattr(Paper, "load", lambda _paper: pytest.fail("a paper is loaded"))
         assert replicate(*command)[0] == 0
+    assert _loaded(command) == ""
+
+
+def _loaded(command: list[str]) -> str:
+    """Run a command in a process of its own, and return which large modules it has loaded."""
     code = (
         f"import sys; sys.argv = {['replicate', *command]!r}\nfrom replicate.cli import main\n"
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code\n"
         "print(*sorted({'pandas', 'scipy', 'matplotlib', 'jinja2', 'replicate.loops'} & sys.modules.keys()))"
     )
     said = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    assert said.splitlines()[-1] == ""
+    return said.splitlines()[-1]
+
+
+@pytest.mark.usefixtures("replicate")
+def test_a_report_stands_in_which_a_figure_has_changed(folder: Path) -> None:
+    """The results that were not computed anew say of the figure's module that they do not use it as it was."""
+    more, face, command = folder / "more.py", folder / "__init__.py", ["report", "--papers", str(folder.parent)]
+    face.write_text(face.read_text().replace('"exhibits",', '"exhibits", "more",'))
+    figure = (
+        f"from {folder.name} import paper\n\n\n"
+        "@paper.figure('fig-9', 'Nine')\ndef _draw(figure):\n    figure.add_subplot().plot([0, 1])\n"
+    )
+    for text in (figure, f"{figure}\n"):
+        more.write_text(text)
+        assert _loaded(command) != ""
+    assert _loaded(command) == ""
 
 
 def _append(name: str, text: str) -> Change:

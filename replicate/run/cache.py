@@ -58,7 +58,10 @@ class Cache:
         return None, why or NEVER
 
     def state(self, paper: Paper, unit: Unit) -> str:
-        """Return the digest of the result of a unit that holds and of all it depends on; empty if there is none."""
+        """Return the digest of the result of a unit that holds and of all it depends on; empty if there is none.
+
+        The paper need not be loaded if its folder is as it was when the result was last taken for one that holds.
+        """
         for path in self._entries(unit) if self.folder is not None else ():
             with contextlib.suppress(UselessError, OSError, ValueError, TypeError, LookupError):
                 recorded, text = self._text(path, paper, unit)

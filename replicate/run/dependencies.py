@@ -129,8 +129,6 @@ class Looked:
 
     def _still_unused(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> set[str]:
         """Return the files of modules that an exhibit does not use as they are now, if they are loaded."""
-        if exhibit not in paper.exhibits:
-            return set()
         loaded = [name for name in sys.modules if _is_own(paper, name) or name in recorded["module"]]
         key = (paper.package, frozenset(loaded))
         if key not in self._uses:
@@ -150,11 +148,16 @@ class Looked:
         }
 
     def _of_paper(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
-        """Return the present files of a paper; a module that was and is not used stands as it was recorded."""
+        """Return the present files of a paper; a module that was and is not used stands as it was recorded.
+
+        So does every one that was not used if the paper is not loaded: who asks then knows that its folder is as it was
+        when it was.
+        """
         present = self._folder("paper", paper.package, paper.folder())
         unused = {name: known for name, known in recorded["paper"].items() if known.startswith(_UNUSED)}
         changed = {name for name, known in unused.items() if name in present and known != f"{_UNUSED}{present[name]}"}
-        used = changed - self._still_unused(paper, exhibit, recorded) if changed else set()
+        ask = changed and exhibit in paper.exhibits
+        used = changed - self._still_unused(paper, exhibit, recorded) if ask else set()
         return {name: unused[name] if name in unused.keys() - used else digest for name, digest in present.items()}
 
     def difference(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> str:
