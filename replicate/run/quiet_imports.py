@@ -86,7 +86,7 @@ class QuietImport:
         self._body = texts[name].functions[function].body if function else texts[name].body
         self._passing = set(_passing_names(self._body))
         if function:
-            inner = [one for statement in [texts[name].functions[function]] for one in ast.walk(statement)]
+            inner = list(ast.walk(texts[name].functions[function]))
             self._passing |= {one.arg for one in inner if isinstance(one, ast.arg)}
             self._passing |= {one.id for one in inner if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
 
