@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -13,6 +14,8 @@ from attack import attack, table
 from hypothesis import HealthCheck, settings
 
 from replicate import cli
+from replicate.run.library import Library
+from replicate.run.parallel import run
 
 __all__ = ["attack"]
 
@@ -93,6 +96,22 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 def folder(tmp_path: Path) -> Iterator[Path]:
     with installed_paper.installed(tmp_path / "site") as folder:
         yield folder
+
+
+@pytest.fixture(scope="session")
+def lab_results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
+    """Return a function that writes the kept results of the small paper, computed once, into a folder of a test."""
+    kept = tmp_path_factory.mktemp("lab") / "cache"
+    with installed_paper.installed(tmp_path_factory.mktemp("site")):
+        run([Library().paper("lab")], jobs=1, cache_dir=kept)
+    return lambda folder: Path(shutil.copytree(kept, folder))
+
+
+@pytest.fixture
+def lab_computed(replicate: Run, lab_results: Callable[[Path], Path]) -> None:
+    """Let `replicate` find the results of the small paper, for tests that ask for something else."""
+    assert callable(replicate)
+    lab_results(Path("build/cache"))
 
 
 @pytest.fixture

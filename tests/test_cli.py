@@ -90,6 +90,7 @@ def test_show_a_table(replicate: Run) -> None:
     assert "\x1b" not in out + err
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_show_one_reading(replicate: Run) -> None:
     _, out, _ = replicate("show", "lab", "table-1", "--reading", "decimal", "-j1")
     assert "decimal" in out
@@ -99,6 +100,7 @@ def test_show_one_reading(replicate: Run) -> None:
     assert "known: as-written, decimal" in err
 
 
+@pytest.mark.usefixtures("lab_computed")
 @pytest.mark.parametrize(
     ("exhibit", "said"),
     [
@@ -148,6 +150,7 @@ def test_without_a_command_the_commands_are_listed(replicate: Run) -> None:
     assert not any(line.endswith("...") for line in lines)
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_numbers_stay_whole_on_a_narrow_terminal(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "30")
     for exhibit in ("table-1", "fig-1"):
@@ -179,6 +182,7 @@ def test_a_terminal_without_unicode(folder: Path, tmp_path: Path) -> None:
     assert "reproduced" in done.stdout
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_a_run_that_is_told_to_end_tidies_up(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     def interrupted(target: Path) -> None:
         os.kill(os.getpid(), signal.SIGTERM)
@@ -193,6 +197,7 @@ def test_a_run_that_is_told_to_end_tidies_up(replicate: Run, monkeypatch: pytest
     assert not [path for path in Path("build").rglob("*") if path.name in ("new", "journal.json", "lock")]
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_when_everything_fails_the_first_lines_tell(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     failures = [f"lab/table-{number}: ValueError: no" for number in range(40)]
     monkeypatch.setattr("replicate.run.outcome.failures", lambda _: failures)
@@ -226,6 +231,7 @@ def test_debug_shows_where(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> N
     assert err == "replicate: unexpected ZeroDivisionError: division by zero (--debug shows where)\n"
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_check(replicate: Run, folder: Path) -> None:
     check = ("check", "lab", "-j1", "--accepted", accepted(replicate))
     status, out, err = replicate(*check)
@@ -239,6 +245,7 @@ def test_check(replicate: Run, folder: Path) -> None:
     assert "verdict reproduced -> near" in out
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_check_fails_without_accepted_state(replicate: Run, tmp_path: Path) -> None:
     status, out, _ = replicate("check", "lab", "-j1", "--accepted", str(tmp_path / "nothing"))
     assert status == 1
@@ -262,6 +269,7 @@ def test_a_damaged_installation(replicate: Run, monkeypatch: pytest.MonkeyPatch,
     assert err == ("replicate: the accepted state of the bundled papers is missing: name another folder: --accepted\n")
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_an_exhibit_that_raises_breaks_check(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     check = ("check", "lab", "-j1", "--no-cache", "--accepted", accepted(replicate))
     monkeypatch.setenv("LAB_BREAKS", "1")
@@ -271,6 +279,7 @@ def test_an_exhibit_that_raises_breaks_check(replicate: Run, monkeypatch: pytest
     assert "the kettle is empty" in out
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_report(replicate: Run) -> None:
     status, out, _ = replicate("report", "lab", "-j1")
     assert status == 0
@@ -287,6 +296,7 @@ def test_report(replicate: Run) -> None:
     assert contents(Path("build")) == before
 
 
+@pytest.mark.usefixtures("lab_computed")
 def test_an_interrupted_report_leaves_the_earlier_one(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     replicate("report", "lab", "-j1")
     before = contents(Path("build"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import installed_paper
@@ -14,6 +14,8 @@ from replicate.exhibits import Paper
 from replicate.exhibits.results import ClaimsResult, FigureResult, Results, TableResult
 from replicate.run import parallel as run
 from replicate.run.library import Library
+
+Keep = Callable[[Path], Path]
 
 
 @pytest.fixture
@@ -151,20 +153,22 @@ def test_failures_are_not_kept(paper: Paper, tmp_path: Path, monkeypatch: pytest
     ],
 )
 def test_a_source_makes_results_stale_and_what_is_said_of_them_does_not(
-    paper: Paper, folder: Path, tmp_path: Path, name: str, *, kept: bool
+    paper: Paper, folder: Path, lab_results: Keep, tmp_path: Path, name: str, *, kept: bool
 ) -> None:
-    computed(paper, tmp_path / "cache")
+    lab_results(tmp_path / "cache")
     with (folder / name).open("a") as file:
         file.write("\n")
     _, steps = computed(paper, tmp_path / "cache")
     assert from_cache(steps) == (UNITS if kept else set())
 
 
-def test_a_damaged_cache_is_computed_again(paper: Paper, tmp_path: Path) -> None:
-    computed(paper, tmp_path)
-    for file in tmp_path.rglob("*.result"):
+def test_a_damaged_cache_is_computed_again(paper: Paper, lab_results: Keep, tmp_path: Path) -> None:
+    cache = lab_results(tmp_path / "cache")
+    files = list(cache.rglob("*.result"))
+    assert len(files) == len(UNITS)
+    for file in files:
         file.write_bytes(b"nonsense")
-    results, steps = computed(paper, tmp_path)
+    results, steps = computed(paper, cache)
     assert from_cache(steps) == set()
     assert run.failures(results) == []
 

@@ -1,19 +1,23 @@
 """Copy a folder at each file operation of a command, then let each fail in turn and say what became of the folder.
 
-Run as a script: ``failing_steps.py HOW FOLDER SITE EVERY ARGUMENTS`` runs the command line, which leaves copies in
-``states/<number>`` and ``new`` beside the folder, and again in forks of the process, which has imported everything by
-then. HOW is a list of ``once``, where one operation fails, and ``full``, where from then on nothing can be created, or
-empty. Prints a JSON object of lists of [case, what went wrong].
+Run as a script it reads requests, each a line of JSON ``[HOW, FOLDER, SITE, EVERY, ARGUMENTS]``: a fork of it runs the
+command line, which leaves copies in ``states/<number>`` and ``new`` beside the folder, and again in forks of its own,
+which has imported everything by then. HOW is a list of ``once``, where one operation fails, and ``full``, where from
+then on nothing can be created, or empty. Answers each by a line, a JSON object of lists of [case, what went wrong].
+
+All requests share what the commands import, and the process that their workers are forked from.
 """
 
 from __future__ import annotations
 
 import errno
+import importlib
 import json
 import os
 import re
 import shutil
 import sys
+import traceback
 from itertools import count
 from multiprocessing import forkserver
 from pathlib import Path
@@ -21,7 +25,13 @@ from typing import Any
 
 from crash_states import snapshot_each, watch
 
+from replicate.run.isolation import isolate_matplotlib
+from replicate.run.pool import started
+from replicate.run.worker import serve
+
 PROGRESS = re.compile(r"computed \d|\d+ of \d+ (results kept|sheets)|.*(removed|finished|put back) what a run")
+#: What the commands import, among much else.
+IMPORTED = ("replicate.report", "replicate.handout", "replicate.diff", "replicate.whatif", "replicate.run.drawing")
 CREATING = {"open", "torn", "os.mkdir", "os.link", "os.symlink", "shutil.copyfile"}
 
 
@@ -86,10 +96,11 @@ def keep_server() -> None:
         server.ensure_running = forkserver.ensure_running = lambda: None
 
 
-def main() -> None:
-    ways, where, site, every, *arguments = sys.argv[1:]
+def attacked(ways: list[str], where: str, site: str, every: int, arguments: list[str]) -> dict[str, Any]:
+    """Run the command and let its operations fail; return the cases of each way."""
     sys.path.insert(0, site)
     folder = Path(where)
+    os.chdir(folder)
     kept = folder.parent / "kept"
     shutil.copytree(folder, kept, symlinks=True)
     old = tree(folder)
@@ -100,11 +111,36 @@ def main() -> None:
     shutil.copytree(folder, folder.parent / "new", symlinks=True)
     new = tree(folder)
     assert old != new
-    keep_server()
     if (folder / "build/cache").is_dir():  # forks compute nothing
         shutil.copytree(folder / "build/cache", kept / "build/cache", dirs_exist_ok=True)
-    found = {how: attempts(how, folder, arguments, int(every), old, new) for how in ways.split()}
-    sys.__stdout__.write(f"\n{json.dumps(found)}\n")  # type: ignore[union-attr]
+    return {way: attempts(way, folder, arguments, every, old, new) for way in ways}
+
+
+def main() -> None:
+    """Answer requests until there are no more."""
+    isolate_matplotlib()
+    for name in IMPORTED:
+        importlib.import_module(name)
+    # As `replicate.run.pool` starts it, which takes over what is imported here.
+    worker, pipe = started(serve, Path(os.devnull))
+    pipe.close()
+    worker.join()
+    keep_server()
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what the commands say
+    for line in sys.stdin:
+        id = os.fork()
+        if id == 0:
+            status = 1
+            try:
+                answers.write(f"{json.dumps(attacked(*json.loads(line)))}\n")
+                answers.flush()
+                status = 0
+            except BaseException:  # noqa: BLE001  -- nothing may return into the loop of the parent
+                traceback.print_exc()
+            os._exit(status)
+        if os.waitstatus_to_exitcode(os.waitpid(id, 0)[1]):
+            break
 
 
 def attempts(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -18,6 +19,7 @@ import pytest
 import varied_handout
 from attack import Attack
 
+from replicate import cli
 from replicate.staging import replace_files
 
 HERE = Path(__file__).parent
@@ -37,12 +39,11 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
         yield Path(folder)
 
 
-def run(*command: str, cwd: Path | None = None, path: Path = HERE) -> subprocess.CompletedProcess[str]:
-    """Run Python in a process of its own, in which the modules of a folder are found."""
-    environment = {**os.environ, "PYTHONPATH": str(path), "NO_COLOR": "1"}
-    environment.pop("GITHUB_STEP_SUMMARY", None)
-    command = (sys.executable, *command)
-    return subprocess.run(command, capture_output=True, text=True, check=False, cwd=cwd, env=environment)
+def environment() -> dict[str, str]:
+    """Return the environment of a process in which the modules of this folder are found."""
+    found = {**os.environ, "PYTHONPATH": str(HERE), "NO_COLOR": "1"}
+    found.pop("GITHUB_STEP_SUMMARY", None)
+    return found
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system with fork")
@@ -51,7 +52,9 @@ def run(*command: str, cwd: Path | None = None, path: Path = HERE) -> subprocess
 def test_swaps(attack: Attack, quick: Path, kind: str, words: str, every: int, scenario: str) -> None:
     build = quick / f"{kind} {scenario}" / "build"
     build.parent.mkdir()
-    done = run(str(HERE / "killed_swaps.py"), kind, scenario, str(build), "1" if attack.everything else str(every))
+    script = (sys.executable, str(HERE / "killed_swaps.py"))
+    arguments = (kind, scenario, str(build), "1" if attack.everything else str(every))
+    done = subprocess.run([*script, *arguments], capture_output=True, text=True, check=False, env=environment())
     assert done.returncode == 0, done.stderr
     cases = json.loads(done.stdout)
     attack.report(f"{words} at any file operation: {scenario}", len(cases), [(case, why) for case, why in cases if why])
@@ -83,16 +86,22 @@ def left(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
     def left(command: str) -> Path:
         folder = tmp_path_factory.mktemp("left")
         here, site = folder / "here", folder / "site"
-        with installed_paper.installed(site):
-            pass  # the files stay
-        if command == "class set":
-            varied_handout.write(site / "lab_paper")
         (here / "build/report").mkdir(parents=True)
         (here / "build/report/main.tex").write_text("thesis")
         (here / "roster.csv").write_text("student,name\n1,Ada\n2,Emil\n", encoding="utf-8")
-        for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
-            done = run("-m", "replicate", *asked(earlier, "0.3"), cwd=here, path=site)
-            assert done.returncode in (0, 1), done.stderr
+        with installed_paper.installed(site) as paper, pytest.MonkeyPatch.context() as patch:
+            patch.chdir(here)
+            patch.setenv("NO_COLOR", "1")
+            patch.delenv("GITHUB_STEP_SUMMARY", raising=False)
+            if command == "class set":
+                varied_handout.write(paper)
+            for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
+                patch.setattr(sys, "argv", ["replicate", *asked(earlier, "0.3")])
+                before = signal.getsignal(signal.SIGTERM)
+                with pytest.raises(SystemExit) as end:
+                    cli.main()
+                signal.signal(signal.SIGTERM, before)
+                assert end.value.code in (0, 1)
         return folder
 
     return left
@@ -129,7 +138,36 @@ WAYS = {"once": {"report", "accept"}, "full": set(COMMANDS)}
 
 
 @pytest.fixture(scope="module")
-def attacked(request: pytest.FixtureRequest, quick: Path, left: Callable[[str], Path]) -> Callable[[str], Attacked]:
+def failing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., dict[str, list[tuple[str, str]]]]]:
+    """Return a function that asks one process for all attacks; see `failing_steps`."""
+    said = tmp_path_factory.mktemp("said") / "said"
+    with said.open("w") as errors:
+        process = subprocess.Popen(
+            [sys.executable, str(HERE / "failing_steps.py")],
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=errors, text=True, env=environment(),
+        )  # fmt: skip
+
+    def ask(*request: object) -> dict[str, list[tuple[str, str]]]:
+        assert process.stdin is not None
+        assert process.stdout is not None
+        process.stdin.write(f"{json.dumps(request)}\n")
+        process.stdin.flush()
+        answer = process.stdout.readline()
+        assert answer, said.read_text(encoding="utf-8")
+        cases: dict[str, list[tuple[str, str]]] = json.loads(answer)
+        return cases
+
+    with process:
+        yield ask
+
+
+@pytest.fixture(scope="module")
+def attacked(
+    request: pytest.FixtureRequest,
+    quick: Path,
+    left: Callable[[str], Path],
+    failing: Callable[..., dict[str, list[tuple[str, str]]]],
+) -> Callable[[str], Attacked]:
     """Run a command that writes something else than before, once for all attacks on it."""
     everything = request.config.getoption("--torture")
 
@@ -140,11 +178,9 @@ def attacked(request: pytest.FixtureRequest, quick: Path, left: Callable[[str], 
         shutil.copytree(left(command), folder, symlinks=True)
         edit(site, "2**0.5, 3**0.51")
         ways = [how for how, commands in WAYS.items() if hasattr(os, "fork") and (everything or command in commands)]
-        script = [str(HERE / "failing_steps.py"), " ".join(ways), str(here), str(site), "1" if everything else "17"]
         old = tree(here)
-        done = run(*script, *asked(command, "0.4"), cwd=here)
-        assert done.returncode == 0, done.stderr
-        return Attacked(here, old, tree(folder / "new"), json.loads(done.stdout.splitlines()[-1]))
+        cases = failing(ways, str(here), str(site), 1 if everything else 17, asked(command, "0.4"))
+        return Attacked(here, old, tree(folder / "new"), cases)
 
     return attacked
 
