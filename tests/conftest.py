@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import shutil
 import signal
 import sys
@@ -71,6 +72,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--torture", action="store_true", help="try every case of every attack, not a few of each kind")
 
 
+def pytest_configure() -> None:
+    """Let Ctrl-C be noticed, which tests send: a shell starts what it runs in the background deaf to it."""
+    if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the longest files first; ``--no-loadscope-reorder`` leaves them there."""
     places = {Path(__file__).parent / name: place for place, name in enumerate(LONGEST)}
@@ -92,14 +99,20 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
             terminalreporter.write_line(line)
 
 
+@pytest.fixture(scope="session")
+def _loaded() -> None:
+    """Load what draws before the first worker starts: the others take it from there, and need not load it each."""
+    importlib.import_module("replicate.run.drawing")
+
+
 @pytest.fixture
-def folder(tmp_path: Path) -> Iterator[Path]:
+def folder(tmp_path: Path, _loaded: None) -> Iterator[Path]:
     with installed_paper.installed(tmp_path / "site") as folder:
         yield folder
 
 
 @pytest.fixture(scope="session")
-def lab_results(tmp_path_factory: pytest.TempPathFactory) -> Callable[[Path], Path]:
+def lab_results(tmp_path_factory: pytest.TempPathFactory, _loaded: None) -> Callable[[Path], Path]:
     """Return a function that writes the kept results of the small paper, computed once, into a folder of a test."""
     kept = tmp_path_factory.mktemp("lab") / "cache"
     with installed_paper.installed(tmp_path_factory.mktemp("site")):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
-import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
+from starter import Starter, starter
 
 from replicate.baselines.outcomes import compared, draw
 from replicate.baselines.store import Store, digest
@@ -36,8 +36,9 @@ def test_mark(gain):
 
 
 class Project:
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, started: Starter) -> None:
         self.folder = folder
+        self._started = started
         (folder / "pytest.ini").write_text("[pytest]\nfilterwarnings = error\n")
         (folder / "tests").mkdir()
         self.write(TESTS.replace("STYLE", '"-"'))
@@ -49,20 +50,26 @@ class Project:
         plugins = [
             part for name in ("replicate.baselines.plugin", "xdist", "no:cacheprovider") for part in ("-p", name)
         ]
-        command = [sys.executable, "-m", "pytest", "-q", *plugins, *arguments]
         # what else is installed for pytest would be imported in each of these processes, and is no part of this
         environment = {**os.environ, "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
-        done = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, check=False)
-        return done.returncode, done.stdout + done.stderr
+        done = self._started.run("pytest", ["-q", *plugins, *arguments], self.folder, environment)
+        return done.returncode, done.stdout
 
     def accepted(self) -> dict[str, bytes]:
         folder = self.folder / "tests" / "figures"
         return {path.name: path.read_bytes() for path in sorted(folder.glob("*.*"))} if folder.is_dir() else {}
 
 
+@pytest.fixture(scope="module")
+def started() -> Iterator[Starter]:
+    """What the plugin imports when a figure is compared; the plugin itself is imported by each pytest."""
+    with starter("pytest", "matplotlib.figure", "matplotlib.backends.backend_agg", "replicate.figures.record") as found:
+        yield found
+
+
 @pytest.fixture
-def project(tmp_path: Path) -> Project:
-    return Project(tmp_path)
+def project(tmp_path: Path, started: Starter) -> Project:
+    return Project(tmp_path, started)
 
 
 def test_accept_compare_change(project: Project) -> None:

@@ -112,7 +112,7 @@ def test_accept_compare_change(folder: Folder, monkeypatch: pytest.MonkeyPatch) 
 
     log = folder.path / "figures/plots/plot_saved-1.log"
     digest = json.loads(log.read_text())["accepted"]
-    stale = folder.run("accept", "plots", "--only", "plots/plot_saved-1=0", "--reason", "x")
+    stale = folder.run("accept", "plots/plot_saved.py", "--only", "plots/plot_saved-1=0", "--reason", "x")
     assert (stale[0], len(log.read_text().splitlines())) == (2, 1)
     assert folder.run("accept", "plots", "--only", f"plots/plot_saved-1={digest}", "--reason", "orange")[0] == 0
     assert json.loads(log.read_text().splitlines()[-1])["replaces"] == digest

@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -138,6 +139,15 @@ class Made:
         self.documents = {solutions: self.edition(solutions=solutions, shared=shared) for solutions in (False, True)}
         self.pdfs = {solutions: pdf(document) for solutions, document in self.documents.items()}
 
+    @cached_property
+    def markups(self) -> dict[bool, str]:
+        """What the editions are for the typesetter."""
+        return {solutions: markup(document) for solutions, document in self.documents.items()}
+
+    @cached_property
+    def webpages(self) -> dict[bool, str]:
+        return {solutions: webpage(document) for solutions, document in self.documents.items()}
+
     def edition(
         self, results: Results | None = None, *, solutions: bool, shared: dict[str, Any] | None = None
     ) -> Document:
@@ -225,16 +235,15 @@ def test_the_same_results_are_the_same_bytes(made: Made) -> None:
 
 
 def test_nothing_is_left_unresolved(made: Made) -> None:
-    for solutions, document in made.documents.items():
-        for text in (markup(document), webpage(document)):
+    for solutions in made.documents:
+        for text in (made.markups[solutions], made.webpages[solutions]):
             assert not re.search(r"\{\{|\{%|Undefined|\bnan\b|[\ue000-\uf8ff]", text)
             assert text.count("Exercise ") >= 5
-        assert ("#solution[" in markup(document)) is solutions
+        assert ("#solution[" in made.markups[solutions]) is solutions
 
 
 def test_a_web_page_fetches_nothing(made: Made) -> None:
-    for document in made.documents.values():
-        page = webpage(document)
+    for page in made.webpages.values():
         assert "<script" not in page
         assert not re.search(r"<(?:link|iframe|img|object)\b|@import|url\((?!#)", page)
         # Places in the page, and loops in the page beside it.
@@ -255,7 +264,7 @@ def test_a_changed_result_changes_the_handout(made: Made, monkeypatch: pytest.Mo
     drawing = next(result for result in made.outcome.results.values() if isinstance(result, FigureResult))
     # The figures are not what changes here.
     monkeypatch.setattr("replicate.run.drawing.drawn_as", lambda *_: (drawing.svg.encode(), drawing.png))
-    before, after = markup(made.documents[False]), markup(made.edition(changed, solutions=False))
+    before, after = made.markups[False], markup(made.edition(changed, solutions=False))
     assert not re.search(r"\b98\.[78]", before)
     assert re.search(r"\b98\.(?:8|77|765)\b", after)  # in the prose, with the digits of the sentence
 

@@ -18,11 +18,13 @@ Change = Callable[[Path, Path], object]  # given the paper's folder and that of 
 
 
 @pytest.fixture
-def written(replicate: Run, folder: Path) -> tuple[list[str], Path]:
+def written(replicate: Run, folder: Path, lab_results: Callable[[Path], Path]) -> tuple[list[str], Path]:
     """Write a report and return the command, and the folder of the output."""
     command = ["report", "--papers", str(folder.parent)]
-    code, *_ = replicate(*command)
+    lab_results(Path("build/cache"))
+    code, _, said = replicate(*command)
     assert code == 0
+    assert "4 of 4 results kept" in said
     return command, Path("build")
 
 
@@ -196,15 +198,25 @@ PARTS: dict[str, Change] = {
 }
 
 
+@pytest.fixture(scope="module")
+def results_of_two(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return where the first test leaves the results of `two` for the others."""
+    return tmp_path_factory.mktemp("two") / "cache"
+
+
 @pytest.fixture
-def two(replicate: Run, folder: Path) -> Path:
+def two(replicate: Run, folder: Path, results_of_two: Path) -> Path:
     """Write a project of two papers, its report, and return the first paper's folder."""
     for name in ("one", "other"):
         shutil.copytree(folder, Path("papers") / name, ignore=shutil.ignore_patterns("__pycache__"))
         for path in Path("papers", name).glob("*.py"):
             path.write_text(path.read_text().replace("lab_paper", name).replace('id="lab"', f'id="{name}"'))
     Path("replicate.toml").write_text('title = "Two"\n')
+    if results_of_two.is_dir():
+        shutil.copytree(results_of_two, "build/cache")
     assert replicate("report")[0] == 0
+    if not results_of_two.is_dir():
+        shutil.copytree("build/cache", results_of_two, ignore=shutil.ignore_patterns("report.json"))
     return Path("papers/one")
 
 

@@ -140,6 +140,8 @@ WAYS = {"once": {"report", "accept"}, "full": set(COMMANDS)}
 @pytest.fixture(scope="module")
 def failing(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Callable[..., dict[str, list[tuple[str, str]]]]]:
     """Return a function that asks one process for all attacks; see `failing_steps`."""
+    if not hasattr(os, "fork"):
+        pytest.skip("needs a system with fork")
     said = tmp_path_factory.mktemp("said") / "said"
     with said.open("w") as errors:
         process = subprocess.Popen(
