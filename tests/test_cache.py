@@ -531,6 +531,31 @@ def test_a_run_notes_what_units_cost(kept: tuple[Paper, Path], monkeypatch: pyte
     assert noted[OF_TABLE_2] > 0
 
 
+def test_a_module_of_another_paper_counts_where_it_is_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A worker serves several papers, and what it has loaded for one of them belongs to no other."""
+    files = {
+        "first_paper/__init__.py": "import helper_of_all",
+        "second_paper/__init__.py": "",
+        "second_paper/used.py": "from . import deeper",
+        "second_paper/deeper.py": "",
+        "second_paper/alone.py": "",
+        "helper_of_all.py": "def later():\n    from second_paper import used\n",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    monkeypatch.syspath_prepend(tmp_path)
+    names = {name.removesuffix(".py").removesuffix("/__init__").replace("/", ".") for name in files}
+    try:
+        for name in names:
+            importlib.import_module(name)
+        found = modules_of("first_paper", ["first_paper", "second_paper"]) & names
+    finally:
+        for name in names:
+            sys.modules.pop(name, None)
+    assert found == names - {"second_paper.alone"}
+
+
 def test_inner_parts_of_installed_packages_count_with_their_package() -> None:
     """Which of several modules called _cyutility a process has depends on what it loaded first."""
     import pandas as pd

@@ -32,8 +32,7 @@ def _modules_of(package: str, others: frozenset[str], names: Sequence[str]) -> f
     foreign = {name for name in loaded if any(_is_in(name, other) for other in others if other != package)}
     if not foreign:
         return loaded
-    start = {name for name in loaded - foreign if not is_standard(name) and not distributions_of(name)}
-    return loaded - foreign | _reached(start)
+    return loaded - foreign | _reached(filter(_may_import_papers, loaded - foreign))
 
 
 def _is_inner(name: str) -> bool:
@@ -56,7 +55,7 @@ def _is_in(module: str, package: str) -> bool:
 
 
 def _reached(start: Iterable[str]) -> set[str]:
-    """Return what modules import, directly or not, of what is loaded; installed distributions are not looked into."""
+    """Return what modules import, directly or not, of what is loaded; what imports no paper is not looked into."""
     found: set[str] = set()
     waiting = list(start)
     while waiting:
@@ -64,9 +63,14 @@ def _reached(start: Iterable[str]) -> set[str]:
         if name in found or name not in sys.modules:
             continue
         found.add(name)
-        if not is_standard(name) and not distributions_of(name):
+        if _may_import_papers(name):
             waiting += imports_of(name)
     return found
+
+
+def _may_import_papers(name: str) -> bool:
+    """Say whether a module is neither the framework's nor the standard library's nor an installed distribution's."""
+    return not is_framework(name) and not is_standard(name) and not distributions_of(name)
 
 
 @cache
@@ -74,6 +78,12 @@ def imports_of(name: str) -> tuple[str, ...]:
     """Return every name that may be a module in the import statements of a loaded module, wherever they stand."""
     path = file_of(name)
     return module_text(path, name).imports if path is not None and path.suffix == ".py" else ()
+
+
+def read_imports(package: str) -> None:
+    """Read the loaded modules of a package, so that nobody need do so later."""
+    for name in [name for name in sys.modules if _is_in(name, package)]:
+        imports_of(name)
 
 
 def numerical_imports() -> dict[str, tuple[str, ...]]:

@@ -11,7 +11,8 @@ from replicate.exhibits import Paper
 from replicate.exhibits.results import ClaimsResult, Result
 from replicate.run.ambience import Ambience
 from replicate.run.dependencies import Dependencies, Looked
-from replicate.run.modules import modules_of
+from replicate.run.garbage import staying
+from replicate.run.modules import modules_of, read_imports
 from replicate.run.storage import from_text, to_text
 from replicate.run.units import Unit, compute, failed, loaded, reason
 
@@ -84,7 +85,9 @@ class Performer:
         changed = []
         if unit.package not in self._loaded:
             # Before anything is set: what a module changes when it is imported must not depend on which unit is first.
-            self._loaded[unit.package] = loaded(unit.package)
+            with staying():
+                self._loaded[unit.package] = loaded(unit.package)
+                read_imports(unit.package)
             changed += [f"{name} (when {unit.paper} is imported)" for name in self.ambience.set()]
         paper = self._loaded[unit.package]
         self.ambience.set()

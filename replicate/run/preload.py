@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import gc
 
+gc.disable()  # all that is imported stays; workers look for garbage again
+
 from replicate.run.isolation import isolate_matplotlib
 
 isolate_matplotlib()
@@ -14,6 +16,3 @@ from replicate.run.modules import installed
 __all__ = ["performance"]
 
 installed()
-
-gc.collect()
-gc.freeze()  # what is here stays: no worker need look through it for garbage, again and again

@@ -55,6 +55,7 @@ _PLAIN = (
     *(ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp, ast.expr_context),
     *(ast.operator, ast.unaryop, ast.boolop, ast.cmpop),
 )
+_BINDING = (ast.For, ast.comprehension, ast.ClassDef)
 _MISSING = object()
 
 
@@ -222,7 +223,7 @@ class QuietImport:
 def _passing_names(body: Iterable[ast.stmt]) -> Iterator[str]:
     """Yield the names that have other values than the module has for them: in loops, comprehensions and classes."""
     for node in (inner for statement in body for inner in ast.walk(statement)):
-        if isinstance(node, ast.For | ast.comprehension | ast.ClassDef):
+        if isinstance(node, _BINDING):
             places = node.body if isinstance(node, ast.ClassDef) else [node.target]
             names = (one for place in places for one in ast.walk(place) if isinstance(one, ast.Name))
             yield from (one.id for one in names if isinstance(one.ctx, ast.Store))

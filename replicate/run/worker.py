@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import faulthandler
+import gc
 import multiprocessing
 import os
 import signal
@@ -90,6 +91,8 @@ def settled(surroundings: Surroundings) -> Output:
     from replicate.run.isolation import isolate_matplotlib
 
     isolate_matplotlib()
+    gc.freeze()  # what comes from the process that workers are forked from stays
+    gc.enable()
     return output
 
 
