@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
@@ -13,10 +13,12 @@ from hypothesis import strategies as st
 from replicate.display.tables import table_view
 from replicate.exhibits import Paper, Table
 from replicate.exhibits.exclusion import Box, Ends, excluded
+from replicate.exhibits.joint_point import Target
 from replicate.exhibits.many_inputs import ManyInputs
 from replicate.exhibits.printed import Key, PrintedValue
 from replicate.exhibits.results import TableResult
 from replicate.exhibits.rounded_inputs import compute_reading
+from replicate.exhibits.rounds import Asking, in_rounds
 from replicate.run.stored_ranges import ranges_from_data, ranges_to_data
 from replicate.run.units import Unit, compute
 from replicate.verdicts.ledger import Ledger
@@ -24,11 +26,25 @@ from replicate.verdicts.rows import VerdictRow
 from replicate.verdicts.tables import TableJudge
 
 
+def explored(
+    function: Callable[[np.ndarray], np.ndarray], many: ManyInputs, target: Target | None = None
+) -> np.ndarray:
+    """Explore a box and return the joint point, answering point by point; without a target the centre."""
+
+    def search() -> Asking[np.ndarray]:
+        yield from many.explore()
+        return (yield from many.joint_point(target)) if target else many.centre
+
+    [point] = in_rounds([search()], lambda asked: [function(point) for _, point in asked])
+    return point
+
+
 @given(weights=st.lists(st.floats(-3.0, 3.0), min_size=7, max_size=20))
 def test_the_range_of_a_sum_is_the_sum_of_the_ranges(weights: list[float]) -> None:
     a = np.array(weights)
-    found = ManyInputs(lambda x: np.array([a @ x, -2.0 * a @ x]), np.ones(a.size), np.full(a.size, 0.1))
-    low, high = found.range()
+    found = ManyInputs(np.ones(a.size), np.full(a.size, 0.1))
+    explored(lambda x: np.array([a @ x, -2.0 * a @ x]), found)
+    low, high = found.ends()
     reach = 0.1 * np.abs(a).sum()
     assert (low[0], high[0]) == pytest.approx((a.sum() - reach, a.sum() + reach))
     assert (low[1], high[1]) == pytest.approx((-2 * (a.sum() + reach), -2 * (a.sum() - reach)))
@@ -38,16 +54,17 @@ def test_the_range_of_a_sum_is_the_sum_of_the_ranges(weights: list[float]) -> No
 def test_monotonic_functions_have_their_extremes_at_two_corners(seed: int) -> None:
     rng = np.random.default_rng(seed)
     signs = rng.choice([-1.0, 1.0], 9)
-    found = ManyInputs(lambda x: np.array([np.exp(signs @ x / 3.0)]), np.zeros(9), np.full(9, 0.2))
-    assert [float(end[0]) for end in found.range()] == pytest.approx([math.exp(-0.6), math.exp(0.6)])
+    found = ManyInputs(np.zeros(9), np.full(9, 0.2))
+    explored(lambda x: np.array([np.exp(signs @ x / 3.0)]), found)
+    assert [float(end[0]) for end in found.ends()] == pytest.approx([math.exp(-0.6), math.exp(0.6)])
 
 
 def test_the_joint_point_of_many_inputs_serves_all_that_can_hold_together() -> None:
     # three sums of ten inputs; the third contradicts the first
     rows = np.zeros((3, 10))
     rows[0, :5], rows[1, 5:], rows[2, :5] = 1.0, 1.0, -1.0
-    found = ManyInputs(lambda x: rows @ x, np.zeros(10), np.full(10, 0.1))
-    point = found.joint_point(np.array([0.4, 0.3, 0.4]), np.array([0.45, 0.35, 0.45]), np.array([True, False, False]))
+    target = Target(np.array([0.4, 0.3, 0.4]), np.array([0.45, 0.35, 0.45]), np.array([True, False, False]))
+    point = explored(lambda x: rows @ x, ManyInputs(np.zeros(10), np.full(10, 0.1)), target)
     first, second, third = rows @ point
     assert 0.4 <= first <= 0.45
     assert 0.3 <= second <= 0.35

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from typing import TypeVar
 
 import numpy as np
 import pytest
@@ -11,28 +12,52 @@ from hypothesis import strategies as st
 
 from replicate.exhibits import Table
 from replicate.exhibits.conventions import Tally, settle, tallies
-from replicate.exhibits.joint_point import joint_point
+from replicate.exhibits.joint_point import Target, candidates
 from replicate.exhibits.matching import Match, match
 from replicate.exhibits.printed import Key, PrintedValue
-from replicate.exhibits.quadratic_model import Function, Search
+from replicate.exhibits.quadratic_model import Search
 from replicate.exhibits.results import TableResult
 from replicate.exhibits.rounded_inputs import compute_reading
+from replicate.exhibits.rounds import Asking, in_rounds
 from replicate.verdicts.inventory import inventory_row
 from replicate.verdicts.ledger import Ledger
 from replicate.verdicts.tables import TableJudge
 
+Function = Callable[[np.ndarray], np.ndarray]
+Ends = tuple[np.ndarray, np.ndarray]
+T = TypeVar("T")
+
+
+def answered(asking: Asking[T], function: Function) -> T:
+    """Return the result of a search that is answered point by point."""
+    [found] = in_rounds([asking], lambda asked: [np.atleast_1d(function(point)) for _, point in asked])
+    return found
+
 
 def searched(function: Function, middle: list[float], widths: list[float], tolerance: float = 1e-4) -> Search:
     centre, half = np.array(middle), np.array(widths)
-    size = len(np.atleast_1d(function(centre)))
-    return Search(lambda x: np.atleast_1d(function(x)), centre, half, np.full(size, tolerance))
+    search = Search(centre, half, np.full(len(np.atleast_1d(function(centre))), tolerance))
+    answered(search.divide(), function)
+    return search
+
+
+def joint_point(search: Search, target: Target, function: Function) -> np.ndarray:
+    points = candidates(search, target)
+    answered(search.ask(points), function)
+    return target.best(search, points)
+
+
+def range_of(function: Function, middle: list[float], widths: list[float], tolerance: float = 1e-4) -> Ends:
+    search = searched(function, middle, widths, tolerance)
+    answered(search.ask(search.extremes()), function)
+    return search.ends()
 
 
 @given(a=st.floats(0.5, 5.0), b=st.floats(0.5, 5.0), places=st.tuples(st.integers(1, 3), st.integers(1, 3)))
 @settings(max_examples=40)
 def test_monotonic_functions_have_their_extrema_at_corners(a: float, b: float, places: tuple[int, int]) -> None:
     half = [0.5 * 10.0**-place for place in places]
-    low, high = searched(lambda x: np.array([x[0] / x[1], np.sqrt(x[0] * x[1])]), [a, b], half).range()
+    low, high = range_of(lambda x: np.array([x[0] / x[1], np.sqrt(x[0] * x[1])]), [a, b], half)
     assert low[0] == pytest.approx((a - half[0]) / (b + half[1]), rel=1e-12)
     assert high[0] == pytest.approx((a + half[0]) / (b - half[1]), rel=1e-12)
     assert high[1] == pytest.approx(np.sqrt((a + half[0]) * (b + half[1])), rel=1e-12)
@@ -42,7 +67,7 @@ def test_monotonic_functions_have_their_extrema_at_corners(a: float, b: float, p
 @settings(max_examples=40)
 def test_an_extremum_inside_is_found(place: float, size: float) -> None:
     # cos has its maximum 1 at 0, which is inside the box
-    low, high = searched(lambda x: np.array([np.cos(x[0]) + x[1]]), [-place * size, 0.0], [size, 0.1], 1e-6).range()
+    low, high = range_of(lambda x: np.array([np.cos(x[0]) + x[1]]), [-place * size, 0.0], [size, 0.1], 1e-6)
     assert high[0] == pytest.approx(1.1, abs=2e-5)
     assert low[0] == pytest.approx(np.cos(size * (1 + abs(place))) - 0.1, abs=1e-12)
 
@@ -55,14 +80,15 @@ def test_a_model_without_vanishing_derivative_is_settled_by_its_corners() -> Non
     (part,) = search.parts
     # of the first two functions the derivatives 0.1 x and 2 x vanish inside
     assert part.monotonic.tolist() == [False, False, True]
-    low, high = search.range()
+    answered(search.ask(search.extremes()), function)
+    low, high = search.ends()
     assert (low[2], high[2]) == pytest.approx((-2.4, 1.6))
     assert (low[1], high[1]) == pytest.approx((-1.0, 2.0))  # the smallest at x = 0, between the corners
 
 
 def test_a_jump_is_inside_the_range() -> None:
     # the location of the larger of two peaks jumps where they are equal
-    low, high = searched(lambda x: np.array([1.0 if x[0] > 0.3 else 5.0]), [0.0], [1.0]).range()
+    low, high = range_of(lambda x: np.array([1.0 if x[0] > 0.3 else 5.0]), [0.0], [1.0])
     assert (low[0], high[0]) == (1.0, 5.0)
 
 
@@ -74,7 +100,8 @@ def test_random_inputs_are_never_outside() -> None:
         return np.array([np.max(np.abs(value / (1 + value))), ti / k])
 
     search = searched(function, [0.982, 3.14, 1.73], [0.0005, 0.005, 0.005])
-    low, high = search.range()
+    answered(search.ask(search.extremes()), function)
+    low, high = search.ends()
     assert len(search.points) < 80
     rng = np.random.default_rng(7)
     for point in rng.uniform([0.9815, 3.135, 1.725], [0.9825, 3.145, 1.735], (200, 3)):
@@ -84,24 +111,32 @@ def test_random_inputs_are_never_outside() -> None:
 
 
 def test_a_quantity_that_does_not_exist_everywhere_has_no_range() -> None:
-    low, high = searched(lambda x: np.array([np.sqrt(x[0]) if x[0] >= 0 else np.nan, x[0]]), [0.1], [0.2]).range()
+    low, high = range_of(lambda x: np.array([np.sqrt(x[0]) if x[0] >= 0 else np.nan, x[0]]), [0.1], [0.2])
     assert np.isnan(low[0])
     assert (low[1], high[1]) == pytest.approx((-0.1, 0.3))
 
 
 def test_the_joint_point_is_one_for_all() -> None:
-    search = searched(lambda x: np.array([x[0] + x[1], x[0] - x[1]]), [0.0, 0.0], [1.0, 1.0])
+    def function(x: np.ndarray) -> np.ndarray:
+        return np.array([x[0] + x[1], x[0] - x[1]])
+
+    search = searched(function, [0.0, 0.0], [1.0, 1.0])
     # x + y = 1.5 +- 0.1 and x - y = 0.2 +- 0.1 meet at (0.85, 0.65)
-    point = joint_point(search, np.array([1.4, 0.1]), np.array([1.6, 0.3]), np.array([False, False]))
+    target = Target(np.array([1.4, 0.1]), np.array([1.6, 0.3]), np.array([False, False]))
+    point = joint_point(search, target, function)
     assert point[0] + point[1] == pytest.approx(1.5, abs=0.1)
     assert point[0] - point[1] == pytest.approx(0.2, abs=0.1)
 
 
 @pytest.mark.parametrize("needed", [0, 1])
 def test_what_holds_for_the_printed_inputs_is_not_given_up(needed: int) -> None:
-    search = searched(lambda x: np.array([x[0], -x[0]]), [0.0], [1.0])
+    def function(x: np.ndarray) -> np.ndarray:
+        return np.array([x[0], -x[0]])
+
+    search = searched(function, [0.0], [1.0])
     # x in [0.4, 0.6] and -x in [0.4, 0.6] exclude each other
-    point = joint_point(search, np.array([0.4, 0.4]), np.array([0.6, 0.6]), np.arange(2) == needed)
+    target = Target(np.array([0.4, 0.4]), np.array([0.6, 0.6]), np.arange(2) == needed)
+    point = joint_point(search, target, function)
     assert abs(point[0] - (0.5 if needed == 0 else -0.5)) <= 0.1
 
 

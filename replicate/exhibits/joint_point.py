@@ -9,32 +9,24 @@ from __future__ import annotations
 import numpy as np
 
 from replicate.exhibits.quadratic_model import Part, Search
+from replicate.exhibits.rounds import Points, Sampled
 
 _ZOOMS = 3
 _SHRINK = 0.15
 _TRIED = 3  # of the points evaluated so far, the best are tried as well
 
 
-def joint_point(search: Search, lower: np.ndarray, upper: np.ndarray, needed: np.ndarray) -> np.ndarray:
-    """Return the best point of the box.
+def candidates(search: Search, target: Target) -> Points:
+    """Return points of which one is the best: the centre first, what the models say, the best that are known.
 
     Parameters
     ----------
     search
-        The quantities over the box.
-    lower, upper
-        The interval that each quantity should lie in, shape (m,); NaN where nothing is printed.
-    needed
-        Those that hold for the printed inputs themselves and should not be given up for others, shape (m,).
-
-    Returns
-    -------
-    ndarray
-        Shape (d,): where first the most needed quantities hold, then the most others, then all of them most clearly.
-        The centre wins a tie.
+        The quantities over the box, which it has divided.
+    target
+        What they should be.
     """
-    target = Target((lower + upper) / 2, (upper - lower) / 2, needed)
-    candidates = [search.centre]
+    found = [search.centre]
     for part, scaled in search.searched():
         where = scaled
         centre, size = np.zeros(len(search.centre)), 1.0
@@ -42,18 +34,24 @@ def joint_point(search: Search, lower: np.ndarray, upper: np.ndarray, needed: np
             centre = where[_best(target, part, where)]
             size *= _SHRINK
             where = np.clip(centre + size * scaled, -1.0, 1.0)
-        candidates.append(part.point(centre))
-    candidates += [search.points[i] for i in _best_known(target, search)]
-    ranks = [(*target.rank(search.at(point)), -i) for i, point in enumerate(candidates)]
-    return candidates[max(range(len(candidates)), key=lambda i: ranks[i])]
+        found.append(part.point(centre))
+    return found + [search.points[i] for i in _best_known(target, search)]
 
 
 class Target:
-    """What the quantities should be."""
+    """What the quantities should be.
 
-    def __init__(self, middle: np.ndarray, half: np.ndarray, needed: np.ndarray) -> None:
-        self.middle, self.half, self.needed = middle, half, needed
-        self.asked = np.isfinite(middle)
+    Parameters
+    ----------
+    lower, upper
+        The interval that each quantity should lie in, shape (m,); NaN where nothing is printed.
+    needed
+        Those that hold for the printed inputs themselves and should not be given up for others, shape (m,).
+    """
+
+    def __init__(self, lower: np.ndarray, upper: np.ndarray, needed: np.ndarray) -> None:
+        self.middle, self.half, self.needed = (lower + upper) / 2, (upper - lower) / 2, needed
+        self.asked = np.isfinite(self.middle)
 
     def slack(self, values: np.ndarray) -> np.ndarray:
         """Return, by quantity, how far inside its interval it is: 1 in the middle, 0 at the ends."""
@@ -72,6 +70,14 @@ class Target:
     def rank(self, values: np.ndarray) -> tuple[float]:
         """Return the rank of one point, without regard to how clearly."""
         return (float(np.floor(self.ranks(values[None])[0])),)
+
+    def best(self, known: Sampled, points: Points) -> np.ndarray:
+        """Return the best of some points at which the quantities are known.
+
+        Best is where first the most needed quantities hold, then the most others; of equal points the first.
+        """
+        ranks = [self.rank(known.at(point)) for point in points]
+        return points[max(range(len(points)), key=lambda i: (*ranks[i], -i))]
 
 
 def _best(target: Target, part: Part, scaled: np.ndarray) -> int:

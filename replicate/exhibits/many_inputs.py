@@ -9,68 +9,49 @@ proven. The point at which most quantities hold is found by linear programming o
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
 from replicate.exhibits.joint_point import Target
-from replicate.exhibits.quadratic_model import Function
+from replicate.exhibits.rounds import Asking, Sampled
 
 _MARGIN = 0.05  # of the half-width of a printed interval, left to what is not linear
 
 
-@dataclass
-class ManyInputs:
+class ManyInputs(Sampled):
     """Functions over a box of many inputs.
 
-    Attributes
+    Parameters
     ----------
-    function
-        Called once for each point.
     centre, half
-        Shape (d,).
+        Of the box, shape (d,).
     """
 
-    function: Function
-    centre: np.ndarray
-    half: np.ndarray
-    points: list[np.ndarray] = field(default_factory=list)
-    values: list[np.ndarray] = field(default_factory=list)
-    slopes: np.ndarray = field(default_factory=lambda: np.empty((0, 0)))
+    def __init__(self, centre: np.ndarray, half: np.ndarray) -> None:
+        super().__init__(centre, half)
+        self.slopes = np.empty((0, 0))
 
-    def __post_init__(self) -> None:
-        """Evaluate the middle, the middle of the sides, and the corners to which the derivatives point."""
-        self.at(self.centre)
+    def explore(self) -> Asking[None]:
+        """Ask for the middle, the middle of the sides, and the corners to which the derivatives point."""
         sides = self.half * np.eye(len(self.half))
-        self.slopes = np.array([(self.at(self.centre + side) - self.at(self.centre - side)) / 2 for side in sides])
-        for corner in dict.fromkeys(tuple(column) for column in np.sign(np.nan_to_num(self.slopes)).T):
-            for side in (-1.0, 1.0):
-                self.at(self.centre + side * np.array(corner) * self.half)
+        found = yield from self.ask([self.centre, *(self.centre + sides), *(self.centre - sides)])
+        above, below = np.split(found[1:], 2)
+        self.slopes = (above - below) / 2
+        corners = dict.fromkeys(tuple(column) for column in np.sign(np.nan_to_num(self.slopes)).T)
+        yield from self.ask([self.centre + s * np.array(corner) * self.half for corner in corners for s in (-1.0, 1.0)])
 
-    def at(self, point: np.ndarray) -> np.ndarray:
-        """Return the values of all functions at a point of the box."""
-        self.points.append(point)
-        self.values.append(np.asarray(self.function(point), dtype=float))
-        return self.values[-1]
-
-    def range(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the smallest and largest value of each function; NaN where it has none somewhere."""
-        found = np.array(self.values)
-        return found.min(axis=0), found.max(axis=0)
-
-    def joint_point(self, lower: np.ndarray, upper: np.ndarray, needed: np.ndarray) -> np.ndarray:
-        """Return the point at which most functions lie in their intervals; as `joint_point.joint_point`."""
-        target = Target((lower + upper) / 2, (upper - lower) / 2, needed)
+    def joint_point(self, target: Target) -> Asking[np.ndarray]:
+        """Return the point at which most functions lie in their intervals, after `explore`; as `joint_point`."""
         asked = [int(i) for i in np.nonzero(target.asked)[0]]
-        order = sorted(asked, key=lambda i: (not needed[i], self._distance(i, target)))
+        order = sorted(asked, key=lambda i: (not target.needed[i], self._distance(i, target)))
         held, scaled = list[int](), np.zeros(len(self.centre))
         for place in order:
             found = self._within([*held, place], target)
             if found is not None:
                 held, scaled = [*held, place], found
         candidates = [self.centre, self.centre + scaled * self.half, *self.points]
-        ranks = [(*target.rank(self.at(point)), -i) for i, point in enumerate(candidates)]
-        return np.asarray(candidates[max(range(len(candidates)), key=lambda i: ranks[i])])
+        yield from self.ask(candidates)
+        return target.best(self, candidates)
 
     def _distance(self, place: int, target: Target) -> float:
         """Return how far from its interval a function is at the centre, as a part of what its inputs leave open."""

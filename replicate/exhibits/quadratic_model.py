@@ -15,15 +15,17 @@ whole loop response would prove it, at a thousand times the cost.)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
 from itertools import combinations_with_replacement, product
 
 import numpy as np
 
-Function = Callable[[np.ndarray], np.ndarray]
-"""From a point, shape (d,), to the values of all quantities there, shape (m,); NaN where there is none."""
+from replicate.exhibits.rounds import Asking, Points, Sampled
+
+Box = tuple[np.ndarray, np.ndarray]
+"""Centre and half of the sides, shape (d,) each."""
 
 _MOST_PARTS = 8
 _CHECKED_AT = 0.5  # of the way to the corners
@@ -88,68 +90,61 @@ def _grid(d: int) -> np.ndarray:
     return grid
 
 
-@dataclass
-class Search:
+class Search(Sampled):
     """Functions over a box, found out as well as the tolerances ask for.
+
+    Parameters
+    ----------
+    centre, half
+        Of the box, shape (d,).
+    tolerance
+        By function: how far a model may be off; shape (m,).
 
     Attributes
     ----------
-    function
-        Called once for each point.
-    tolerance
-        By function: how far a model may be off; shape (m,).
+    parts
+        Of the box, with their models; none before `divide`.
+
+    Raises
+    ------
+    ValueError
+        If there are more inputs than can be searched.
     """
 
-    function: Function
-    centre: np.ndarray
-    half: np.ndarray
-    tolerance: np.ndarray
-    parts: list[Part] = field(default_factory=list)
-    points: list[np.ndarray] = field(default_factory=list)
-    values: list[np.ndarray] = field(default_factory=list)
-    _known: dict[bytes, np.ndarray] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        """Divide the box until the models are good enough, or the parts too many.
-
-        Raises
-        ------
-        ValueError
-            If there are more inputs than can be searched.
-        """
-        if len(self.centre) > MOST_INPUTS:
-            msg = f"{len(self.centre)} printed inputs, allowed: at most {MOST_INPUTS}"
+    def __init__(self, centre: np.ndarray, half: np.ndarray, tolerance: np.ndarray) -> None:
+        super().__init__(centre, half)
+        if len(centre) > MOST_INPUTS:
+            msg = f"{len(centre)} printed inputs, allowed: at most {MOST_INPUTS}"
             raise ValueError(msg)
-        waiting = [self._part(self.centre, self.half)]
+        self.tolerance = tolerance
+        self.parts: list[Part] = []
+
+    def divide(self) -> Asking[None]:
+        """Divide the box until the models are good enough, or the parts too many."""
+        waiting = yield from self._modelled([(self.centre, self.half)])
         while waiting:
-            part, worst = waiting.pop(0)
-            if part.good.all() or len(self.parts) + len(waiting) + 2 > _MOST_PARTS:
-                self.parts.append(part)
-                continue
-            step = np.zeros_like(part.half)
-            step[worst] = part.half[worst] / 2
-            waiting += [self._part(part.centre + side * step, part.half - step) for side in (-1.0, 1.0)]
+            halves: list[Box] = []
+            for place, (part, worst) in enumerate(waiting, 1):
+                others = len(self.parts) + len(waiting) - place + len(halves)
+                if part.good.all() or others + 2 > _MOST_PARTS:
+                    self.parts.append(part)
+                    continue
+                step = np.zeros_like(part.half)
+                step[worst] = part.half[worst] / 2
+                halves += [(part.centre + side * step, part.half - step) for side in (-1.0, 1.0)]
+            waiting = (yield from self._modelled(halves)) if halves else []
 
-    def at(self, point: np.ndarray) -> np.ndarray:
-        """Return the values of all functions at a point of the box."""
-        key = np.round((point - self.centre) / np.where(self.half > 0.0, self.half, 1.0), 12).tobytes()
-        if key not in self._known:
-            self._known[key] = np.asarray(self.function(point), dtype=float)
-            self.points.append(point)
-            self.values.append(self._known[key])
-        return self._known[key]
-
-    def range(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the smallest and largest value of each function; NaN where it has none somewhere."""
+    def extremes(self) -> Points:
+        """Return where a model has its smallest or largest value, if that is not at a corner, which is known."""
+        found = []
         for part, scaled in self.searched():
             curved = np.nonzero(part.good & ~part.monotonic)[0]
             guesses = part(scaled) if curved.size else np.empty((0, 0))
             for place in curved:
-                for extreme in {int(np.argmin(guesses[:, place])), int(np.argmax(guesses[:, place]))}:
-                    if np.abs(scaled[extreme]).min(initial=1.0) < 1.0:  # the corners are known
-                        self.at(part.point(scaled[extreme]))
-        found = np.array(self.values)
-        return found.min(axis=0), found.max(axis=0)
+                guess = guesses[:, place]
+                places = {int(np.argmin(guess)), int(np.argmax(guess))}
+                found += [part.point(scaled[i]) for i in places if np.abs(scaled[i]).min(initial=1.0) < 1.0]
+        return found
 
     def searched(self) -> Iterator[tuple[Part, np.ndarray]]:
         """Yield every part with a fine grid of scaled points."""
@@ -157,18 +152,20 @@ class Search:
         for part in self.parts:
             yield part, grid
 
-    def _part(self, centre: np.ndarray, half: np.ndarray) -> tuple[Part, int]:
-        """Return a part of the box, and the variable in which it is most curved."""
-        d = len(centre)
-        corners = np.array(list(product((-1.0, 1.0), repeat=d)))
-        sides = np.concatenate([np.eye(d), -np.eye(d)]) if d > 1 else np.empty((0, d))
-        nodes = np.concatenate([np.zeros((1, d)), sides, corners])
-        checks = _CHECKED_AT * corners[corners.prod(axis=1) > 0.0] if d > 2 else _CHECKED_AT * corners
-        values = np.array([self.at(centre + node * half) for node in nodes])
+    def _modelled(self, boxes: Sequence[Box]) -> Asking[list[tuple[Part, int]]]:
+        """Return parts of the box, and the variable in which each is most curved."""
+        nodes, checks = _nodes(len(self.centre))
+        where = np.concatenate([nodes, checks])
+        values = yield from self.ask([centre + node * half for centre, half in boxes for node in where])
+        per_box = np.split(values, len(boxes))
+        return [self._part(*box, nodes, where, found) for box, found in zip(boxes, per_box, strict=True)]
+
+    def _part(
+        self, centre: np.ndarray, half: np.ndarray, nodes: np.ndarray, where: np.ndarray, truth: np.ndarray
+    ) -> tuple[Part, int]:
+        d, values = len(centre), truth[: len(nodes)]
         exists = np.isfinite(values).all(axis=0)
         coefficients = np.linalg.lstsq(terms(nodes), np.where(exists, values, 0.0), rcond=None)[0]
-        where = np.concatenate([nodes, checks])
-        truth = np.concatenate([values, [self.at(centre + check * half) for check in checks]])
         errors = np.abs(terms(where) @ coefficients - truth).max(axis=0)
         good = exists & (errors <= self.tolerance)  # NaN is not
         bad = exists & ~good
@@ -179,3 +176,11 @@ class Search:
         pairs = list(combinations_with_replacement(range(d), 2))
         rows = [1 + d + place for place, pair in enumerate(pairs) if axis in pair]
         return float((np.abs(coefficients[rows]).sum(axis=0) / self.tolerance[bad]).max(initial=0.0))
+
+
+def _nodes(d: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the scaled points to which a model of d inputs is fitted, and others at which it is only checked."""
+    corners = np.array(list(product((-1.0, 1.0), repeat=d)))
+    sides = np.concatenate([np.eye(d), -np.eye(d)]) if d > 1 else np.empty((0, d))
+    checks = _CHECKED_AT * corners[corners.prod(axis=1) > 0.0] if d > 2 else _CHECKED_AT * corners
+    return np.concatenate([np.zeros((1, d)), sides, corners]), checks

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from replicate.exhibits.definitions import check_count, check_function, check_id, check_lists, check_texts
 from replicate.exhibits.exclusion import Rule
@@ -13,6 +13,9 @@ from replicate.exhibits.order import module_being_imported
 AS_WRITTEN = "as-written"
 
 Compute = TypeVar("Compute", bound=Callable[..., Any])
+Numbers = Mapping[str, float]
+Many = Callable[[Sequence[tuple[str, Numbers]]], Sequence[Numbers | None]]
+"""From pairs of a case and its inputs to the quantities of each; ``None`` where it has none."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,8 @@ class Reading:
     rules_out
         For a reading with printed inputs, by quantity: says where it certainly is not while the inputs run through a
         box (`replicate.exhibits.exclusion`).
+    many
+        For a reading with printed inputs: what `compute` returns, for many pairs of a case and its inputs at once.
     module
         The module in which it is defined; set by itself.
     """
@@ -52,6 +57,7 @@ class Reading:
     inputs_of: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     tried: Mapping[str, int] = field(default_factory=dict)
     rules_out: Mapping[str, Rule] = field(default_factory=dict)
+    many: Many | None = None
     module: str = field(default_factory=module_being_imported, compare=False, repr=False)
 
     @property
@@ -72,6 +78,43 @@ class Reading:
             check_count(what, f"tried of '{choice}'", count)
         for quantity, rule in self.rules_out.items():
             check_function(what, f"rules_out of '{quantity}'", rule)
+        if self.many is not None:
+            check_function(what, "what computes many cases at once", self.many)
+
+
+def answers(reading: Reading, points: Sequence[tuple[str, Numbers]]) -> list[Numbers]:
+    """Return the quantities of a reading with printed inputs, at pairs of a case and its inputs.
+
+    Returns
+    -------
+    list
+        Quantities by name for each pair, in the same order; empty where there are none, as where a loop is unstable.
+
+    Raises
+    ------
+    ValueError
+        If the reading computes many cases at once, and returns more or fewer than it was asked for.
+
+    Examples
+    --------
+    >>> inverse = Reading("as-written", "Inverse", lambda case, given: {"y": 1.0 / given["x"]}, inputs=("x",))
+    >>> answers(inverse, [("A", {"x": 4.0}), ("B", {"x": 0.0})])
+    [{'y': 0.25}, {}]
+    """
+    if reading.many is None:
+        return [_answer(reading, *point) for point in points]
+    found = list(reading.many(points))
+    if len(found) != len(points):
+        msg = f"reading '{reading.id}' returns {len(found)} results for {len(points)} cases at once; expected: as many"
+        raise ValueError(msg)
+    return [{} if one is None else one for one in found]
+
+
+def _answer(reading: Reading, case: str, given: Numbers) -> Numbers:
+    try:
+        return cast("Numbers", reading.compute(case, given))
+    except Exception:  # noqa: BLE001  -- no such number there, as the overshoot of an unstable loop
+        return {}
 
 
 def is_elsewhere(place: str) -> bool:

@@ -37,7 +37,7 @@ from replicate.exhibits.notation import PLAIN, Notation
 from replicate.exhibits.order import module_being_imported
 from replicate.exhibits.printed import Key
 from replicate.exhibits.read_off import Point
-from replicate.exhibits.readings import AS_WRITTEN, Compute, Reading
+from replicate.exhibits.readings import AS_WRITTEN, Compute, Many, Reading
 from replicate.exhibits.rows import Row, frame_of_rows
 from replicate.exhibits.trials import ComputedTrial, Trials
 
@@ -235,6 +235,7 @@ class Table:
         inputs_of: Mapping[str, Sequence[str]] | None = None,
         tried: Mapping[str, int] | None = None,
         rules_out: Mapping[str, Rule] | None = None,
+        many: Many | None = None,
     ) -> Callable[[Compute], Compute]:
         """Register the decorated function as a reading; the first must be ``as-written``.
 
@@ -257,6 +258,9 @@ class Table:
             For a reading with printed inputs, by quantity: called as ``rule(case, box, ends)`` with an interval for
             each input, it returns whether the quantity certainly takes no value between the ends anywhere in the box.
             With it, that a value does not hold for any inputs that round to the print is proven, not only searched.
+        many
+            For a reading with printed inputs that computes many cases at once in less time than one by one: called
+            as ``many([(case, given), ...])``, it returns what the function returns for each, or ``None``.
 
         Raises
         ------
@@ -282,6 +286,7 @@ class Table:
                 },
                 as_mapping(what, "tried", tried),
                 as_mapping(what, "rules_out", rules_out),
+                many,
             )
             return compute
 

@@ -77,7 +77,8 @@ def _defining(exhibit: Exhibit) -> Iterator[str]:
     yield exhibit.module
     if isinstance(exhibit, Table):
         for reading in exhibit.readings.values():
-            yield from (reading.module, _module(reading.compute), *map(_module, reading.rules_out.values()))
+            functions = (reading.compute, reading.many, *reading.rules_out.values())
+            yield from (reading.module, *map(_module, functions))
         yield from (_module(exhibit.trials), _module(exhibit.computed_trial))
     elif isinstance(exhibit, Figure):
         yield _module(exhibit.draw)

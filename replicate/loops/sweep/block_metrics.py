@@ -27,11 +27,13 @@ Places = NDArray[np.intp]
 
 AT_A_TIME = 512
 SHORTER = (1, 2, 4)
-OF_THE_LOOP = ("ms", "mp", "gain_margin", "phase_margin", "delay_margin")
+OF_THE_LOOP = ("ms", "mp", "ms_frequency", "mp_frequency", "gain_margin", "phase_margin", "delay_margin")
+IN_TIME = {"delay_margin": 1, "ms_frequency": -1, "mp_frequency": -1}  # the power of the unit of time in them
 OF_A_STEP = ("overshoot", "rise_time", "delay_time")  # relative to the final value
 OF_THE_SIZE = ("overshoot", "peak")  # no unit of time in them
 OF_A_SQUARE = ("itae", "itse")  # squares of the unit of time
 VARIATION = "total_variation"  # in the unit of the control signal
+ABOVE = "last_above"  # the band: of a load response, which ends at zero
 OF_A_RESPONSE = (*OF_A_STEP, "peak", "peak_time", "settling_time", "iae", "ise", "ie", *OF_A_SQUARE, VARIATION)
 
 
@@ -70,7 +72,7 @@ def _of_the_loop(
         part = chosen[start : start + AT_A_TIME]
         found = FrequencyMetrics(loops.take(part), crossovers[:, part])
         for name in asked:
-            values[name][part] = getattr(found, name)() * (loops.time if name == "delay_margin" else 1.0)
+            values[name][part] = getattr(found, name)() * loops.time ** IN_TIME.get(name, 0)
         alone[part] |= found.doubtful
 
 
@@ -81,7 +83,7 @@ def answered(metrics: tuple[str, ...]) -> tuple[str, ...]:
         POLE,
         *OF_THE_LOOP,
         *OF_A_RESPONSE,
-        *(LOAD + name for name in OF_A_RESPONSE if name not in OF_A_STEP),
+        *(LOAD + name for name in (*OF_A_RESPONSE, ABOVE) if name not in OF_A_STEP),
     }
     return tuple(name for name in metrics if name in known)
 
@@ -154,8 +156,8 @@ def _answer(found: ResponseMetrics, name: str, band: float, loops: LoopColumns) 
     """Return the values of a metric in the user's units, where they are missing, and why."""
     missing, why = np.zeros(found.count, dtype=bool), ""
     by = f"by t = {found.end * loops.time:g}"
-    if name == "settling_time":
-        value, missing = found.settling_time(band)
+    if name in {"settling_time", ABOVE}:
+        value, missing = found.settling_time(band, one_sided=name == ABOVE)
         why = f"the response has not settled within {band:g} of its final value {by}"
     elif name == "delay_time":
         value, missing = found.first_reach(0.5)

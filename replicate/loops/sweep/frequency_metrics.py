@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.loops.frequency_domain.sensitivity import TIE
 from replicate.loops.sweep.frequency_scan import Scan, scan
 from replicate.loops.sweep.loop_columns import LoopColumns, column_products
 from replicate.loops.sweep.stability_counts import polynomial_roots, squared_magnitude
@@ -62,25 +63,47 @@ class FrequencyMetrics:
 
     def ms(self) -> Array:
         """Return max |1/(1 + L)|."""
+        return self._sensitivity[0]
+
+    def ms_frequency(self) -> Array:
+        """Return where |1/(1 + L)| is largest; of equal peaks the lowest frequency, ``inf`` in the limit."""
+        return self._polished(self._sensitivity[1], inverse=False)
+
+    def mp(self) -> Array:
+        """Return max |L/(1 + L)|."""
+        return self._complementary[0]
+
+    def mp_frequency(self) -> Array:
+        """Return where |L/(1 + L)| is largest; as `ms_frequency`."""
+        return self._polished(self._complementary[1], inverse=True)
+
+    @cached_property
+    def _sensitivity(self) -> tuple[Array, Array]:
         distance, _ = self._distances
         with np.errstate(all="ignore"):
             at_rest = np.where(np.isinf(self._at_rest), 0.0, np.abs(1.0 / (1.0 + self._at_rest)))
         limit = 1.0 / (1.0 - self.loops.feedthrough)
-        peak = np.maximum(self._peak(distance, inverse=False), np.maximum(at_rest, limit))
+        peak, frequency = self._with_ends(self._peak(distance, inverse=False), at_rest, limit)
         beyond = np.where(self._may_exceed_one_beyond, 1.0 / (1.0 - self._beyond), 1.0)
         self._require_bounded(peak, beyond, limit)
-        return peak
+        return peak, frequency
 
-    def mp(self) -> Array:
-        """Return max |L/(1 + L)|."""
+    @cached_property
+    def _complementary(self) -> tuple[Array, Array]:
         distance, size = self._distances
         with np.errstate(all="ignore"):
             at_rest = np.where(np.isinf(self._at_rest), 1.0, np.abs(self._at_rest / (1.0 + self._at_rest)))
             ratio = distance / size
         limit = self.loops.feedthrough / (1.0 - self.loops.feedthrough)
-        peak = np.maximum(self._peak(ratio, inverse=True), np.maximum(at_rest, limit))
+        peak, frequency = self._with_ends(self._peak(ratio, inverse=True), at_rest, limit)
         self._require_bounded(peak, self._beyond / (1.0 - self._beyond), limit)
-        return peak
+        return peak, frequency
+
+    @staticmethod
+    def _with_ends(peak: tuple[Array, Array], at_rest: Array, limit: Array) -> tuple[Array, Array]:
+        """Return the highest of peaks and the values at rest and in the limit of infinite frequency."""
+        value, frequency = np.maximum(peak[0], at_rest), np.where(at_rest >= peak[0], 0.0, peak[1])
+        return np.maximum(value, limit), np.where(limit > value, np.inf, frequency)
 
     @property
     def _beyond(self) -> Array:
@@ -91,8 +114,8 @@ class FrequencyMetrics:
         """Leave to the single loop what may be higher beyond the grid."""
         self.doubtful |= ~(beyond <= np.maximum(peak, limit))
 
-    def _peak(self, squares: Array, *, inverse: bool) -> Array:
-        """Return the inverse root of the minima of |1 + L|^2, or of |1 + 1/L|^2, from their values on the grid."""
+    def _peak(self, squares: Array, *, inverse: bool) -> tuple[Array, Array]:
+        """Return the inverse root of the minima of |1 + L|^2, or of |1 + 1/L|^2, and where they are, if inside."""
         lowest = squares.min(axis=0)
         valley = squares[1:-1] <= squares[:-2]
         valley &= squares[1:-1] <= squares[2:]
@@ -100,12 +123,23 @@ class FrequencyMetrics:
         at, column = np.nonzero(valley)
         at += 1
         w = self._scan.w
-        best = lowest.copy()
+        best, frequency = lowest.copy(), np.full(lowest.size, np.inf)
         if at.size:
             start = _vertex(w, squares, at, column)
-            found = _polished_minima(self.loops.take(column), w[at - 1], start, w[at + 1], inverse=inverse)
+            found, place = _polished_minima(self.loops.take(column), w[at - 1], start, w[at + 1], inverse=inverse)
             np.minimum.at(best, column, found)
-        return np.asarray(1.0 / np.sqrt(best))
+            equal = found <= best[column] * (1.0 + 2.0 * TIE)
+            np.minimum.at(frequency, column[equal], place[equal])
+        return np.asarray(1.0 / np.sqrt(best)), np.where(np.isinf(frequency), np.nan, frequency)
+
+    def _polished(self, frequency: Array, *, inverse: bool) -> Array:
+        """Return frequencies of peaks to rounding: their values are, before the frequencies."""
+        self.doubtful |= np.isnan(frequency)
+        inside = np.nonzero(np.isfinite(frequency) & (frequency > 0.0))[0]
+        gradient, curvature, _ = _slopes(self.loops.take(inside), frequency[inside], inverse=inverse)
+        polished = frequency.copy()
+        polished[inside] -= gradient / curvature
+        return polished
 
     # ---- margins ---------------------------------------------------------------------------------------------------
 
@@ -232,20 +266,20 @@ def _taylor(coefficients: Array, s: ComplexArray) -> tuple[ComplexArray, Complex
     return value, slope, np.asarray(2.0 * half_bend)
 
 
-def _polished_minima(loops: LoopColumns, left: Array, start: Array, right: Array, *, inverse: bool) -> Array:
-    """Return the minima of |1 + L|^2, or of |1 + 1/L|^2, each between two frequencies: Newton's method, bracketed."""
+def _polished_minima(
+    loops: LoopColumns, left: Array, start: Array, right: Array, *, inverse: bool
+) -> tuple[Array, Array]:
+    """Return the minima of |1 + L|^2, or of |1 + 1/L|^2, each between two frequencies, and where they are.
+
+    Newton's method, bracketed.
+    """
     low, high, w = left.copy(), right.copy(), start.copy()
     best = np.full(w.size, np.inf)
     moving = np.arange(w.size)
     for _ in range(STEPS):
         part = loops if moving.size == w.size else loops.take(moving)
         at = w[moving]
-        value, slope, bend = _jet(part, at)
-        if inverse:
-            value, slope, bend = 1.0 / value, -slope / value**2, 2.0 * slope**2 / value**3 - bend / value**2
-        offset = 1.0 + value
-        gradient = (np.conj(offset) * slope).real
-        curvature = np.abs(slope) ** 2 + (np.conj(offset) * bend).real
+        gradient, curvature, (offset, slope) = _slopes(part, at, inverse=inverse)
         falling = gradient < 0.0
         low[moving], high[moving] = np.where(falling, at, low[moving]), np.where(falling, high[moving], at)
         with np.errstate(all="ignore"):
@@ -261,7 +295,17 @@ def _polished_minima(loops: LoopColumns, left: Array, start: Array, right: Array
         moving = moving[np.abs(following - at) > SHORT * np.fmin(at, width)]
         if moving.size == 0:
             break
-    return best
+    return best, w
+
+
+def _slopes(loops: LoopColumns, w: Array, *, inverse: bool) -> tuple[Array, Array, tuple[ComplexArray, ComplexArray]]:
+    """Return half the first two derivatives of |1 + L|^2, or of |1 + 1/L|^2, and 1 + L (1 + 1/L) with its slope."""
+    value, slope, bend = _jet(loops, w)
+    if inverse:
+        value, slope, bend = 1.0 / value, -slope / value**2, 2.0 * slope**2 / value**3 - bend / value**2
+    offset = 1.0 + value
+    gradient = (np.conj(offset) * slope).real
+    return gradient, np.abs(slope) ** 2 + (np.conj(offset) * bend).real, (offset, slope)
 
 
 def _polished_crossovers(loops: LoopColumns, left: Array, right: Array, start: Array, sign: Array) -> ComplexArray:

@@ -117,9 +117,10 @@ class LastModes:
         """Return when those that approach zero steadily from below reach a negative level; ``nan`` for the others."""
         return self._steadily_at(level, (level < 0.0) & (self._now < level))
 
-    def last_outside(self, width: Array) -> Array:
-        """Return when those that approach zero steadily are no longer outside a band; ``nan`` where they are inside."""
-        return self._steadily_at(np.copysign(width, self._now), np.abs(self._now) > width)
+    def last_outside(self, width: Array, *, one_sided: bool = False) -> Array:
+        """Return when those that approach zero steadily are no longer outside (above) a band; ``nan`` if inside."""
+        outside = self._now > width if one_sided else np.abs(self._now) > width
+        return self._steadily_at(np.copysign(width, self._now), outside)
 
     @property
     def _now(self) -> Array:

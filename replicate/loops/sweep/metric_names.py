@@ -30,12 +30,15 @@ OF_A_RESPONSE: dict[str, Callable[[Response, float], float]] = {
     "itae": lambda response, _: response.output.itae(),
     "itse": lambda response, _: response.output.itse(),
     "total_variation": lambda response, _: total_variation(response.control),
+    "last_above": lambda response, band: response.output.last_crossing(band),
 }
 
 #: Metrics of the loop itself; an unstable loop has a rightmost pole, but none of the others.
 OF_THE_LOOP: dict[str, Callable[[Loop], float]] = {
     "ms": lambda loop: loop.sensitivity_peak().value,
     "mp": lambda loop: loop.complementary_peak().value,
+    "ms_frequency": lambda loop: loop.sensitivity_peak().frequency,
+    "mp_frequency": lambda loop: loop.complementary_peak().frequency,
 }
 
 #: Attributes of the margins.
@@ -43,9 +46,14 @@ MARGINS = {"gain_margin": "gain", "phase_margin": "phase", "delay_margin": "dela
 
 STABLE, POLE = "stable", "rightmost_pole"
 
-ALLOWED: tuple[str, ...] = (
-    *OF_A_RESPONSE, *(LOAD + name for name in OF_A_RESPONSE), *OF_THE_LOOP, *MARGINS, POLE, STABLE,
-)  # fmt: skip
+#: Asked for by the package alone: the last time at which a load response is above the band, and where peaks are.
+OWN = ("last_above", LOAD + "last_above", "ms_frequency", "mp_frequency")
+
+ALLOWED: tuple[str, ...] = tuple(
+    name
+    for name in (*OF_A_RESPONSE, *(LOAD + name for name in OF_A_RESPONSE), *OF_THE_LOOP, *MARGINS, POLE, STABLE)
+    if name not in OWN
+)
 
 
 def checked_metrics(names: str | Iterable[str]) -> tuple[str, ...]:

@@ -87,12 +87,12 @@ class ResponseMetrics(ResponseIntegrals):
 
     # ---- settling --------------------------------------------------------------------------------------------------
 
-    def settling_time(self, band: float) -> tuple[Array, Flags]:
-        """Return the last times outside the band, and which responses are outside at their end."""
+    def settling_time(self, band: float, *, one_sided: bool = False) -> tuple[Array, Flags]:
+        """Return the last times outside the band, or above it, and which responses are outside at their end."""
         width = band * np.where(self.final == 0.0, 1.0, np.abs(self.final))
         low, high = self._ranges
         margin = width - self._slack
-        outside = (high > margin) | (-low > margin)
+        outside = high > margin if one_sided else (high > margin) | (-low > margin)
         outside &= self._exists
         time = np.zeros(self.count)
         unsettled = np.zeros(self.count, dtype=bool)
@@ -102,10 +102,10 @@ class ResponseMetrics(ResponseIntegrals):
             piece = last - np.argmax(outside[::-1, column], axis=0)
             dense = self._gathered(piece, column)
             series, nodes = block_series.series(dense), np.broadcast_to(chebyshev.nodes(DEGREE)[:, None], dense.shape)
-            size, sign = np.abs(dense), np.sign(dense)
+            size, sign = (dense, np.ones(dense.shape)) if one_sided else (np.abs(dense), np.sign(dense))
             touching = summits(size, np.abs(size - width[column]) < MARGIN * np.ptp(dense, axis=0))
             nodes, dense = block_series.sharpened(series, nodes, dense, touching, sign)
-            beyond = np.abs(dense) > width[column]
+            beyond = (dense if one_sided else np.abs(dense)) > width[column]
             some = beyond.any(axis=0)
             at = DEGREE - np.argmax(beyond[::-1], axis=0)
             at_end = some & (at == DEGREE)
@@ -126,7 +126,7 @@ class ResponseMetrics(ResponseIntegrals):
             outside[piece[~some], column[~some]] = False
             column = column[~some & outside[:, column].any(axis=0)]
         modes = self.responses.modes
-        lasting = modes.last_outside(width)
+        lasting = modes.last_outside(width, one_sided=one_sided)
         return np.where(np.isnan(lasting), time, lasting), unsettled & ~modes.found
 
     # ---- reaching a level ------------------------------------------------------------------------------------------

@@ -87,7 +87,18 @@ def sweep(
     >>> result.reason[0, 2]
     'the loop is unstable'
     """
-    names = checked_metrics(metrics)
+    return swept(plants, controllers, checked_metrics(metrics), until, pairing, band)
+
+
+def swept(
+    plants: Any,
+    controllers: Any,
+    names: tuple[str, ...],
+    until: float | None = None,
+    pairing: str = GRID,
+    band: float = 0.02,
+) -> SweepResult:
+    """Return the result of a sweep that may ask for the package's own metrics, too; the rest as for `sweep`."""
     band = checks.settling_band(band)
     if until is not None:
         until = checks.positive("the horizon until", until, allowed="a finite time > 0")

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 
 from replicate.loops import PI, Loop, Plant
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.loops.tune import TuningRule, load_rules
 
 # When the load enters: 100 is named in the text for ph = 10; 25 and 5 are what the printed digits need.
@@ -84,3 +86,14 @@ def specifications(closed: Loop, load_at: float | None) -> tuple[float, float, f
         settling_after_load(closed, load_at),
         float(closed.sensitivity_peak()),
     )
+
+
+def specifications_of_many(
+    loops: Sequence[tuple[Plant, PI]], loads_at: Sequence[float]
+) -> list[tuple[float, float, float, float] | None]:
+    """Return `specifications` for loads at finite times, of many loops; ``None`` for those that are not stable."""
+    found = pair_metrics(loops, ("overshoot", "settling_time", "ms"), 0.02)
+    return [
+        (100.0 * one[0], one[1], settling_after_load(Loop(*pair), load_at), one[2]) if one else None
+        for pair, load_at, one in zip(loops, loads_at, found, strict=True)
+    ]

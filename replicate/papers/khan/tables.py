@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ from replicate.papers.khan.processes import (
     loop,
     plant,
     specifications,
+    specifications_of_many,
 )
 
 if TYPE_CHECKING:
@@ -160,15 +161,41 @@ def _gains(rule: str, h: float, given: Mapping[str, float]) -> tuple[float, floa
     return kp, ki / h
 
 
-def _of_coefficients(dead_times: Mapping[str, float], rule: str, given: Mapping[str, float]) -> dict[str, float]:
+Given = Mapping[str, float]
+
+
+def _applying(dead_times: Mapping[str, float], rule: str) -> dict[str, float]:
+    """Return the dead times for which the coefficients of a rule apply."""
+    return {prefix: h for prefix, h in dead_times.items() if h >= 0.2 or rule == "Bryant"}
+
+
+def _of_coefficients(dead_times: Mapping[str, float], rule: str, given: Given) -> dict[str, float]:
     """Return the row of a rule with other coefficients, where these apply."""
     found: dict[str, float] = {}
-    for prefix, h in dead_times.items():
-        if h < 0.2 and rule != "Bryant":
-            continue
-        numbers = specifications(Loop(plant(1.0, h), PI(*_gains(rule, h, given))), LOAD_AT[h])
-        found |= {prefix + quantity: number for quantity, number in zip(QUANTITIES, numbers, strict=True)}
+    for prefix, h in _applying(dead_times, rule).items():
+        found |= _named(prefix, specifications(Loop(plant(1.0, h), PI(*_gains(rule, h, given))), LOAD_AT[h]))
     return found
+
+
+def _of_many_coefficients(
+    dead_times: Mapping[str, float], points: Sequence[tuple[str, Given]]
+) -> list[dict[str, float] | None]:
+    """Return the rows of rules with other coefficients."""
+    asked = [
+        (place, prefix, h, (plant(1.0, h), PI(*_gains(rule, h, given))))
+        for place, (rule, given) in enumerate(points)
+        for prefix, h in _applying(dead_times, rule).items()
+    ]
+    numbers = specifications_of_many([loop for *_, loop in asked], [LOAD_AT[h] for _, _, h, _ in asked])
+    found: list[dict[str, float]] = [{} for _ in points]
+    unstable = {place for (place, *_), one in zip(asked, numbers, strict=True) if one is None}
+    for (place, prefix, *_), one in zip(asked, numbers, strict=True):
+        found[place] |= _named(prefix, one) if one else {}
+    return [None if place in unstable else row for place, row in enumerate(found)]
+
+
+def _named(prefix: str, numbers: Iterable[float]) -> dict[str, float]:
+    return {prefix + quantity: number for quantity, number in zip(QUANTITIES, numbers, strict=True)}
 
 
 for _table, _dead_times in ((table_1, {"": 10.0}), (table_2, {"ph1_": 1.0, "ph0.1_": 0.1})):
@@ -178,6 +205,7 @@ for _table, _dead_times in ((table_1, {"": 10.0}), (table_2, {"ph1_": 1.0, "ph0.
         "The tables may have been made with more digits of the fits (7b) and of the Appendix than the paper prints, "
         "and with $1/e$ or any other number that rounds to Bryant's 0.368. The load enters as in the reading before.",
         inputs_of=COEFFICIENTS,
+        many=partial(_of_many_coefficients, _dead_times),
     )(partial(_of_coefficients, _dead_times))
 
 

@@ -19,5 +19,9 @@ def two_sided(response: Signal, band: float = BAND) -> float:
 
 def one_sided(response: Signal, dead_time: float = 0.0, level: float = BAND) -> float:
     """Return the last time at which a response that ends at zero is above a level, from the end of the dead time."""
-    last = response.last_crossing(level)
+    return since_dead_time(response.last_crossing(level), dead_time)
+
+
+def since_dead_time(last: float, dead_time: float) -> float:
+    """Return the last time above a level, from the end of the dead time; 0 where the response never was above."""
     return last - dead_time if last else 0.0

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from replicate.exhibits import bound, rank
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PI, Loop, Plant
 from replicate.loops.bounds.gain_boxes import GainBox
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import (
     BOUNDS,
@@ -28,7 +29,7 @@ from replicate.papers.panagopoulos.part_1.frequency_grid import (
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
-from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
+from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, since_dead_time, two_sided
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -127,6 +128,24 @@ def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
     return PLANTS[ROWS[row][0]], GainBox.of_times(certain.side(box, "k"), certain.side(box, "Ti"))
 
 
+def _printed_loop(row: str, given: Mapping[str, float]) -> tuple[Plant, PI]:
+    return PLANTS[ROWS[row][0]], PI.from_integral_time(given["k"], given["Ti"])
+
+
+def _from_many_prints(points: Sequence[tuple[str, Mapping[str, float]]]) -> list[dict[str, float] | None]:
+    """Compute what many printed controllers do."""
+    loops = [_printed_loop(*point) for point in points]
+    found = pair_metrics(loops, ("load_iae", "load_last_above", "mp"), BAND)
+    return [
+        _properties(pi, one[0], since_dead_time(one[1], plant.dead_time), one[2]) if one else None
+        for (plant, pi), one in zip(loops, found, strict=True)
+    ]
+
+
+def _properties(pi: PI, iae: float, ts: float, mp: float) -> dict[str, float]:
+    return {"IE": 1.0 / pi.ki, "IE/IAE": 1.0 / pi.ki / iae, "ts": ts, "Mp": mp}
+
+
 @table_1.reading(
     "printed-gains",
     "With the printed gain and integral time",
@@ -134,16 +153,11 @@ def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
     inputs=("k", "Ti"),
     rules_out=certain.rules(_loops, "IE", "Mp", "IE/IAE")
     | certain.settling(_loops, BAND, one_sided=True, from_dead_time=True),
+    many=_from_many_prints,
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what a printed controller does."""
-    plant, _ = ROWS[row]
-    pi = PI.from_integral_time(given["k"], given["Ti"])
-    loop = Loop(PLANTS[plant], pi)
+    plant, pi = _printed_loop(row, given)
+    loop = Loop(plant, pi)
     load = loop.load_step()
-    return {
-        "IE": 1.0 / pi.ki,
-        "IE/IAE": 1.0 / pi.ki / load.iae(),
-        "ts": one_sided(load, PLANTS[plant].dead_time),
-        "Mp": loop.complementary_peak().value,
-    }
+    return _properties(pi, load.iae(), one_sided(load, plant.dead_time), loop.complementary_peak().value)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PI, Loop, Plant
 from replicate.loops.bounds.gain_boxes import GainBox
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import WeightRule, complementary_peak, design, weight
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS, design_rows
@@ -63,15 +64,25 @@ def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
     return PLANTS[ROWS[row][0]], GainBox(certain.side(box, "k"), certain.side(box, "ki"))
 
 
+def _printed_loop(row: str, given: Mapping[str, float]) -> tuple[Plant, PI]:
+    return PLANTS[ROWS[row][0]], PI(given["k"], given["ki"])
+
+
+def _from_many_prints(points: Sequence[tuple[str, Mapping[str, float]]]) -> list[dict[str, float] | None]:
+    """Compute the two peaks of many printed controllers."""
+    found = pair_metrics([_printed_loop(*point) for point in points], ("ms_frequency", "mp"))
+    return [dict(zip(("w0", "Mp"), one, strict=True)) if one else None for one in found]
+
+
 @table_2.reading(
     "printed-gains",
     "With the printed gains",
     note="$\\omega_0$ and $M_p$ of the loop with the printed $k$ and $k_i$.",
     inputs=("k", "ki"),
     rules_out=certain.rules(_loops, "Mp"),
+    many=_from_many_prints,
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute the two peaks of a printed controller."""
-    plant, _ = ROWS[row]
-    loop = Loop(PLANTS[plant], PI(given["k"], given["ki"]))
+    loop = Loop(*_printed_loop(row, given))
     return {"w0": loop.sensitivity_peak().frequency, "Mp": loop.complementary_peak().value}

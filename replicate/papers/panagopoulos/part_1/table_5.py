@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -13,13 +13,14 @@ from replicate.loops import PI, Loop, Plant, Signal
 from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.loops.bounds.intervals import Interval, exactly
 from replicate.loops.bounds.response_boxes import setpoint_errors
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_1.designs import design, weight
 from replicate.papers.panagopoulos.part_1.frequency_grid import weight_on_grid
 from replicate.papers.panagopoulos.part_1.labels import COLUMNS
 from replicate.papers.panagopoulos.part_1.plants import PLANTS, label
 from replicate.papers.panagopoulos.part_1.printed_gains import printed_weights, trials
-from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, two_sided
+from replicate.papers.panagopoulos.part_1.settling import BAND, one_sided, since_dead_time, two_sided
 from replicate.papers.panagopoulos.part_1.simple_models import METHODS, area_method, ziegler_nichols
 
 if TYPE_CHECKING:
@@ -160,6 +161,29 @@ def _overshoot_misses(row: str, box: Box, ends: Ends) -> bool:
     return excess.low > 0.0 and not (exactly(100.0) * excess / (exactly(1.0) + excess)).meets(*ends)
 
 
+def _printed_loop(row: str, given: Mapping[str, float]) -> tuple[Plant, PI]:
+    plant, method = ROWS[row]
+    return PLANTS[plant], PI(given["k"], given["ki"], authors_controller(plant, method).b)
+
+
+def _from_many_prints(points: Sequence[tuple[str, Mapping[str, float]]]) -> list[dict[str, float] | None]:
+    """Compute what many printed controllers do."""
+    loops = [_printed_loop(*point) for point in points]
+    found = pair_metrics(loops, ("ms", "load_iae", "overshoot", "load_last_above", "mp"), BAND)
+    return [
+        {
+            "Ms": one[0],
+            "IAE": one[1],
+            "o": 100.0 * one[2] / (1.0 + one[2]),  # relative to the peak
+            "ts": since_dead_time(one[3], plant.dead_time),
+            "Mp": one[4],
+        }
+        if one
+        else None
+        for (plant, _), one in zip(loops, found, strict=True)
+    ]
+
+
 @table_5.reading(
     "printed-gains",
     "With the printed gains",
@@ -169,18 +193,18 @@ def _overshoot_misses(row: str, box: Box, ends: Ends) -> bool:
     rules_out=certain.rules(_loops, "IAE")
     | certain.settling(_loops, BAND, one_sided=True, from_dead_time=True)
     | {"o": _overshoot_misses},
+    many=_from_many_prints,
 )
 def from_print(row: str, given: Mapping[str, float]) -> dict[str, float]:
     """Compute what a printed controller does."""
-    plant, method = ROWS[row]
-    pi = PI(given["k"], given["ki"], authors_controller(plant, method).b)
-    loop = Loop(PLANTS[plant], pi)
+    plant, pi = _printed_loop(row, given)
+    loop = Loop(plant, pi)
     step, load = loop.step(), loop.load_step()
     return {
         "Ms": loop.sensitivity_peak().value,
         "IAE": load.iae(),
         "o": 100.0 * overshoot_of_peak(step),
-        "ts": one_sided(load, PLANTS[plant].dead_time),
+        "ts": one_sided(load, plant.dead_time),
         "Mp": loop.complementary_peak().value,
     }
 

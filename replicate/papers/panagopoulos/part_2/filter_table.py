@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from replicate.exhibits.exclusion import Box
-from replicate.loops import PID, Plant
+from replicate.loops import PID, Loop, Plant
 from replicate.loops.bounds.gain_boxes import GainBox
 from replicate.loops.bounds.intervals import exactly
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import filters
 from replicate.papers.panagopoulos.part_2.filters import CUT, HEADED
@@ -101,6 +102,24 @@ def _loops(column: str, box: Box) -> tuple[Plant, GainBox]:
     return G4, GainBox.of_times(k, ti, td, lag, used.order)
 
 
+def _printed_controller(column: str, given: Mapping[str, float]) -> PID:
+    w0 = next((number for name, number in given.items() if name.startswith("w0")), None)
+    pid = PID.ideal(*(given[name] for name in GAINS))
+    used = filters.as_used(column, w0)
+    return used.on(pid) if used else pid
+
+
+def _of_many_gains(points: Sequence[tuple[str, Mapping[str, float]]]) -> list[dict[str, float] | None]:
+    """Return what follows from many printed gains."""
+    controllers = [_printed_controller(*point) for point in points]
+    found = pair_metrics([(G4, controller) for controller in controllers], ("ms_frequency", "load_iae"))
+    return [_properties(pid, *one) if one else None for pid, one in zip(controllers, found, strict=True)]
+
+
+def _properties(controller: PID, w0: float, iae: float) -> dict[str, float]:
+    return {"w0": w0, "IAE": iae, "Mn": filters.noise_gain(controller, CUT)}
+
+
 @table.reading(
     "printed-gains",
     "From the printed gains, with the filters they belong to",
@@ -109,13 +128,13 @@ def _loops(column: str, box: Box) -> tuple[Plant, GainBox]:
     inputs=GAINS,
     inputs_of={c: (*GAINS, f"w0@{filters.source_of_w0(c)}") for c in filters.HEADED},
     rules_out=certain.rules(_loops, "w0", "IAE"),
+    many=_of_many_gains,
 )
 def printed_gains(column: str, given: Mapping[str, float]) -> dict[str, float]:
     """Return what follows from the printed gains."""
-    w0 = next((number for name, number in given.items() if name.startswith("w0")), None)
-    pid = PID.ideal(*(given[name] for name in GAINS))
-    found = filters.numbers(filters.as_used(column, w0), pid, gon=True, cut=CUT)
-    return {row: number for row, number in found.items() if row in {"w0", "IAE", "Mn"}}
+    controller = _printed_controller(column, given)
+    loop = Loop(G4, controller)
+    return _properties(controller, loop.sensitivity_peak().frequency, loop.load_step().iae())
 
 
 evidence = paper.table(
@@ -145,7 +164,7 @@ def which_filter() -> pd.DataFrame:
     """Return the evidence for N = 1 and the overwritten w0."""
     from scipy.optimize import brentq
 
-    from replicate.loops import Loop, design_pi, search_range
+    from replicate.loops import design_pi, search_range
     from replicate.papers.panagopoulos.part_2.printed_gains import printed_number
     from replicate.papers.panagopoulos.part_2.processes import G4
     from replicate.papers.panagopoulos.part_2.shape import largest_over

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 from replicate.loops import PID
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.papers.panagopoulos.part_2.load_experiment import MOST_LOOPS, load_experiment, loop_of
+from replicate.papers.panagopoulos.part_2.processes import PLANTS
 from replicate.papers.panagopoulos.part_2.setpoint import Resonance, filter_as_printed, weight
 
 COLUMNS = ("k", "Ti", "Td", "b", "Tsp", "IE", "IE/IAE", "w0", "ts", "Mp")
@@ -45,6 +48,7 @@ class Properties:
     ts: float
     Ms: float
     Mp: float
+    wmp: float
 
     @classmethod
     @lru_cache(MOST_LOOPS)
@@ -60,6 +64,21 @@ class Properties:
         sensitivity = loop.sensitivity_peak()
         peak = Resonance.of(loop)
         load = load_experiment(process, controller).output
+        settled = load.settling_time(BAND)
+        return cls._of(controller, sensitivity.value, sensitivity.frequency, peak, load.iae(), settled)
+
+    @classmethod
+    def of_many(cls, loops: Sequence[tuple[str, PID]]) -> list[Properties | None]:
+        """Compute them for many loops at once; ``None`` for those that are not stable."""
+        metrics = ("ms", "ms_frequency", "mp", "mp_frequency", "load_iae", "load_settling_time")
+        found = pair_metrics([(PLANTS[process], controller) for process, controller in loops], metrics, BAND)
+        return [
+            cls._of(controller, one[0], one[1], Resonance(one[3], one[2]), *one[4:]) if one else None
+            for (_, controller), one in zip(loops, found, strict=True)
+        ]
+
+    @classmethod
+    def _of(cls, controller: PID, ms: float, w0: float, peak: Resonance, iae: float, settled: float) -> Properties:
         return cls(
             controller.k,
             controller.integral_time,
@@ -67,12 +86,18 @@ class Properties:
             weight(controller, peak),
             filter_as_printed(controller, peak),
             1.0 / controller.ki,
-            load.iae(),
-            sensitivity.frequency,
-            load.settling_time(BAND),
-            sensitivity.value,
+            iae,
+            w0,
+            settled,
+            ms,
             peak.value,
+            peak.frequency,
         )
+
+    @property
+    def peak(self) -> Resonance:
+        """Where the complementary sensitivity has its peak."""
+        return Resonance(self.wmp, self.Mp)
 
     def row(self) -> dict[str, float]:
         """Return the numbers by column key."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
@@ -12,6 +12,7 @@ from replicate.exhibits import rank
 from replicate.exhibits.exclusion import Box
 from replicate.loops import PID, Loop, Plant
 from replicate.loops.bounds.gain_boxes import GainBox
+from replicate.loops.sweep.pairs import pair_metrics
 from replicate.papers.panagopoulos import certain, paper
 from replicate.papers.panagopoulos.part_2 import certain_setpoint
 from replicate.papers.panagopoulos.part_2.designs import Problem, optimal, printed
@@ -31,7 +32,8 @@ REPLACEMENT = "IIs-table-2"
 GAINS = ("k", "Ti", "Td")
 LOST_TD = "G3 Ms=2.0"
 
-RowFunction = Callable[[str, Mapping[str, float]], dict[str, float]]
+Numbers = Mapping[str, float]
+Point = tuple[str, Numbers]
 
 
 def design_properties(row: str, problem: Problem = "stated") -> Properties:
@@ -59,15 +61,24 @@ def _designs(table: Table, problem: Problem) -> Callable[[], pd.DataFrame]:
     return lambda: table.frame({row: design_properties(row, problem).row() for row in ROWS})
 
 
-def _controller(given: Mapping[str, float]) -> PID:
+def _controller(given: Numbers) -> PID:
     """Return the controller with printed gains; where Td is lost, b of (15) gives it back."""
     td = given["Td"] if "Td" in given else given["b"] ** 2 * given["Ti"]
     return PID.ideal(given["k"], given["Ti"], td)
 
 
-def _from_gains(row: str, given: Mapping[str, float]) -> dict[str, float]:
+def _from_gains(row: str, given: Numbers) -> dict[str, float]:
     """Return what follows from printed gains."""
-    found = Properties.of(split(row)[0], _controller(given)).row()
+    return _not_given(Properties.of(split(row)[0], _controller(given)).row(), given)
+
+
+def _from_many_gains(points: Sequence[Point]) -> list[dict[str, float] | None]:
+    """Return what `_from_gains` does, for many at once."""
+    found = Properties.of_many([(split(row)[0], _controller(given)) for row, given in points])
+    return [_not_given(one.row(), given) if one else None for (_, given), one in zip(points, found, strict=True)]
+
+
+def _not_given(found: Mapping[str, float], given: Numbers) -> dict[str, float]:
     return {column: number for column, number in found.items() if column not in {*GAINS, *given}}
 
 
@@ -77,27 +88,53 @@ def _loops(row: str, box: Box) -> tuple[Plant, GainBox]:
     return PLANTS[split(row)[0]], GainBox.of_times(k, ti, b * b * ti if b else certain.side(box, "Td"))
 
 
-def _with_filter(peak_of: Callable[[Loop], Resonance], *, complete: bool) -> RowFunction:
-    """Return the row with (16) over the frequency of a peak; without the integrals of responses if not complete."""
+class _WithFilter:
+    """The row with (16) over the frequency of a peak; without the integrals of responses if not complete."""
 
-    def compute(row: str, given: Mapping[str, float]) -> dict[str, float]:
+    def __init__(self, peak_of: Callable[[Loop], Resonance] | None, *, complete: bool) -> None:
+        self.peak_of, self.complete = peak_of, complete
+
+    def __call__(self, row: str, given: Numbers) -> dict[str, float]:
+        """Return the row for printed gains."""
         controller = _controller(given)
         loop = loop_of(split(row)[0], controller)
         exact = Resonance.of(loop)
-        # whether there is a filter at all is decided by the exact peak
-        size = filter_corrected(controller, exact) and filter_corrected(controller, peak_of(loop))
-        if complete:
-            return _from_gains(row, given) | {"Tsp": size}
+        if self.complete:
+            return _from_gains(row, given) | {"Tsp": self._size(row, controller, exact)}
+        return self._row(row, given, exact, loop.sensitivity_peak().frequency)
+
+    def many(self, points: Sequence[Point]) -> list[dict[str, float] | None]:
+        """Return the rows for many gains at once."""
+        loops = [(split(row)[0], _controller(given)) for row, given in points]
+        if self.complete:
+            found = Properties.of_many(loops)
+            return [
+                _not_given(one.row(), given) | {"Tsp": self._size(row, _controller(given), one.peak)} if one else None
+                for (row, given), one in zip(points, found, strict=True)
+            ]
+        peaks = pair_metrics([(PLANTS[process], pid) for process, pid in loops], ("mp_frequency", "mp", "ms_frequency"))
+        return [
+            self._row(row, given, Resonance(*one[:2]), one[2]) if one else None
+            for (row, given), one in zip(points, peaks, strict=True)
+        ]
+
+    def _row(self, row: str, given: Numbers, exact: Resonance, w0: float) -> dict[str, float]:
+        controller = _controller(given)
         found = {
             "b": weight(controller, exact),
-            "Tsp": size,
+            "Tsp": self._size(row, controller, exact),
             "IE": 1.0 / controller.ki,
-            "w0": loop.sensitivity_peak().frequency,
+            "w0": w0,
             "Mp": exact.value,
         }
-        return {column: number for column, number in found.items() if column not in given}
+        return _not_given(found, given)
 
-    return compute
+    def _size(self, row: str, controller: PID, exact: Resonance) -> float:
+        """Return the time constant; whether there is a filter at all is decided by the exact peak."""
+        size = filter_corrected(controller, exact)
+        if not size or self.peak_of is None:
+            return size
+        return filter_corrected(controller, self.peak_of(loop_of(split(row)[0], controller)))
 
 
 def _trials(table: Table) -> dict[str, tuple[str, str]]:
@@ -136,7 +173,10 @@ def _add_readings(table: Table) -> None:
         inputs=GAINS,
         inputs_of=lost,
         rules_out=followed | certain_setpoint.rules("as printed"),
+        many=_from_many_gains,
     )(_from_gains)
+    corrected = _WithFilter(None, complete=False)
+    coarse = _WithFilter(Resonance.on_coarse_grid, complete=table.id == SUPERSEDED)
     table.reading(
         "filter-corrected",
         "The printed gains, (16) over $\\omega_{mp}$",
@@ -145,7 +185,8 @@ def _add_readings(table: Table) -> None:
         inputs=GAINS,
         inputs_of=lost,
         rules_out=certain.rules(_loops, "IE", "w0", "Mp") | certain_setpoint.rules("corrected"),
-    )(_with_filter(Resonance.of, complete=False))
+        many=corrected.many,
+    )(corrected)
     table.reading(
         "filter-coarse-grid",
         "The same, with the peak read off 50 frequencies",
@@ -155,7 +196,8 @@ def _add_readings(table: Table) -> None:
         inputs_of=lost,
         tried={name: len(values) for name, values in GRIDS_TRIED.items()} | {"power of $\\omega_{mp}$ in (16)": 2},
         rules_out=followed | certain_setpoint.rules("coarse grid"),
-    )(_with_filter(Resonance.on_coarse_grid, complete=table.id == SUPERSEDED))
+        many=coarse.many,
+    )(coarse)
     table.reading(
         "paper-1-settling",
         "The settling time of paper I",
