@@ -19,6 +19,7 @@ from replicate.loops.frequency_domain.loop_transfer import LoopTransfer
 from replicate.loops.frequency_domain.margins import Margins
 from replicate.loops.loop_views import LoopViews
 from replicate.loops.numerics.peaks import FrequencyPeak
+from replicate.loops.numerics.polynomials import roots_of, trimmed
 from replicate.loops.plant import Plant
 from replicate.loops.plants.function_plant import FunctionPlant
 from replicate.loops.prediction.smith_predictor import SmithPredictor
@@ -238,7 +239,7 @@ class Loop(LoopViews, SetOnce):
     @property
     def _filter_poles(self) -> ComplexArray:
         """The poles of the set-point filter."""
-        return np.asarray(np.roots(self.controller.setpoint_filter_polynomials()[1]), dtype=complex)
+        return roots_of(trimmed(self.controller.setpoint_filter_polynomials()[1]))
 
     @property
     def _crowd(self) -> float:
@@ -342,9 +343,7 @@ class Loop(LoopViews, SetOnce):
         return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps, rest)
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
-        steps = {"setpoint": setpoint, "load": load}
-        [found] = responses(self._plant, [self._controller], end, **steps, unit=self._units.time)
-        return found
+        return responses(self._plant, [self._controller], end, setpoint=setpoint, load=load, unit=self._units.time)[0]
 
     def __repr__(self) -> str:
         return f"Loop({self.plant!r}, {self.controller!r})"

@@ -16,6 +16,7 @@ from replicate.loops.closed_loop_poles.function_poles import (
     poles_at_controller_zeros,
 )
 from replicate.loops.closed_loop_poles.pole_starts import asymptotic_starts, generator_eigenvalues
+from replicate.loops.closed_loop_poles.proven_pole import polished_poles
 from replicate.loops.closed_loop_poles.zero_search import Box, Zero, zero_in_circle, zeros_in_box
 from replicate.loops.controller import PID
 from replicate.loops.errors import LoopError
@@ -73,16 +74,9 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
     LoopError
         If no pole of a rational loop is found.
     """
-    if transfer.is_polynomial:
-        starts = np.asarray(np.roots(np.polyadd(transfer.den, transfer.num)), dtype=complex)
-    elif transfer.num.size == 0:  # no feedback: what is left are the poles of the open loop
-        starts = transfer.open_loop_poles
-    elif plant.parts:
-        starts = generator_eigenvalues(plant, controller, transfer, count)
-        if count > FEW:
-            starts = np.concatenate([starts, asymptotic_starts(transfer, count)])
-    else:
-        starts = function_starts(transfer, count)
+    if transfer.is_polynomial and (simple := _simple(transfer)) is not None:
+        return np.array(simple[:count], dtype=complex)
+    starts = _starts(plant, controller, transfer, count)
     if starts.size == 0 and (transfer.is_polynomial or transfer.num.size == 0):  # a static loop
         return starts
     if plant.parts:
@@ -105,6 +99,30 @@ def rightmost_poles(plant: Plant, controller: PID, transfer: LoopTransfer, count
         msg = "no closed-loop pole was found"
         raise LoopError(msg)
     return np.array(found[:count], dtype=complex)
+
+
+def _starts(plant: Plant, controller: PID, transfer: LoopTransfer, count: int) -> ComplexArray:
+    """Return where Newton's method looks for poles."""
+    if transfer.is_polynomial:
+        return transfer.closed_loop_roots
+    if transfer.num.size == 0:  # no feedback: what is left are the poles of the open loop
+        return transfer.open_loop_poles
+    if not plant.parts:
+        return function_starts(transfer, count)
+    starts = generator_eigenvalues(plant, controller, transfer, count)
+    return starts if count <= FEW else np.concatenate([starts, asymptotic_starts(transfer, count)])
+
+
+def _simple(transfer: LoopTransfer) -> list[complex] | None:
+    """Return the poles of a loop without dead time if they are simple and far from each other, not at s = 0."""
+    roots = transfer.closed_loop_roots
+    apart = np.abs(roots[:, None] - roots)
+    np.fill_diagonal(apart, np.inf)
+    if not (apart > CLOSE * np.abs(roots)).all():
+        return None
+    upper = [root for root in roots.tolist() if root.imag >= 0.0]
+    found = polished_poles(transfer, upper)
+    return _ordered(found) if len(found) == len(upper) else None
 
 
 def merged(first: ComplexArray, second: ComplexArray, count: int) -> ComplexArray:

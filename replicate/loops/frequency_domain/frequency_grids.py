@@ -33,6 +33,11 @@ RESONANT = 0.3  # largest damping of one
 
 def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Array:
     """Return frequencies that resolve every corner, resonance and dead-time rotation of L up to ``end``."""
+    w = np.unique(np.concatenate(_resolving(transfer, end, per_decade)))
+    return w[(w > 0.0) & (w <= end)]
+
+
+def _resolving(transfer: LoopTransfer, end: float, per_decade: int) -> list[Array]:
     corners = transfer.corner_frequencies
     slow = [end, *np.abs(corners).tolist()]
     longest = transfer.longest_dead_time
@@ -49,16 +54,14 @@ def loop_grid(transfer: LoopTransfer, end: float, *, per_decade: int = 60) -> Ar
         if end > step * MOST_POINTS:
             # beyond, the dead time turns L through all phases before |L| changes: what matters is where |L| is largest
             parts += [w + step * np.arange(-POINTS_AROUND, POINTS_AROUND) for w in transfer.gain_stationary if w < end]
-    parts += _around(_resonant(corners), _two_sided(*AROUND_CORNER), narrowest=NARROWEST)
-    w = np.unique(np.concatenate(parts))
-    return w[(w > 0.0) & (w <= end)]
+    return parts + _around(_resonant(corners), _two_sided(*AROUND_CORNER), narrowest=NARROWEST)
 
 
 def peak_grid(transfer: LoopTransfer, end: float, poles: ComplexArray, start: float = 0.0) -> Array:
     """Return frequencies from ``start`` to ``end`` that also resolve the peaks which closed-loop poles make."""
-    w = loop_grid(transfer, end, per_decade=80)
     near = _around(poles[poles.imag > 0.0], _two_sided(*AROUND_POLE), narrowest=0.0)
-    w = np.unique(np.concatenate([w, *near, [start, end]]))  # both ends, so that bands that overlap leave no gap
+    # both ends, so that bands that overlap leave no gap
+    w = np.unique(np.concatenate([*_resolving(transfer, end, 80), *near, [start, end]]))
     return w[(w > 0.0) & (w >= start) & (w <= end)]
 
 

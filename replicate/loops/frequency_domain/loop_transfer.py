@@ -120,6 +120,11 @@ class LoopTransfer:
         return self.plant.is_rational
 
     @cached_property
+    def closed_loop_roots(self) -> ComplexArray:
+        """The zeros of f in a loop without dead time."""
+        return roots_of(trimmed(np.asarray(np.polyadd(self.den, self.num), dtype=float)))
+
+    @cached_property
     def _coefficients(self) -> tuple[list[float], list[float]]:
         return self.num.tolist(), self.den.tolist()
 
@@ -174,6 +179,17 @@ class LoopTransfer:
         num, den = self._coefficients
         (n, n_slope), (d, d_slope) = horner_with_slope(num, s), horner_with_slope(den, s)
         return n_slope / n - d_slope / d - self.dead_time
+
+    def with_log_derivative(self, s: complex) -> tuple[complex, complex]:
+        """Evaluate L(s) and L'(s)/L(s) together, at one point."""
+        if type(self) is LoopTransfer:
+            num, den = self._coefficients
+            (n, n_slope), (d, d_slope) = horner_with_slope(num, s), horner_with_slope(den, s)
+            try:
+                return n / d * cmath.exp(-s * self.dead_time), n_slope / n - d_slope / d - self.dead_time
+            except (ZeroDivisionError, OverflowError):
+                pass
+        return complex(self(s)), complex(self.log_derivative(s))
 
     def log_modulus(self, w: float) -> float:
         """Evaluate log |L(i w)|."""

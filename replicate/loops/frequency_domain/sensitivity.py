@@ -50,8 +50,8 @@ def sensitivity_peak(transfer: LoopTransfer, poles: ComplexArray, center: float 
     """
 
     def slope(w: float) -> float:
-        value = complex(transfer(1j * w))
-        return float((-1j * value * complex(transfer.log_derivative(1j * w)) / (center + value)).real)
+        value, turn = transfer.with_log_derivative(complex(0.0, w))
+        return (-1j * value * turn / (center + value)).real
 
     kind = _Kind(
         lambda value, off: _ratio(1.0, np.abs(center + value) - off),
@@ -67,8 +67,8 @@ def complementary_peak(transfer: LoopTransfer, poles: ComplexArray) -> Frequency
     """Return Mp = max |L/(1+L)| of a stable loop."""
 
     def slope(w: float) -> float:
-        value = complex(transfer(1j * w))
-        return float((1j * complex(transfer.log_derivative(1j * w)) / (1.0 + value)).real)
+        value, turn = transfer.with_log_derivative(complex(0.0, w))
+        return (1j * turn / (1.0 + value)).real
 
     closed = (transfer.num, np.asarray(np.polyadd(transfer.den, transfer.num), dtype=float))
     return _peak(

@@ -63,7 +63,7 @@ def unstable_poles(transfer: LoopTransfer) -> int:
         msg = f"{why}: the loop has infinitely many unstable poles"
         raise ImproperLoopError(msg)
     if transfer.is_polynomial:
-        roots = np.roots(np.polyadd(transfer.den, transfer.num))
+        roots = transfer.closed_loop_roots
         return int(np.sum(roots.real >= -ON_AXIS * np.abs(roots)))
     if transfer.is_rational:
         return _from_crossovers(transfer)

@@ -29,6 +29,7 @@ from replicate.loops.kept import Kept
 from replicate.loops.numerics import chebyshev
 from replicate.loops.plant import Plant
 from replicate.loops.time_domain.chain import Chain, build_chain, gains
+from replicate.loops.time_domain.many_pieces import carried, march_together
 
 Array = NDArray[np.float64]
 
@@ -40,7 +41,7 @@ STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 2000  # beyond, pieces that adapt are faster
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 TINY = float(np.finfo(float).tiny)
-TOGETHER = 16  # pieces that a single response moves at once
+FEW = 4  # dead times, up to which a single response goes on piece by piece
 
 
 @dataclass(frozen=True)
@@ -194,8 +195,8 @@ def _march(
     inputs = np.zeros((points + n + 1, sweep))
     inputs[-1] = setpoint
     inputs[points:-1] = chain.start[:, None] * setpoint
-    if single and splits == 1 and pieces > TOGETHER and not (gain_matrix[3] * chain.setpoint_impulse).any():
-        return _march_together(blocks, inputs[:, 0], pieces, load)
+    if single and pieces > FEW * splits and not (gain_matrix[3] * chain.setpoint_impulse).any():
+        return march_together(blocks, splits, inputs[points:-1, 0], pieces, setpoint, load)[:, None]
     n_basis = blocks.shape[0] - points - n
     impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
     feedback = gain_matrix[3] * chain.wv[3, 0]  # an impulse in v passes through the ideal derivative into u
@@ -216,43 +217,6 @@ def _march(
         output[j] = result[n_basis : n_basis + points]
         inputs[points:-1] = result[n_basis + points :]
     return np.stack([np.moveaxis(output, 2, 0), np.moveaxis(history[splits:], 2, 0)])
-
-
-def _march_together(blocks: Array, first: Array, pieces: int, load: float) -> Array:
-    """Step through the pieces of one response, many at once; returns node values as `_march`.
-
-    What enters a piece, z = (v at its nodes, state, set-point), is a fixed linear map of what enters the piece before:
-    the squares of that map carry 2, 4, 8 ... pieces on together.
-
-    Parameters
-    ----------
-    blocks
-        Rows of the control signal, the output and the state of a piece, from what enters it.
-    first
-        What enters the first piece.
-    load
-        The load that is added to the control signal of each piece before it enters the next.
-    """
-    points = DEGREE + 1
-    size = first.size
-    # a last row for what does not change, one: set-point and load
-    flow = np.zeros((size, size))
-    flow[:points, :-1], flow[points:-1, :-1] = blocks[:points, :-1], blocks[2 * points :, :-1]
-    flow[:points, -1] = blocks[:points, -1] * first[-1] + load
-    flow[points:-1, -1] = blocks[2 * points :, -1] * first[-1]
-    flow[-1, -1] = 1.0
-    entering = np.empty((size, -(-pieces // TOGETHER) * TOGETHER))
-    entering[:, 0], entering[-1, 0] = first, 1.0
-    done = 1
-    while done < entering.shape[1]:
-        step = min(done, TOGETHER)
-        np.matmul(flow, entering[:, done - step : done], out=entering[:, done : done + step])
-        done += step
-        if done <= TOGETHER:
-            flow = flow @ flow
-    entering[-1] = first[-1]
-    leaving = (blocks[: 2 * points] @ entering[:, :pieces]).reshape(2, points, pieces)
-    return np.moveaxis(leaving[::-1, None], 2, 3)
 
 
 @dataclass(frozen=True)
@@ -292,11 +256,14 @@ def _march_closed(
     right[:, :, :n] = np.eye(n)
     right[:, :, n] = half_s.sum(axis=1)[:, None] * drive
     flow = _solved(half_s, closed.a, right)
-    states = np.empty((pieces, points, n))
-    x = np.append((chain.b[:, 0] * closed.impulse + chain.start) * setpoint, 1.0)
-    for j in range(pieces):
-        states[j] = flow @ x
-        x[:n] = states[j, -1]
-    u = states @ closed.ux + closed.ud * load + closed.ur * setpoint
-    y = states @ chain.c + chain.d[0] * (u + load)
-    return y, u
+    # output and control signal at the nodes, from the state at the piece's start
+    u, y = np.tensordot(closed.ux, flow, (0, 1)), np.tensordot(chain.c, flow, (0, 1))
+    u[:, n] += closed.ud * load + closed.ur * setpoint
+    y += chain.d[0] * u
+    y[:, n] += chain.d[0] * load
+    start = (chain.b[:, 0] * closed.impulse + chain.start) * setpoint
+    # what is constant is carried with the states, or taken off if it is small
+    rest = np.linalg.solve(closed.a, -drive)
+    starts = np.ones((n + 1, pieces))
+    starts[:n] = carried(flow[-1, :, :n], start - rest, pieces) + rest[:, None]
+    return (y @ starts).T, (u @ starts).T

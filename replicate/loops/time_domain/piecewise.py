@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from replicate.loops import checks
 from replicate.loops.errors import LoopError, NotSettledError
-from replicate.loops.numerics import chebyshev, series_roots
+from replicate.loops.numerics import chebyshev, one_series
 from replicate.loops.numerics.peaks import Peak
 from replicate.loops.set_once import SetOnce
 
@@ -227,18 +227,20 @@ class Piecewise(SetOnce):
         self, samples: Array, pieces: NDArray[np.intp], sign: float, level: Array
     ) -> list[tuple[float, float]]:
         """Return (sign * value, time) of the maxima in some pieces whose samples reach a level, ends included."""
-        part, nodes = samples[pieces], chebyshev.nodes(SAMPLES - 1)
+        part = samples[pieces]
         top = part >= level[:, None]
         top[:, 1:] &= part[:, 1:] >= part[:, :-1]
         top[:, :-1] &= part[:, :-1] >= part[:, 1:]
         rows, places = np.nonzero(top)
-        series = sign * self.coefficients[pieces[rows]].T
-        x = series_roots.maxima(series, nodes[np.maximum(places - 1, 0)], nodes[np.minimum(places + 1, SAMPLES - 1)])
-        reached, sampled = cheb.chebval(x, series, tensor=False), part[rows, places]
-        # at rounding level the polynomial and its sample differ by nothing
-        inner = reached > sampled
-        values, x = np.where(inner, reached, sampled), np.where(inner, x, nodes[places])
-        return [(float(v), self._time(int(piece), at)) for v, piece, at in zip(values, pieces[rows], x, strict=True)]
+        nodes, found = chebyshev.nodes(SAMPLES - 1).tolist(), []
+        for row, place in zip(rows.tolist(), places.tolist(), strict=True):
+            piece, sampled = int(pieces[row]), float(part[row, place])
+            series = (sign * self.coefficients[piece]).tolist()
+            x = one_series.maximum(series, nodes[max(place - 1, 0)], nodes[min(place + 1, SAMPLES - 1)])
+            reached = one_series.value(series, x)
+            # at rounding level the polynomial and its sample differ by nothing
+            found.append((max(reached, sampled), self._time(piece, x if reached > sampled else nodes[place])))
+        return found
 
     def peak(self) -> Peak:
         """Return the largest value on [0, horizon]; its ``.time`` is where it is reached."""
@@ -311,7 +313,7 @@ class Piecewise(SetOnce):
     def _crossing_roots(self, piece: int, level: float) -> Array:
         series = self.coefficients[piece].copy()
         series[0] -= level
-        return chebyshev.real_roots(series)
+        return one_series.roots(series, self._samples[piece] - level, MARGIN)
 
     def first_reach(self, level: float) -> float:
         """Return the first time at which the response is at or beyond ``level``, coming from zero.

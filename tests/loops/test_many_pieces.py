@@ -1,0 +1,41 @@
+"""Responses of many pieces, which powers of one matrix carry on together, against closed forms."""
+
+from __future__ import annotations
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from loops.closed_forms import pi_foptd, rational_step
+from replicate.loops import PI, Loop, Plant
+from replicate.loops.time_domain import many_pieces
+
+
+@pytest.mark.parametrize("most", [1, 5, 40, 2000])
+def test_a_vector_is_carried_as_far_as_by_one_step_after_the_other(most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(many_pieces, "TOGETHER", most)
+    fibonacci = [0, 1]
+    while len(fibonacci) < 71:
+        fibonacci.append(fibonacci[-1] + fibonacci[-2])  # up to 2e14: exact in floats
+    for count in (1, 2, 3, 4, 7, 16, 33, 70):
+        columns = many_pieces.carried(np.array([[1.0, 1.0], [1.0, 0.0]]), np.array([1.0, 0.0]), count)
+        assert columns.tolist() == [fibonacci[1 : count + 1], fibonacci[:count]]
+
+
+@pytest.mark.parametrize(("lag", "splits"), [(1.0, 1), (0.2, 2), (0.1, 3), (0.04, 8)])
+@pytest.mark.parametrize("until", [1.5, 4.0, 4.3, 11.2])
+def test_dead_time_of_several_pieces(lag: float, splits: int, until: float) -> None:
+    y = Loop(Plant.foptd(1.0, lag, 1.0), PI(0.2, 0.4)).step(until=until)
+    assert abs(y.breaks[1] - 1.0 / splits) < 1e-15
+    t = until * np.array([0.3, 0.77, 1.0])
+    exact = [float(pi_foptd(1.0, lag, 1.0, k=0.2, ki=0.4, t=float(time))) for time in t]
+    assert np.max(np.abs(y(t) - exact)) < 1e-12
+
+
+@pytest.mark.parametrize("until", [3.0, 40.0, 900.0])
+def test_loop_without_dead_time(until: float) -> None:
+    # (0.6 s + 0.4) / (s (s + 1) (s + 2) (s + 8) + 0.6 s + 0.4)
+    y = Loop(Plant([1.0], [1.0, 11.0, 26.0, 16.0]), PI(0.6, 0.4)).step(until=until)
+    t = until * np.array([0.01, 0.1, 0.33, 0.72, 1.0])
+    exact = [float(mp.re(rational_step([0.6, 0.4], [1.0, 11.0, 26.0, 16.6, 0.4], float(time)))) for time in t]
+    assert np.max(np.abs(y(t) - exact)) < 1e-13
