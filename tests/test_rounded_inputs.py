@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from itertools import combinations_with_replacement, product
 from typing import TypeVar
 
 import numpy as np
@@ -15,7 +16,7 @@ from replicate.exhibits.conventions import Tally, settle, tallies
 from replicate.exhibits.joint_point import Target, candidates
 from replicate.exhibits.matching import Match, match
 from replicate.exhibits.printed import Key, PrintedValue
-from replicate.exhibits.quadratic_model import Search
+from replicate.exhibits.quadratic_model import Part, Search, grid_point
 from replicate.exhibits.results import TableResult
 from replicate.exhibits.rounded_inputs import compute_reading
 from replicate.exhibits.rounds import Asking, in_rounds
@@ -279,3 +280,42 @@ def test_a_lost_last_digit_leaves_the_others(computed: float, kind: str) -> None
     assert match("1.2?", computed).kind == kind
     assert PrintedValue("1.2?").lost_digit
     assert tuple(map(float, PrintedValue("1.2?").interval)) == (1.195, 1.295)
+
+
+@pytest.mark.parametrize("d", [1, 2, 3, 6])
+def test_a_model_on_a_grid_is_what_it_is_at_each_of_its_points(d: int) -> None:
+    rng = np.random.default_rng(d)
+    pairs = list(combinations_with_replacement(range(d), 2))
+    part = Part(np.zeros(d), np.ones(d), rng.uniform(-1.0, 1.0, (1 + d + len(pairs), 4)), np.ones(4, dtype=bool))
+    axes = [rng.uniform(-1.0, 1.0, int(rng.integers(1, 5))) for _ in range(d)]
+    found = part.on_grid(axes, np.array([2, 0]))
+    for place, x in enumerate(product(*axes)):
+        assert grid_point(axes, place).tolist() == list(x)
+        for row, model in zip(found, (2, 0), strict=True):
+            constant, *others = part.coefficients[:, model]
+            linear = sum(a * xi for a, xi in zip(others[:d], x, strict=True))
+            squares = sum(a * x[i] * x[j] for a, (i, j) in zip(others[d:], pairs, strict=True))
+            assert row[place] == pytest.approx(constant + linear + squares, rel=1e-12, abs=1e-13)
+    assert part.on_grid(axes, np.array([], dtype=int)).shape[0] == 0
+
+
+@given(seed=st.integers(0, 10**6))
+@settings(max_examples=30)
+def test_the_joint_point_is_at_least_as_good_as_any_of_a_fine_grid(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    rows, bends = rng.uniform(-1.0, 1.0, (2, 3, 2))
+
+    def function(x: np.ndarray) -> np.ndarray:
+        return np.asarray(rows @ x + bends @ x**2)
+
+    search = searched(function, [0.0, 0.0], [1.0, 1.0], 1e-9)
+    middle, half = rng.uniform(-0.5, 0.5, 3), rng.uniform(0.05, 0.3, 3)
+    needed = rng.random(3) < 0.3
+    point = joint_point(search, Target(middle - half, middle + half, needed), function)
+
+    def held(x: np.ndarray) -> tuple[int, int]:
+        inside = np.abs(function(x) - middle) <= half
+        return int((inside & needed).sum()), int(inside.sum())
+
+    side = np.linspace(-1.0, 1.0, 21)  # the search has these among others
+    assert held(point) >= max(held(np.array(x)) for x in product(side, side))

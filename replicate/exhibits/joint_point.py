@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from replicate.exhibits.quadratic_model import Part, Search
+from replicate.exhibits.quadratic_model import Search, fine, grid_point
 from replicate.exhibits.rounds import Points, Sampled
 
 _ZOOMS = 3
@@ -27,13 +27,13 @@ def candidates(search: Search, target: Target) -> Points:
         What they should be.
     """
     found = [search.centre]
-    for part, scaled in search.searched():
-        where = scaled
+    asked, side = np.nonzero(target.asked)[0], fine(len(search.centre))
+    for part in search.parts:
         centre, size = np.zeros(len(search.centre)), 1.0
         for _ in range(_ZOOMS):
-            centre = where[_best(target, part, where)]
+            axes = [np.clip(x + size * side, -1.0, 1.0) for x in centre]
+            centre = grid_point(axes, int(np.argmax(target.ranks(part.on_grid(axes, asked)))))
             size *= _SHRINK
-            where = np.clip(centre + size * scaled, -1.0, 1.0)
         found.append(part.point(centre))
     return found + [search.points[i] for i in _best_known(target, search)]
 
@@ -53,37 +53,25 @@ class Target:
         self.middle, self.half, self.needed = (lower + upper) / 2, (upper - lower) / 2, needed
         self.asked = np.isfinite(self.middle)
 
-    def slack(self, values: np.ndarray) -> np.ndarray:
-        """Return, by quantity, how far inside its interval it is: 1 in the middle, 0 at the ends."""
-        with np.errstate(invalid="ignore"):
-            return np.where(self.asked, 1.0 - np.abs(values - self.middle) / self.half, -np.inf)
-
     def ranks(self, values: np.ndarray) -> np.ndarray:
-        """Return one number for each line of values, larger the better."""
-        slack = self.slack(values)
-        slack = np.where(np.isnan(slack), -np.inf, slack)
+        """Return one number for each point, larger the better, from the quantities asked for there, shape (k, n)."""
+        # how far inside its interval a quantity is: 1 in the middle, 0 at the ends; NaN is nowhere
+        with np.errstate(invalid="ignore"):
+            slack = 1.0 - np.abs(values - self.middle[self.asked, None]) / self.half[self.asked, None]
         held = slack >= 0.0
-        least = np.where(held, slack, 1.0).min(axis=1, initial=1.0)
-        many = values.shape[1] + 1
-        return np.asarray((held & self.needed).sum(axis=1) * many + held.sum(axis=1) + least / 2)
-
-    def rank(self, values: np.ndarray) -> tuple[float]:
-        """Return the rank of one point, without regard to how clearly."""
-        return (float(np.floor(self.ranks(values[None])[0])),)
+        least = np.where(held, slack, 1.0).min(axis=0, initial=1.0)
+        weights = 1.0 + (self.asked.size + 1) * self.needed[self.asked]
+        return np.asarray(weights @ held + least / 2)
 
     def best(self, known: Sampled, points: Points) -> np.ndarray:
         """Return the best of some points at which the quantities are known.
 
         Best is where first the most needed quantities hold, then the most others; of equal points the first.
         """
-        ranks = [self.rank(known.at(point)) for point in points]
-        return points[max(range(len(points)), key=lambda i: (*ranks[i], -i))]
-
-
-def _best(target: Target, part: Part, scaled: np.ndarray) -> int:
-    return int(np.argmax(target.ranks(part(scaled))))
+        values = np.array([known.at(point) for point in points])
+        return points[int(np.argmax(np.floor(self.ranks(values.T[self.asked]))))]
 
 
 def _best_known(target: Target, search: Search) -> list[int]:
-    ranks = target.ranks(np.array(search.values))
+    ranks = target.ranks(np.array(search.values).T[target.asked])
     return [int(i) for i in np.argsort(-ranks, kind="stable")[:_TRIED]]

@@ -15,9 +15,8 @@ whole loop response would prove it, at a thousand times the cost.)
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cache
 from itertools import combinations_with_replacement, product
 
 import numpy as np
@@ -53,9 +52,32 @@ class Part:
     coefficients: np.ndarray
     good: np.ndarray
 
-    def __call__(self, scaled: np.ndarray) -> np.ndarray:
-        """Return the models at points of [-1, 1]^d, shape (n, d), as shape (n, m)."""
-        return np.asarray(terms(scaled) @ self.coefficients)
+    def on_grid(self, axes: Sequence[np.ndarray], chosen: np.ndarray) -> np.ndarray:
+        """Return models at all combinations of scaled coordinates, in the order of `itertools.product`.
+
+        Parameters
+        ----------
+        axes
+            For each input its coordinates, within [-1, 1].
+        chosen
+            The places of the models asked for, shape (k,).
+
+        Returns
+        -------
+        ndarray
+            Shape (k, n).
+        """
+        d, coefficients = len(axes), self.coefficients[:, chosen]
+        products = dict(zip(combinations_with_replacement(range(d), 2), coefficients[d + 1 :, :, None], strict=True))
+        # one input after the other: what the models are at the coordinates so far, and what they grow by in the others
+        values, slopes = coefficients[0][:, None], [row[:, None] for row in coefficients[1 : d + 1]]
+        for k, x in enumerate(axes):
+            steps = slopes[k][:, :, None] * x + (products[k, k] * x**2)[:, None]
+            values, shape = values[:, :, None] + steps, (len(chosen), values.shape[1] * x.size)
+            values = values.reshape(shape)
+            for later in range(k + 1, d):
+                slopes[later] = (slopes[later][:, :, None] + (products[k, later] * x)[:, None]).reshape(shape)
+        return np.asarray(values)
 
     @property
     def monotonic(self) -> np.ndarray:
@@ -82,12 +104,15 @@ def terms(scaled: np.ndarray) -> np.ndarray:
     return np.column_stack([np.ones(len(scaled)), scaled, *pairs])
 
 
-@cache
-def _grid(d: int) -> np.ndarray:
-    """Return the scaled points at which a model of d inputs is searched, shape (n, d)."""
-    grid = np.array(list(product(np.linspace(-1.0, 1.0, _FINENESS.get(d, _COARSE)), repeat=d)))
-    grid.setflags(write=False)  # shared
-    return grid
+def fine(d: int) -> np.ndarray:
+    """Return the scaled coordinates of each of d inputs at which a model is searched."""
+    return np.linspace(-1.0, 1.0, _FINENESS.get(d, _COARSE))
+
+
+def grid_point(axes: Sequence[np.ndarray], place: int) -> np.ndarray:
+    """Return a point of a grid by its place in the order of `itertools.product`."""
+    places = np.unravel_index(place, [len(x) for x in axes])
+    return np.array([x[i] for x, i in zip(axes, places, strict=True)])
 
 
 class Search(Sampled):
@@ -136,21 +161,12 @@ class Search(Sampled):
 
     def extremes(self) -> Points:
         """Return where a model has its smallest or largest value, if that is not at a corner, which is known."""
-        found = []
-        for part, scaled in self.searched():
-            curved = np.nonzero(part.good & ~part.monotonic)[0]
-            guesses = part(scaled) if curved.size else np.empty((0, 0))
-            for place in curved:
-                guess = guesses[:, place]
-                places = {int(np.argmin(guess)), int(np.argmax(guess))}
-                found += [part.point(scaled[i]) for i in places if np.abs(scaled[i]).min(initial=1.0) < 1.0]
-        return found
-
-    def searched(self) -> Iterator[tuple[Part, np.ndarray]]:
-        """Yield every part with a fine grid of scaled points."""
-        grid = _grid(len(self.centre))
+        found, axes = [], [fine(len(self.centre))] * len(self.centre)
         for part in self.parts:
-            yield part, grid
+            for guess in part.on_grid(axes, np.nonzero(part.good & ~part.monotonic)[0]):
+                scaled = [grid_point(axes, place) for place in {int(np.argmin(guess)), int(np.argmax(guess))}]
+                found += [part.point(point) for point in scaled if np.abs(point).min() < 1.0]
+        return found
 
     def _modelled(self, boxes: Sequence[Box]) -> Asking[list[tuple[Part, int]]]:
         """Return parts of the box, and the variable in which each is most curved."""
