@@ -22,7 +22,7 @@ from replicate.exhibits.results import Result
 from replicate.run.dependencies import Dependencies, Looked
 from replicate.run.entries import DAMAGED, NEVER, OTHER, SUFFIX, UselessError, read_entry, write_entry
 from replicate.run.limits import MOST_KEPT
-from replicate.run.storage import SCHEMA, from_text, to_text
+from replicate.run.storage import SCHEMA, from_text
 from replicate.run.units import Unit, fits
 
 FORM = "replicate result"
@@ -69,13 +69,13 @@ class Cache:
                 return hashlib.sha256(json.dumps(recorded).encode() + text).hexdigest()
         return ""
 
-    def put(self, unit: Unit, result: Result, dependencies: Dependencies) -> None:
-        """Keep a result. A full disk or a read-only folder costs the next run time, nothing else."""
+    def put(self, unit: Unit, text: str, dependencies: Dependencies) -> None:
+        """Keep the text of a result. A full disk or a read-only folder costs the next run time, nothing else."""
         if self.folder is None or not dependencies:
             return
         state = hashlib.sha256(json.dumps(dependencies).encode()).hexdigest()[:16]
         with contextlib.suppress(OSError):
-            write_entry(self._folder(unit) / f"{state}{SUFFIX}", _identity(unit), dependencies, to_text(result))
+            write_entry(self._folder(unit) / f"{state}{SUFFIX}", _identity(unit), dependencies, text)
             for old in self._entries(unit)[_MOST_STATES:]:
                 old.unlink(missing_ok=True)
 

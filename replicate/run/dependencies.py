@@ -55,7 +55,7 @@ class _Loaded:
     rooms: set[str]
     distributions: set[str]
     by_content: set[str]
-    of_paper: PaperModules
+    of_paper: frozenset[str]
 
     @classmethod
     def among(cls, modules: Iterable[str], paper: Paper) -> _Loaded:
@@ -72,7 +72,7 @@ class _Loaded:
                 distributions.update(found)
                 if not found and name not in own:
                     by_content.add(name)
-        return cls(rooms - {"papers"}, distributions, by_content, PaperModules(paper.package, own | by_content))
+        return cls(rooms - {"papers"}, distributions, by_content, frozenset(own))
 
 
 class Looked:
@@ -111,7 +111,7 @@ class Looked:
             self._loaded[key] = _Loaded.among(key[1], paper)
         loaded = self._loaded[key]
         present = self._folder("paper", paper.package, paper.folder())
-        unused = self._files(paper, loaded.of_paper.unused(exhibit))
+        unused = self._unused(paper, exhibit, loaded.of_paper | loaded.by_content)
         groups = {
             "framework": dict.fromkeys(loaded.rooms, ""),
             "paper": {name: f"{_UNUSED}{present[name]}" for name in unused},
@@ -121,19 +121,20 @@ class Looked:
         }
         return {group: dict(sorted(names.items())) for group, names in self.now(paper, exhibit.id, groups).items()}
 
-    def _files(self, paper: Paper, modules: Iterable[str]) -> set[str]:
-        """Return the files of modules, by their names in the paper's folder."""
+    def _unused(self, paper: Paper, exhibit: Exhibit, loaded: frozenset[str]) -> set[str]:
+        """Return the files of the paper's modules that an exhibit does not use, by their names in its folder."""
+        key = (paper.package, loaded)
+        if key not in self._uses:
+            self._uses[key] = PaperModules(*key)
+        modules = self._uses[key].unused(exhibit)
         inside = [name.removeprefix(f"{paper.package}.").replace(".", "/") for name in modules]
         files = {file for name in inside for file in (f"{name}.py", f"{name}/__init__.py")}
         return files & self._folder("paper", paper.package, paper.folder()).keys()
 
     def _still_unused(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> set[str]:
         """Return the files of modules that an exhibit does not use as they are now, if they are loaded."""
-        loaded = [name for name in sys.modules if _is_own(paper, name) or name in recorded["module"]]
-        key = (paper.package, frozenset(loaded))
-        if key not in self._uses:
-            self._uses[key] = PaperModules(*key)
-        return self._files(paper, self._uses[key].unused(paper.exhibits[exhibit]))
+        loaded = frozenset(name for name in sys.modules if _is_own(paper, name) or name in recorded["module"])
+        return self._unused(paper, paper.exhibits[exhibit], loaded)
 
     def now(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> Dependencies:
         """Return the present state of everything that was recorded, and of files that came beside it."""

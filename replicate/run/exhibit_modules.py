@@ -44,10 +44,15 @@ class PaperModules:
             if name in reached or name not in self._texts:
                 continue
             reached.add(name)
-            if self._finds(name):
+            if name in self._finding:
                 return set()
             waiting += [name.rpartition(".")[0], *self._texts[name].imports]
         return {name for name in self._texts if name.startswith(f"{self._package}.")} - reached
+
+    @cached_property
+    def _finding(self) -> set[str]:
+        """The modules that may reach others by other ways than import statements."""
+        return {name for name in self._texts if self._finds(name)}
 
     def _finds(self, name: str) -> bool:
         """Say whether a module may reach others by other ways than import statements."""

@@ -160,7 +160,7 @@ def _compute(
             for unit, done in performances:
                 costs.add(unit, done.seconds)
                 if not errors_of(done.result):
-                    cache.put(unit, done.result, done.dependencies)
+                    cache.put(unit, done.text, done.dependencies)
                 yield unit, done
     finally:
         costs.save()

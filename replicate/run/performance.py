@@ -33,6 +33,8 @@ class Performance:
         Whether the process should do no more, because something in it cannot be set back.
     output
         What the unit wrote to standard output and error.
+    text
+        The result as the unit's process has written it; empty if it was lost there, or is another now.
     """
 
     result: Result
@@ -41,6 +43,7 @@ class Performance:
     changed: tuple[str, ...] = ()
     is_last: bool = False
     output: str = ""
+    text: str = ""
 
     def to_bytes(self) -> bytes:
         """Return this as two lines of JSON; the output travels otherwise, since it must outlive the process."""
@@ -50,7 +53,7 @@ class Performance:
             "changed": self.changed,
             "is_last": self.is_last,
         }
-        return f"{json.dumps(head)}\n{to_text(self.result)}".encode()
+        return f"{json.dumps(head)}\n{self.text or to_text(self.result)}".encode()
 
     @classmethod
     def from_bytes(cls, content: bytes, output: str = "") -> Performance:
@@ -58,7 +61,13 @@ class Performance:
         head, text = content.split(b"\n", 1)
         given = json.loads(head)
         return cls(
-            from_text(text), given["dependencies"], given["seconds"], tuple(given["changed"]), given["is_last"], output
+            from_text(text),
+            given["dependencies"],
+            given["seconds"],
+            tuple(given["changed"]),
+            given["is_last"],
+            output,
+            text.decode(),
         )
 
 
@@ -91,7 +100,7 @@ class Performer:
             changed += [f"{name} (when {unit.paper} is imported)" for name in self.ambience.set()]
         paper = self._loaded[unit.package]
         self.ambience.set()
-        result = _whole(unit, paper, compute(unit, without, before))
+        result, text = _written(unit, paper, compute(unit, without, before))
         changed += self.ambience.set()
         threads = self.ambience.threads()
         if threads:
@@ -100,16 +109,17 @@ class Performer:
         dependencies = self._looked.record(paper, paper.exhibits[unit.exhibit], modules_of(unit.package, self._loaded))
         if self._looked.newest > self._begun:
             dependencies = {}  # a file was written after this process began, which may have loaded it as it was before
-        return Performance(result, dependencies, time.monotonic() - begun, tuple(changed), is_last)
+        seconds = time.monotonic() - begun
+        return Performance(result, dependencies, seconds, tuple(changed), is_last, text=text)
 
 
-def _whole(unit: Unit, paper: Paper, result: Result) -> Result:
-    """Return the result as it is when it has been written and read, or the reason why it cannot be written."""
+def _written(unit: Unit, paper: Paper, result: Result) -> tuple[Result, str]:
+    """Return a result with its text, or in its place the reason why it cannot be written."""
     try:
-        to_text(result)
+        return result, to_text(result)
     except (TypeError, ValueError) as error:
-        return failed(unit, paper.exhibits[unit.exhibit], reason(error))
-    return result
+        result = failed(unit, paper.exhibits[unit.exhibit], reason(error))
+        return result, to_text(result)
 
 
 def with_errors(result: Result, errors: dict[str, str]) -> Result:

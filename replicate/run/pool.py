@@ -14,7 +14,7 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Generator, Iterator, Mapping
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -22,7 +22,7 @@ from types import ModuleType
 from typing import Any
 
 from replicate.errors import ReplicateError
-from replicate.exhibits import Claims, Exhibit
+from replicate.exhibits import Claims, Exhibit, Figure
 from replicate.exhibits.file_names import display_name
 from replicate.run.limits import MOST_OUTPUT
 from replicate.run.messages import WRITTEN, Messages, NoMessageError
@@ -34,10 +34,11 @@ from replicate.run.worker import BEGUN, DONE, FAILED, Surroundings, Task, serve
 _TICK = 0.5
 _PATIENCE = 2.0  # seconds in which a worker that is stopped may say where it was
 _SHOWN_OUTPUT = 20_000
+_DRAWING = ("matplotlib.figure", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg")
 _HEAVY = (
     *("numpy", "pandas", "scipy.integrate", "scipy.interpolate", "scipy.linalg", "scipy.optimize"),
-    *("matplotlib.figure", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_svg"),
     *("control", "schemdraw", "replicate.loops"),
+    *_DRAWING,
 )
 _ATTEMPTS, _BETWEEN_ATTEMPTS = 4, 0.1  # seconds
 _UNKNOWN = 255  # the process that watches over the workers is gone, too
@@ -91,6 +92,7 @@ class LocalPool:
             If no worker can be started.
         """
         waiting = Waiting(units)
+        imported = _DRAWING if any(isinstance(exhibit, Figure) for exhibit in units.values()) else ()
         workers: list[_Worker] = []
         with tempfile.TemporaryDirectory(prefix="replicate-", ignore_cleanup_errors=True) as folder:
             started = 0
@@ -98,7 +100,7 @@ class LocalPool:
                 while waiting or any(worker.task for worker in workers):
                     workers[:] = [worker for worker in workers if worker.task or worker.process.is_alive()]
                     while len(workers) < self.jobs and sum(not worker.task for worker in workers) < len(waiting):
-                        workers.append(_start(Path(folder) / f"output-{started}"))
+                        workers.append(_start(Path(folder) / f"output-{started}", imported))
                         started += 1
                     for worker in workers:
                         if worker.task is None and waiting:
@@ -148,9 +150,7 @@ class LocalPool:
 
     def _finished(self, unit: Unit, done: Performance) -> Performance:
         errors = self._errors.pop(unit, {})
-        return Performance(
-            with_errors(done.result, errors), done.dependencies, done.seconds, done.changed, done.is_last, done.output
-        )
+        return replace(done, result=with_errors(done.result, errors), text="") if errors else done
 
     def _lost(
         self, worker: _Worker, task: Task, why: str, exhibit: Exhibit, waiting: Waiting
@@ -175,12 +175,14 @@ def _orphaned(worker: _Worker) -> bool:
     return bool(worker.process.exitcode == _UNKNOWN)
 
 
-def _start(output: Path) -> _Worker:
-    process, here = started(serve, output)
+def _start(output: Path, imported: Collection[str]) -> _Worker:
+    process, here = started(serve, output, imported)
     return _Worker(process, Messages(here, _READERS), output)
 
 
-def started(service: Callable[[Connection, Surroundings], None], output: Path) -> tuple[Any, Connection]:
+def started(
+    service: Callable[[Connection, Surroundings], None], output: Path, imported: Collection[str] = ()
+) -> tuple[Any, Connection]:
     """Start a worker process and return it with the near end of its pipe.
 
     Parameters
@@ -189,6 +191,8 @@ def started(service: Callable[[Connection, Surroundings], None], output: Path) -
         Is called there with the far end.
     output
         A file for what it writes.
+    imported
+        Modules that workers will want: the first worker says which of them all workers share.
 
     Raises
     ------
@@ -205,7 +209,7 @@ def started(service: Callable[[Connection, Surroundings], None], output: Path) -
         process = context.Process(target=service, args=(there, surroundings), name="replicate worker")
         try:
             if method == "forkserver":
-                _start_server()
+                _start_server(imported)
             with _without_program():
                 process.start()
         except (OSError, EOFError) as error:
@@ -218,11 +222,12 @@ def started(service: Callable[[Connection, Surroundings], None], output: Path) -
             return process, here
 
 
-def _start_server() -> None:
+def _start_server(imported: Collection[str]) -> None:
     """Start the process that workers are forked from, if there is none: with what this process has imported, too."""
     from multiprocessing import forkserver  # Windows has none
 
-    forkserver.set_forkserver_preload([f"{__package__}.preload", *(name for name in _HEAVY if name in sys.modules)])
+    shared = [name for name in _HEAVY if name in sys.modules or name in imported]
+    forkserver.set_forkserver_preload([f"{__package__}.preload", *shared])
     before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"  # a numpy.py of the user's in the current folder is not numpy
     try:

@@ -222,11 +222,25 @@ class QuietImport:
 
 def _passing_names(body: Iterable[ast.stmt]) -> Iterator[str]:
     """Yield the names that have other values than the module has for them: in loops, comprehensions and classes."""
-    for node in (inner for statement in body for inner in ast.walk(statement)):
+    for node in _nodes(body):
         if isinstance(node, _BINDING):
             places = node.body if isinstance(node, ast.ClassDef) else [node.target]
             names = (one for place in places for one in ast.walk(place) if isinstance(one, ast.Name))
             yield from (one.id for one in names if isinstance(one.ctx, ast.Store))
+
+
+def _nodes(body: Iterable[ast.AST]) -> Iterator[ast.AST]:
+    """Yield all nodes of some statements, in no order: as `ast.walk`, in half of its time."""
+    waiting = list(body)
+    while waiting:
+        node = waiting.pop()
+        yield node
+        for name in node._fields:
+            part = getattr(node, name, None)
+            if isinstance(part, ast.AST):
+                waiting.append(part)
+            elif isinstance(part, list):
+                waiting += [one for one in part if isinstance(one, ast.AST)]
 
 
 def _arguments(node: ast.Call) -> list[ast.expr]:
