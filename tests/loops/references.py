@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from typing import NamedTuple
 
 import mpmath as mp
@@ -101,17 +101,11 @@ class ReferenceLoop:
         """
         t = mp.mpf(t)
         if not self.dead_time:
-            return _contour(self, lambda at: at.first_term(signal, integrals) / (1 + at.loop_transfer), t)
+            return _contour(self, signal, integrals, t)
         dead_time = mp.mpf(self.dead_time)
         delays = int(mp.ceil(t / dead_time)) - 1 if left else int(mp.floor(t / dead_time))
         terms = delays + 1 if signal == "u" else delays
-        if terms <= 0:
-            return mp.mpf(0)
-
-        def finite_sum(at: _Point) -> mp.mpc:
-            return at.first_term(signal, integrals) * (1 - (-at.loop_transfer) ** terms) / (1 + at.loop_transfer)
-
-        return _contour(self, finite_sum, t, terms=terms)
+        return _contour(self, signal, integrals, t, terms=terms) if terms > 0 else mp.mpf(0)
 
     def _at(self, s: mp.mpc) -> _Point:
         plant, controller, delay = self.plant(s), self.controller(s), mp.exp(-s * mp.mpf(self.dead_time))
@@ -135,7 +129,7 @@ class _Point(NamedTuple):
             "load_y": lambda: self.plant,
             "load_u": lambda: -self.loop_transfer,
         }[signal]()
-        return first / self.s ** (1 + integrals)
+        return first / self.s ** (1 + integrals) if integrals != -1 else first
 
 
 @cache
@@ -185,20 +179,30 @@ def _nodes(loop: ReferenceLoop, closed_loop: bool, count: int, digits: int) -> l
         return [(loop._at(centre + arm), arm / 2 if j in (0, count) else arm) for j, arm in arms]
 
 
-def _contour(loop: ReferenceLoop, transform: Callable[[_Point], mp.mpc], t: mp.mpf, *, terms: int = 0) -> mp.mpf:
-    """``1/(2 pi i)`` times the integral of ``transform(s) e^{st}`` around the poles, by the trapezoidal rule.
+@lru_cache(maxsize=100)
+def _weighted(loop: ReferenceLoop, count: int, digits: int, t: mp.mpf, terms: int) -> list[tuple[_Point, mp.mpc]]:
+    """Nodes, and what the first term of a signal times ``s`` is multiplied by there for its share of the integral."""
+    found = []
+    with mp.workdps(digits):
+        for at, weight in _nodes(loop, not terms, count, digits):
+            sum_of_terms = 1 - (-at.loop_transfer) ** terms if terms else 1  # over 1 + Q
+            found.append((at, weight * mp.exp(at.s * t) * sum_of_terms / ((1 + at.loop_transfer) * at.s)))
+    return found
 
-    Without ``terms`` the poles are those of the closed loop. The integrand is real on the real axis, so that half of
-    the circle gives the whole integral. The error is squared by each doubling of the points, so a change of 1e-14
-    leaves an error far below it; this holds as soon as there are more points than the order of the poles and than
-    ``radius t``.
+
+def _contour(loop: ReferenceLoop, signal: str, integrals: int, t: mp.mpf, *, terms: int = 0) -> mp.mpf:
+    """``1/(2 pi i)`` times the integral around the poles of a signal's transform times ``e^{st}``, by trapezia.
+
+    The signal has gone around the loop less than ``terms`` times; without ``terms`` for ever, and the poles are those
+    of the closed loop. The integrand is real on the real axis, so that half of the circle gives the whole integral. The
+    error is squared by each doubling of the points, so a change of 1e-14 leaves an error far below it; this holds as
+    soon as there are more points than the order of the poles and than ``radius t``.
     """
-    closed_loop = not terms
-    _, reach, radius = _circle(loop, closed_loop)
+    _, reach, radius = _circle(loop, not terms)
 
     def parts(count: int, digits: int) -> Iterator[mp.mpf]:
-        for at, weight in _nodes(loop, closed_loop, count, digits):
-            yield mp.re(transform(at) * mp.exp(at.s * t) * weight)
+        for at, factor in _weighted(loop, count, digits, t, terms):
+            yield mp.re(at.first_term(signal, integrals - 1) * factor)
 
     largest = max(abs(part) for part in parts(_FEWEST, 15))
     digits = DIGITS + 10 * int(mp.log10(largest + 1) / 10)  # what cancels, in tens so that nodes are shared
