@@ -125,7 +125,7 @@ def draw_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Pa
     OutputError
         If the file's name does not tell one of the two formats.
     """
-    from replicate.run.drawing import capture
+    from replicate.run.drawing import drawn_as
 
     if path.suffix.lower() not in FORMATS:
         msg = f"{path}: the name must end in {' or '.join(FORMATS)}"
@@ -135,8 +135,8 @@ def draw_chart(paper: Paper, chart: Chart, values: Mapping[str, float], path: Pa
     place = Place(code.co_filename, display_name(Path(code.co_filename)), f"chart '{chart.id}'", code.co_firstlineno)
     try:
         with watched(place):
-            drawn = capture(paper.id, figure)
+            (content,) = drawn_as(paper.id, figure, ("png" if path.suffix.lower() == ".png" else "svg",))
     except ValueError as error:
         msg = f"chart '{chart.id}': {error}"
         raise ReplicateError(msg) from error
-    return drawn.png if path.suffix.lower() == ".png" else drawn.svg.encode()
+    return content

@@ -133,11 +133,11 @@ def root_plant_pi(signal: str, k: float, ki: float, t: float, *, guesses: Sequen
             # both fractions multiplied by s: numerator and characteristic function, with root = sqrt(s)
             plant = mp.exp(-root)
             numerator = {
-                "y": plant * (b * k * s + ki) / s,
-                "u": (b * k * s + ki) / s,
-                "load_y": plant,
-                "load_u": -plant * (k * s + ki) / s,
-            }[signal]
+                "y": lambda: plant * (b * k * s + ki) / s,
+                "u": lambda: (b * k * s + ki) / s,
+                "load_y": lambda: plant,
+                "load_u": lambda: -plant * (k * s + ki) / s,
+            }[signal]()
             return numerator, s + (k * s + ki) * plant
 
         def characteristic_function(s: mp.mpc) -> mp.mpc:
