@@ -14,6 +14,7 @@ import numpy as np
 
 from replicate.loops.controller import PID
 from replicate.loops.filters import Filter
+from replicate.loops.numerics.polynomials import horner
 from replicate.loops.plant import Plant
 from replicate.loops.plants.function_plant import HIGHEST, LOWEST, FunctionPlant
 
@@ -32,9 +33,8 @@ class Units:
         if frequency is None and controller is not None:
             frequency = _mean(_controller_corners(controller)) or _mean(_crossover(plant, controller))
         time = 1.0 if frequency is None else _power_of_two(1.0 / frequency)
-        with np.errstate(all="ignore"):
-            gain = float(np.abs(plant.delay_free(np.array([1j / time])))[0])
-        if not (np.isfinite(gain) and gain > 0.0):
+        gain = _gain_at(plant, 1j / time)
+        if not (math.isfinite(gain) and gain > 0.0):
             gain = 1.0 / abs(controller.k) if controller is not None and controller.k else 1.0
         return cls(time, _power_of_two(gain))
 
@@ -66,6 +66,17 @@ class Units:
         num, den = (np.array(part) for part in given)
         scale = self.time ** np.arange(den.size - 1, -1, -1.0)
         return tuple((num / scale[den.size - num.size :]).tolist()), tuple((den / scale).tolist())
+
+
+def _gain_at(plant: Plant, s: complex) -> float:
+    """Return the size of the plant without its dead time."""
+    if type(plant) is Plant:
+        try:
+            return float(abs(horner(plant.num.tolist(), s) / horner(plant.den.tolist(), s)))
+        except (ZeroDivisionError, OverflowError):
+            pass
+    with np.errstate(all="ignore"):
+        return float(np.abs(plant.delay_free(np.array([s])))[0])
 
 
 def _corners(plant: Plant) -> list[float]:

@@ -293,8 +293,8 @@ def never_falls(level: float) -> ImproperLoopError:
 
 def _computable(coefficients: Array) -> Array:
     """Return the coefficients of L after none is too large."""
-    largest = float(np.max(np.abs(coefficients), initial=0.0))
-    if not largest <= LARGEST:
+    if not all(-LARGEST <= coefficient <= LARGEST for coefficient in coefficients.tolist()):
+        largest = float(np.max(np.abs(coefficients)))
         msg = (
             f"the loop gain is too large to compute with: in the plant's own units of gain and time it has the "
             f"coefficient {largest:.3g}; allowed are at most {LARGEST:g}"

@@ -64,6 +64,12 @@ def differentiation(degree: int) -> Array:
 
 
 @cache
+def antidifferentiation(degree: int) -> Array:
+    """Return the matrix, shape (degree + 1, degree + 2), that maps coefficients (rows) to those of an integral."""
+    return _frozen(cheb.chebint(np.eye(degree + 1), axis=0).T.copy())
+
+
+@cache
 def gauss_legendre(count: int) -> tuple[Array, Array]:
     """Return Gauss-Legendre nodes and weights on [-1, 1], exact for polynomials of degree ``2 count - 1``."""
     points, weights = np.polynomial.legendre.leggauss(count)

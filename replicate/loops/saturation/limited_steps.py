@@ -108,7 +108,7 @@ class LimitedSteps:
             pieces = max(1.0, np.ceil(rest / self.length * (1.0 - SAME)))
             h = rest / pieces if pieces <= 2.0 else self.length
             y, u, v, command, x = self._piece(start, h, self.mode)
-            remaining, smooth = self.resolution.check(start, h, y, command, np.concatenate([v, [u]]))
+            remaining, smooth = self.resolution.check(start, h, np.concatenate([[y, command], v, [u]]))
             if not as_good_as_it_gets(remaining, previous):
                 previous, self.length = remaining, 0.5 * h
                 if start + self.length == start:

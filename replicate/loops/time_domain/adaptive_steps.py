@@ -116,8 +116,8 @@ class _March:
             pieces = max(1.0, np.ceil(rest / length * (1.0 - SAME)))
             h = rest / pieces if pieces <= 2.0 else length
             self._receive(start)
-            y, u, v, end = self._piece(start, h)
-            remaining, smooth = self.resolution.check(start, h, coefficients(y), u, v)
+            y, signals, end = self._piece(start, h)
+            remaining, smooth = self.resolution.check(start, h, signals)
             if not as_good_as_it_gets(remaining, previous):
                 previous, length = remaining, 0.5 * h
                 if start + length == start:
@@ -128,7 +128,7 @@ class _March:
             stop = min(self.jumps.next, until) if pieces <= 1.0 else start + h
             self.breaks.append(stop)
             self.output.append(y)
-            self.control.append(u)
+            self.control.append(signals[1])
             self.x = end
             length = 2.0 * h if smooth else max(h, length if pieces <= 1.0 else h)
             if len(self.output) > MOST_PIECES:
@@ -160,13 +160,13 @@ class _March:
 
     # ---- one piece -------------------------------------------------------------------------------------------------
 
-    def _piece(self, start: float, h: float) -> tuple[Array, Array, Array, Array]:
-        """Return node values of y, coefficients of u and of the delayed inputs, and the state at the end."""
+    def _piece(self, start: float, h: float) -> tuple[Array, Array, Array]:
+        """Return node values of y, coefficients of y, u and the delayed inputs as rows, and the state at the end."""
         points, n = DEGREE + 1, self.x.size
         known = np.array([self._history(start, h, i) for i in range(self.delays.size)])
         result = self._map(h) @ np.concatenate([known.ravel(), self.x, [self.setpoint]])
-        u, y, v = result[:points], result[points : 2 * points], result[2 * points : -n or None]
-        return y, coefficients(u), coefficients(v.reshape(-1, points)), result[result.size - n :]
+        signals = result[: result.size - n].reshape(-1, points)
+        return signals[0], coefficients(signals), result[result.size - n :]
 
     def _history(self, start: float, h: float, i: int) -> Array:
         """Return the part of a delayed input that earlier pieces and the load make, on the nodes of a piece."""
@@ -175,9 +175,9 @@ class _March:
         return values + (float(self.loads[i]) if start >= delay * (1.0 - SAME) else 0.0)
 
     def _map(self, h: float) -> Array:
-        """Return the map of a piece from (known inputs, start state, set-point) to (u, y, inputs, end state)."""
+        """Return the map of a piece from (known inputs, start state, set-point) to (y, u, inputs, end state)."""
         h = nominal(h)
         if h not in self.maps:
             flow = piece_flow(self.chain, self.row, self.delays, h)
-            self.maps[h] = np.concatenate([flow.u, flow.y, *flow.v, flow.x[-1]])
+            self.maps[h] = np.concatenate([flow.y, flow.u, *flow.v, flow.x[-1]])
         return self.maps[h]

@@ -60,10 +60,9 @@ class Chain:
         whole[:n, :n], whole[:n, n], whole[n, :n] = self.a, drive, feedback
         _, _, _, scale, _ = scipy.linalg.lapack.dgebal(whole, scale=1, permute=0)
         scale = scale[:n] / scale[n]
-        return replace(
-            self,
-            a=self.a * scale / scale[:, None], b=self.b / scale[:, None], e=self.e / scale, start=self.start / scale,
-            c=self.c * scale, wx=self.wx * scale,
+        return Chain(
+            self.a * scale / scale[:, None], self.b / scale[:, None], self.e / scale, self.c * scale, self.d,
+            self.wx * scale, self.wv, self.wr, self.setpoint_impulse, self.start / scale,
         )  # fmt: skip
 
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -121,10 +122,8 @@ def respond(
         If the controllers differ in more than their gains, or the response grows out of range.
     """
     chain, gain_matrix = _common_chain(plant, controllers)
-    radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0))
     closed = [] if plant.dead_time else [_close(chain, g) for g in gain_matrix.T]
-    if closed:
-        radius = max(float(np.max(np.abs(np.linalg.eigvals(c.a)), initial=0.0)) for c in closed)
+    radius = max(_RADII.get((a.shape, a.tobytes()), partial(_radius, a)) for a in [c.a for c in closed] or [chain.a])
     splits = max(1, int(np.ceil((plant.dead_time or until) * radius / STIFFNESS)))
     previous = float("inf")
     to_coefficients = chebyshev.values_to_coefficients(DEGREE).T
@@ -147,6 +146,14 @@ def respond(
             return [(breaks, y, u) for y, u in zip(*chebyshev.cut_last(found, share), strict=True)]
         previous = remaining
         splits *= 2
+
+
+def _radius(a: Array) -> float:
+    """Return the largest modulus of an eigenvalue."""
+    return float(np.max(np.abs(np.linalg.eigvals(a)), initial=0.0))
+
+
+_RADII: Kept[float] = Kept(64)
 
 
 def _common_chain(plant: Plant, controllers: Sequence[PID]) -> tuple[Chain, Array]:

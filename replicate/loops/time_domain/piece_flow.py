@@ -8,6 +8,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,7 +109,7 @@ def delayed_values(
     """
     nodes = start + 0.5 * h * (chebyshev.nodes(DEGREE) + 1.0)
     values = np.zeros(nodes.size)
-    earlier = ~later(nominal(h), delay)
+    earlier = _earlier(nominal(h), delay)
     times = nodes[earlier] - delay
     if times.size == 0 or not control:
         return values, earlier
@@ -119,16 +120,26 @@ def delayed_values(
         return values, earlier
     slack = SAME * start
     if times[0] >= breaks[central] - slack and times[-1] <= breaks[central + 1] + slack:
-        pieces = np.full(times.size, central)
+        read = _read(breaks, control, central, times)
     else:
         pieces = np.clip(np.searchsorted(breaks, times, side="right") - 1, max(first, 0), max(last, 0))
-    for piece in np.unique(pieces):
-        here = pieces == piece
-        left, right = breaks[piece], breaks[piece + 1]
-        x = np.clip(2.0 * (times[here] - left) / (right - left) - 1.0, -1.0, 1.0)
-        where = np.nonzero(earlier)[0][here]
-        values[where] += np.where(times[here] >= -slack, chebyshev.valued(control[piece], x), 0.0)
+        parts = [_read(breaks, control, int(piece), times[pieces == piece]) for piece in np.unique(pieces)]
+        read = np.concatenate(parts)
+    values[earlier] = np.where(times >= -slack, read, 0.0) if times[0] < -slack else read
     return values, earlier
+
+
+def _read(breaks: Sequence[float], control: Sequence[Array], piece: int, times: Array) -> Array:
+    """Return the values of a signal at times of one of its pieces."""
+    left, right = breaks[piece], breaks[piece + 1]
+    return chebyshev.valued(control[piece], 2.0 * (times - left) / (right - left) - 1.0)  # which clips
+
+
+@lru_cache(maxsize=256)
+def _earlier(h: float, delay: float) -> NDArray[np.bool_]:
+    earlier = ~later(h, delay)
+    earlier.flags.writeable = False
+    return earlier
 
 
 def integrations(chain: Chain, row: Row, i: int, *, most: int) -> int:

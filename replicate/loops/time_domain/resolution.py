@@ -33,20 +33,21 @@ class Resolution:
     fastest: float = float("inf")  # length of a piece that suits the fastest mode
     unit: float = 1.0  # of time, in the user's: for messages
 
-    def check(self, start: float, h: float, y: Array, u: Array, v: Array) -> tuple[float, bool]:
+    def check(self, start: float, h: float, signals: Array) -> tuple[float, bool]:
         """Return the size of what is not resolved, and whether a longer piece would be resolved, too.
 
         Parameters
         ----------
         start, h
             Start and length of the piece.
-        y, u, v
-            Chebyshev coefficients of the output, the control signal and the delayed inputs.
+        signals
+            Chebyshev coefficients of the output, the control signal and the delayed inputs, one row each.
         """
-        rows = np.abs(np.concatenate([[y, u], v]))
+        rows = np.abs(signals)
         largest = rows.max(axis=1)
         size_y, size_u = max(self.size_y, float(largest[0])), max(self.size_u, float(largest[1]))
-        sizes = np.array([size_y, size_u, *[max(size_u, float(largest[2:].max()))] * len(v)])
+        sizes = np.full(largest.size, max(size_u, float(largest[2:].max())))
+        sizes[:2] = size_y, size_u
         if not (size_y < LARGEST and size_u < LARGEST):
             msg = f"the response grows beyond {LARGEST:g} by t = {start * self.unit:g}: choose a shorter horizon"
             raise LoopError(msg)

@@ -35,14 +35,16 @@ def ups_and_downs(slopes: Array, integrals: Array, scales: Array | float = 1.0) 
     pieces = np.nonzero(signed)[0]
     owners, roots = _zeros(slopes, samples, pieces)
     # between neighbouring zeros an antiderivative moves one way
-    rest = np.arange(sizes.size)
-    owners = np.concatenate([rest, owners, rest])
-    points = np.concatenate([np.full(rest.size, -1.0), roots, np.full(rest.size, 1.0)])
-    order = np.lexsort((points, owners))
-    owners, points = owners[order], points[order]
-    values = series_roots.evaluate(integrals[owners].T, points)
-    same = owners[1:] == owners[:-1]
-    return float(np.sum(np.abs(np.diff(values))[same]))
+    starts, ends = integrals @ (-1.0) ** np.arange(integrals.shape[1]), integrals.sum(axis=1)
+    moves = np.abs(ends - starts)
+    if owners.size:
+        values = series_roots.evaluate(integrals[owners].T, roots)
+        last = np.append(owners[1:] != owners[:-1], True)
+        first = np.append(True, last[:-1])
+        moves[owners[first]] = np.abs(values[first] - starts[owners[first]])
+        moves[owners[last]] += np.abs(ends[owners[last]] - values[last])
+        return float(np.sum(moves) + np.sum(np.abs(np.diff(values))[~last[:-1]]))
+    return float(np.sum(moves))
 
 
 def _zeros(slopes: Array, samples: Array, pieces: Pieces) -> tuple[Pieces, Array]:
@@ -54,13 +56,14 @@ def _zeros(slopes: Array, samples: Array, pieces: Pieces) -> tuple[Pieces, Array
     moves = np.diff(part, axis=1)
     turns = moves[:, 1:] * moves[:, :-1] <= 0.0
     row, column = np.nonzero(turns & (np.abs(part[:, 1:-1]) < MARGIN * np.ptp(part, axis=1)[:, None]))
-    series = slopes[pieces[row]].T
-    extreme = series_roots.maxima(np.sign(moves[row, column]) * series, nodes[column], nodes[column + 2])
-    owners = np.concatenate([np.repeat(pieces, SAMPLES), pieces[row]])
-    points = np.concatenate([np.tile(nodes, pieces.size), extreme])
-    values = np.concatenate([part.ravel(), series_roots.evaluate(series, extreme)])
-    order = np.lexsort((points, owners))
-    owners, points, values = owners[order], points[order], values[order]
+    owners, points, values = np.repeat(pieces, SAMPLES), np.tile(nodes, pieces.size), part.ravel()
+    if row.size:
+        series = slopes[pieces[row]].T
+        extreme = series_roots.maxima(np.sign(moves[row, column]) * series, nodes[column], nodes[column + 2])
+        owners, points = np.concatenate([owners, pieces[row]]), np.concatenate([points, extreme])
+        values = np.concatenate([values, series_roots.evaluate(series, extreme)])
+        order = np.lexsort((points, owners))
+        owners, points, values = owners[order], points[order], values[order]
     left = np.nonzero(((values[:-1] < 0.0) != (values[1:] < 0.0)) & (owners[:-1] == owners[1:]))[0]
     right, owners = left + 1, owners[left]
     return owners, series_roots.roots(slopes[owners].T, points[left], points[right], values[left], values[right])

@@ -219,7 +219,7 @@ class Signal(SignalViews, Piecewise):
         weighted = self._error
         for _ in range(power):
             weighted = _times_argument(weighted, self.breaks[:-1] + half, half)
-        integrals = np.asarray(cheb.chebint(weighted, axis=1), dtype=float) * half[:, None]
+        integrals = weighted @ chebyshev.antidifferentiation(weighted.shape[1] - 1) * half[:, None]
         scales = self._lengths * (self.breaks[1:] if power else 1.0)
         moving = self._moving
         return ups_and_downs(self._error[moving], integrals[moving], scales[moving])
