@@ -176,7 +176,8 @@ def _entry(part: Part, box: Box) -> dict[str, Any]:
     around = box_around(part.drawn)
     if around is not None:
         entry["box"] = [round(float(end), 2) for end in box.units(np.reshape(around, (2, 2))).ravel()]
-    entry["marks"] = marks = marks_of(part.drawn, box, where=part.placed or part.told, loose=part.loose)
+    where = part.placed or part.told
+    entry["marks"] = marks = marks_of(part.drawn, box, where=where, loose=part.loose, outlined=not part.told)
     if field:
         _leave_colours_to(field, marks)
     if part.told:
@@ -201,7 +202,6 @@ def _leave_place_to_name(part: Part, marks: list[dict[str, Any]]) -> None:
     lines = any(mark["draws"] == "path" for mark in marks)
     for mark in marks:
         mark.pop("texts", None)
-        mark.pop("outline", None)
         if not (lines and mark["draws"] == "markers"):  # which points of a line are marked is not
             mark.pop("places", None)
         if _is_shape(part.owner):  # one shape alone is handed to the renderer as a marker

@@ -65,7 +65,9 @@ class Box:
         return np.asarray((np.asarray(pixels, dtype=float) - corner) / size)
 
 
-def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: bool = False) -> list[Mark]:
+def marks_of(
+    calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: bool = False, outlined: bool = True
+) -> list[Mark]:
     """Return marks; what is drawn one after the other with the same look becomes one of them.
 
     Parameters
@@ -74,6 +76,8 @@ def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: boo
         Whether places matter. Those of a thing that follows a text do not.
     loose
         Whether they are compared with a wide tolerance only: then fewer points are kept.
+    outlined
+        Whether it matters where lines run. Those of a curve are compared as data.
     """
     marks: list[Mark] = []
     lines: list[list[Points]] = []
@@ -100,7 +104,7 @@ def marks_of(calls: Sequence[Drawn], box: Box, *, where: bool = True, loose: boo
             marks[-1]["texts"].append(drawn.extra["text"])
     tolerance = _COARSE if loose else OUTLINE_TOLERANCE
     return [
-        _mark(mark, points, tolerance, where=where) | _reach(drawing)
+        _mark(mark, points, tolerance, where=where, outlined=outlined) | _reach(drawing)
         for mark, points, drawing in zip(marks, lines, inside, strict=True)
     ]
 
@@ -127,7 +131,7 @@ def _reach(points: list[Points]) -> Mark:
     return {"inside": [round(float(end), 2) for end in (*together.min(axis=0), *together.max(axis=0))]}
 
 
-def _mark(mark: Mark, points: list[Points], tolerance: float, *, where: bool) -> Mark:
+def _mark(mark: Mark, points: list[Points], tolerance: float, *, where: bool, outlined: bool) -> Mark:
     found: Mark = dict(mark["look"])
     if mark["texts"]:
         found["texts"] = mark["texts"]
@@ -139,7 +143,7 @@ def _mark(mark: Mark, points: list[Points], tolerance: float, *, where: bool) ->
     elif mark["corners"]:
         if where:
             found["places"] = scattered(np.vstack(points))
-    elif where:
+    elif where and outlined:
         found["outline"] = outline(joined(points), tolerance=tolerance)
     return found
 
