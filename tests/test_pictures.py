@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+from collections.abc import Callable
 from contextlib import nullcontext
 from typing import Any
 
@@ -13,9 +15,12 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
+from numpy.typing import NDArray
+from PIL import Image
 
 from replicate.figures import capture, drawing, one_layout
 from replicate.figures.off_screen import pictures
+from replicate.figures.png import png
 from replicate.figures.text_outlines import Outlines
 
 
@@ -89,3 +94,32 @@ def test_outlines_are_those_of_matplotlib(text: str, size: float) -> None:
         assert ours.get_text_width_height_descent(text, *size_of) == TextToPath().get_text_width_height_descent(
             text, *size_of
         )
+
+
+def _drawing() -> NDArray[np.uint8]:
+    (content,) = pictures(_eventful(), "title", ("png",))
+    with Image.open(io.BytesIO(content)) as drawn:
+        return np.array(drawn.convert("RGBA"))
+
+
+def _photograph() -> NDArray[np.uint8]:
+    across, up = np.meshgrid(np.arange(300), np.arange(200))
+    light = [128 + 100 * np.sin(across / 90 + up / 70), 128 + 90 * np.cos(across / 50), up / 4.0]
+    return np.dstack([*light, np.full(across.shape, 255)]).astype(np.uint8)
+
+
+def _glass() -> NDArray[np.uint8]:
+    pixels = _photograph()
+    pixels[10:50, 10:50, 3] = 77
+    return pixels
+
+
+@pytest.mark.parametrize("made", [_drawing, _photograph, _glass])
+def test_a_png_holds_the_pixels_and_is_as_small_as_that_of_pillow(made: Callable[[], NDArray[np.uint8]]) -> None:
+    pixels, usual = made(), io.BytesIO()
+    content = png(pixels, 160.0)
+    Image.fromarray(pixels).save(usual, format="png", dpi=(160.0, 160.0))
+    with Image.open(io.BytesIO(content)) as read, Image.open(usual) as there:
+        assert np.array_equal(np.asarray(read.convert("RGBA")), pixels)
+        assert read.info == there.info
+    assert len(content) <= len(usual.getvalue())

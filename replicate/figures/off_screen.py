@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
 import pandas as pd
 
 from replicate.figures import style
@@ -26,9 +27,10 @@ _ADDRESS = re.compile(r"#|https?://|mailto:|data:image/(png|jpeg);base64,", re.I
 
 def curves_frame(record: Record) -> pd.DataFrame:
     """Return the curves of a figure as a frame with the columns ``panel, curve, x, y``."""
-    rows = [(panel, curve, float(x), float(y)) for (panel, curve), points in record.curves.items() for x, y in points]
-    frame = pd.DataFrame(rows, columns=["panel", "curve", "x", "y"])
-    return frame.astype({"panel": object, "curve": object, "x": float, "y": float})
+    names = [name for name, points in record.curves.items() for _ in points]
+    x, y = np.vstack([np.empty((0, 2)), *record.curves.values()]).T
+    panel, curve = ([name[part] for name in names] for part in (0, 1))
+    return pd.DataFrame({"panel": panel, "curve": curve, "x": x, "y": y}).astype({"panel": object, "curve": object})
 
 
 def svg_text(canvas: Canvas, title: str) -> str:
@@ -54,7 +56,7 @@ def _svg(canvas: Canvas, title: str) -> str:
 
 def _png(canvas: Canvas) -> bytes:
     buffer = io.BytesIO()
-    canvas.savefig(buffer, format="png", dpi=style.PNG_DPI, facecolor="white", metadata={"Software": None})
+    canvas.savefig(buffer, format="png", dpi=style.PNG_DPI, facecolor="white")
     return buffer.getvalue()
 
 

@@ -11,12 +11,14 @@ from contextlib import contextmanager, suppress
 from typing import Any
 
 import matplotlib as mpl
+import numpy as np
 from matplotlib.backend_bases import RendererBase
 from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg
 from matplotlib.backends.backend_mixed import MixedModeRenderer
 from matplotlib.backends.backend_svg import RendererSVG
 from matplotlib.figure import Figure
 
+from replicate.figures.png import png
 from replicate.figures.settled_ticks import settled_ticks
 from replicate.figures.text_outlines import POINTS, Outlines
 
@@ -65,6 +67,12 @@ class _Canvas(FigureCanvasAgg):
         if here is None or (here.width, here.height, here.dpi) != (width, height, dpi):
             self._pixels = here = _Pixels(width, height, dpi)
         return here
+
+    def print_png(self, file: Any, **_: Any) -> None:  # type: ignore[override]
+        """Write to an open file."""
+        super().draw()  # type: ignore[no-untyped-call]
+        pixels: Any = self.get_renderer()
+        file.write(png(np.asarray(pixels.buffer_rgba()), self.figure.dpi))
 
     def print_svg(self, file: Any, *, metadata: Any = None, **_: Any) -> None:
         """Write to an open text file; as matplotlib's own, but for the renderer."""
