@@ -36,6 +36,20 @@ def test_results_lie_in_the_interval_of_results(first: Interval, second: Interva
     assert Fraction(quotient.low) <= a / b <= Fraction(quotient.high)
 
 
+ENDS = (-2.7, -0.3, 0.0, 0.1, 1.9)
+SIDES = [Interval(low, high) for low, high in product(ENDS, ENDS) if low <= high]
+
+
+@pytest.mark.parametrize("first", SIDES)
+@pytest.mark.parametrize("second", SIDES)
+def test_a_product_is_as_narrow_as_it_can_be(first: Interval, second: Interval) -> None:
+    ends = [Fraction(a) * Fraction(b) for a, b in product((first.low, first.high), (second.low, second.high))]
+    found = first * second
+    for one, exact in ((found.low, min(ends)), (found.high, max(ends))):
+        assert abs(Fraction(one) - exact) <= 2 * Fraction(np.spacing(abs(float(exact))))
+    assert Fraction(found.low) <= min(ends) <= max(ends) <= Fraction(found.high)
+
+
 def test_a_divisor_that_may_be_zero_leaves_all_open() -> None:
     found = exactly(1.0) / Interval(-1.0, 1.0)
     assert (found.low, found.high) == (-np.inf, np.inf)

@@ -110,7 +110,7 @@ def iae_bounds(plant: Plant, box: GainBox) -> Interval:
     >>> found.high - found.low < 0.05, found.holds(Loop(plant, PID(1.0, 0.5, 1.0)).load_step().iae())
     (True, True)
     """
-    norms = _norms(plant, box.middle)
+    norms = _norms(plant, box.middle, bent=box.kd != NOTHING)
     if norms is None:
         return Interval(0.0, np.inf)
     area, slope, bend, follows = norms
@@ -122,10 +122,10 @@ def iae_bounds(plant: Plant, box: GainBox) -> Interval:
 
 
 @lru_cache(maxsize=4096)
-def _norms(plant: Plant, controller: PID) -> tuple[float, float, float, float] | None:
+def _norms(plant: Plant, controller: PID, *, bent: bool) -> tuple[float, float, float, float] | None:
     """Return the integrals of ``|y|``, ``|y'|`` and ``|y''|`` of a load response, and the variation of a set-point one.
 
-    ``None`` if the loop is unstable.
+    ``None`` if the loop is unstable; of y'' only if asked for, else 0.
     """
     loop = Loop(plant, controller)
     try:
@@ -134,6 +134,8 @@ def _norms(plant: Plant, controller: PID) -> tuple[float, float, float, float] |
         follows = total_variation(loop.step()) if controller.measurement_filter else 0.0
     except LoopError:
         return None
+    if not bent:
+        return area, total_variation(y), 0.0, follows
     half = 0.5 * np.diff(y.breaks)[:, None]
     slope = Piecewise(y.breaks, np.asarray(cheb.chebder(y.coefficients, axis=1)) / half)
     return area, total_variation(y), total_variation(slope), follows
@@ -247,17 +249,18 @@ def _keeps_sign(plant: Plant, box: GainBox, w: Interval, complementary: bool) ->
     """
     num, den = _exact(plant.num), [*_exact(plant.den), NOTHING]
 
-    def loop(k: Interval, ki: Interval, kd: Interval, lag: Interval) -> tuple[AxisJet, AxisJet]:
-        return numerator(kd, k, ki), AxisJet.polynomial(_lagged(den, lag, box.order), w)
+    def denominator(lag: Interval) -> AxisJet:
+        return AxisJet.polynomial(_lagged(den, lag, box.order), w)
 
     def numerator(*descending: Interval) -> AxisJet:
         found = AxisJet.polynomial(intervals.product(num, descending), w)
         return found.delayed(plant.dead_time, w) if plant.dead_time else found
 
-    sides = (box.k, box.ki, box.kd, box.lag)
-    n, d = loop(*(intervals.exactly(side.middle) for side in sides))
+    sides = (box.kd, box.k, box.ki)
+    n = numerator(*(intervals.exactly(side.middle) for side in sides))
+    d = denominator(intervals.exactly(box.lag.middle))
     found = n.wronskian(d).cross((n.value + d.value) * (n if complementary else d).value)
-    n, d = loop(*sides)
+    n, d = numerator(*sides), denominator(box.lag) if box.order else d
     last, both = (n if complementary else d).value, n.value + d.value
     a, b = n.wronskian(d), both * last
 

@@ -38,6 +38,7 @@ _ONE = exactly(1.0)
 _RATIO = 1.25  # of the ends of the first intervals of frequencies
 _SPAN = 1e3  # of the frequencies, up to that beyond which the loop gain is small
 _MOST_INTERVALS = 160  # that are looked at
+_BESIDE = 8  # frequencies of a grid beside a peak, of which one is taken for the largest
 _NARROWEST = 2e-3  # relative width of an interval that is still divided
 
 
@@ -97,7 +98,9 @@ class ResonanceBox:
         excludes
             Where it certainly is not.
         """
+        # what stays open does so where the middle controller peaks: looked at first, that is soon known
         waiting = [Interval(float(a), float(b)) for a, b in pairwise(self._edges)]
+        waiting.sort(key=lambda w: -max(w.low - self._peak, self._peak - w.high))
         for _ in range(_MOST_INTERVALS):
             if not waiting:
                 return True
@@ -111,13 +114,16 @@ class ResonanceBox:
 
     def none_largest_where(self, excludes: Excludes, frequencies: Iterable[float]) -> bool:
         """Say the same of the frequency of a grid at which ``|T|`` is largest."""
-        points = [exactly(float(w)) for w in frequencies]
-        excesses = [self.excess(w) for w in points]
-        sizes = [self._size(w, excess) for w, excess in zip(points, excesses, strict=True)]
-        largest = max(size.low for size in sizes)
-        return all(
-            size.high < largest or excludes(w, excess) for w, excess, size in zip(points, excesses, sizes, strict=True)
-        )
+        nearest = sorted(map(float, frequencies), key=lambda w: abs(math.log(w / self._peak)))
+        # those beside the peak of the middle controller are the largest, and the first to stay open
+        largest = max((self.size(exactly(w)).low for w in nearest[:_BESIDE]), default=0.0)
+        for w in map(exactly, nearest):
+            if w.low >= self._top and largest > 1.0:
+                continue
+            excess = self.excess(w)
+            if not (self._size(w, excess).high < largest or excludes(w, excess)):
+                return False
+        return True
 
     def _no_peak(self, w: Interval) -> bool:
         return w.low > 0.0 and no_peak_between(self.plant, self.gains, w.low, w.high, complementary=True, parts=1)
@@ -160,11 +166,16 @@ class ResonanceBox:
         return np.append(0.0, np.geomspace(self._top / _SPAN, self._top, count))
 
     @cached_property
-    def _least(self) -> float:
-        """A number below the square of the peak for all controllers: its size where the middle one's is near."""
+    def _peak(self) -> float:
+        """A frequency near that of the middle controller's peak."""
         s = 1j * self._edges[1:]
         loop = self.gains.middle.feedback(s) * self.plant(s)
-        return self.size(exactly(float(s[np.argmax(np.abs(loop / (1.0 + loop)))].imag))).low
+        return float(s[np.argmax(np.abs(loop / (1.0 + loop)))].imag)
+
+    @cached_property
+    def _least(self) -> float:
+        """A number below the square of the peak for all controllers: its size where the middle one's is near."""
+        return self.size(exactly(self._peak)).low
 
     @cached_property
     def _top(self) -> float:
