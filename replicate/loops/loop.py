@@ -163,6 +163,10 @@ class Loop(LoopViews, SetOnce):
             msg = f"the loop is unstable: it has no {what}"
             raise UnstableLoopError(msg)
 
+    def _require_stable_by_pole(self, what: str) -> None:
+        self._proven  # noqa: B018  -- the rightmost pole, which is needed next, says whether the loop is stable
+        self._require_stable(what)
+
     # ---- frequency domain -----------------------------------------------------------------------------------------
 
     def sensitivity_peak(self) -> FrequencyPeak:
@@ -173,7 +177,7 @@ class Loop(LoopViews, SetOnce):
         UnstableLoopError
             If the loop is unstable.
         """
-        self._require_stable("sensitivity peak")
+        self._require_stable_by_pole("sensitivity peak")
         return self._peak(sensitivity.sensitivity_peak(self._transfer, self._landmarks))
 
     def closest_approach(self, center: float) -> FrequencyPeak:
@@ -189,13 +193,13 @@ class Loop(LoopViews, SetOnce):
         UnstableLoopError
             If the loop is unstable.
         """
-        self._require_stable("closest approach")
+        self._require_stable_by_pole("closest approach")
         center = checks.at_least(1.0, "center", center)
         return self._peak(sensitivity.sensitivity_peak(self._transfer, self._landmarks, center))
 
     def complementary_peak(self) -> FrequencyPeak:
         """Return Mp = max |L/(1+L)| with its frequency; UnstableLoopError if the loop is unstable."""
-        self._require_stable("complementary sensitivity peak")
+        self._require_stable_by_pole("complementary sensitivity peak")
         return self._peak(sensitivity.complementary_peak(self._transfer, self._landmarks))
 
     def _peak(self, scaled: FrequencyPeak) -> FrequencyPeak:
@@ -216,8 +220,7 @@ class Loop(LoopViews, SetOnce):
         UnstableLoopError
             If the loop is unstable.
         """
-        self._proven  # noqa: B018  -- the rightmost pole, needed below, says whether the loop is stable
-        self._require_stable("settling horizon")
+        self._require_stable_by_pole("settling horizon")
         if not self.plant.parts:
             # a branch point at s = 0 leaves an algebraic tail; pieces grow geometrically, so a long horizon is cheap
             lasting = SETTLED / self._decay if self._decay else TAIL * function_responses.pace(self._poles)
@@ -344,6 +347,3 @@ class Loop(LoopViews, SetOnce):
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
         return responses(self._plant, [self._controller], end, setpoint=setpoint, load=load, unit=self._units.time)[0]
-
-    def __repr__(self) -> str:
-        return f"Loop({self.plant!r}, {self.controller!r})"

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 class LoopViews(LimitedViews):
     """Methods of `Loop` that only show what other methods know."""
 
+    def __repr__(self) -> str:
+        return f"Loop({self._loop.plant!r}, {self._loop.controller!r})"
+
     @property
     def primary_controller(self) -> PID:
         """The PI or PID controller, that of a Smith predictor without its model."""

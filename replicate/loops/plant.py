@@ -273,7 +273,7 @@ class Plant(PlantViews, SetOnce):
         """
         a, b, c, feedthrough = controller_form(self.num, self.den)
         if b.size > 1:
-            _, (scale, _) = scipy.linalg.matrix_balance(a, permute=False, separate=True)
+            _, _, _, scale, _ = scipy.linalg.lapack.dgebal(a, scale=1, permute=0)
             a, b, c = a * scale[None, :] / scale[:, None], b / scale, c * scale
         return a, b, c, feedthrough
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +20,7 @@ ComplexArray = NDArray[np.complex128]
 
 MORE = 2.5 * np.pi  # rad of the dead time, one full turn and more, so that a crossover below one is always included
 SAME = 1e-12  # relative difference of two gain margins that is rounding
+NEWTON_STEPS, CONVERGED = 6, 1e-9  # to a crossover, and the last one, relative, after which the next is below rounding
 SMALL = 1e-6  # |L| beyond which no crossover without dead time matters
 
 
@@ -158,7 +161,18 @@ def _turning_negative(value: ComplexArray) -> NDArray[np.intp]:
 
 
 def _polished(transfer: LoopTransfer, w: Array, i: int) -> float:
-    return bracketed_root(lambda x: float(complex(transfer(1j * x)).imag), float(w[i]), float(w[i + 1]))
+    """Return a phase crossover to rounding, by Newton's method on the phase, or by what brackets it."""
+    left, right = float(w[i]), float(w[i + 1])
+    at = 0.5 * (left + right)
+    for _ in range(NEWTON_STEPS if transfer.is_rational else 0):
+        value, turn = transfer.with_log_derivative(complex(0.0, at))
+        step = cmath.phase(-value) / turn.real if turn.real else math.nan
+        at -= step
+        if not left <= at <= right:
+            break
+        if abs(step) <= CONVERGED * at:
+            return at
+    return bracketed_root(lambda x: float(complex(transfer(1j * x)).imag), left, right)
 
 
 def _lower_beyond(transfer: LoopTransfer, gain: float, gain_at: float) -> tuple[float, float]:

@@ -143,13 +143,13 @@ def _all_crossovers(transfer: LoopTransfer) -> Array:
     if corners.size == 0:
         return roots
     low, high = corners.min() / BAND, BAND * corners.max()
-    grid = np.geomspace(low, high, max(2, int(PER_DECADE * np.log10(high / low))))
-    w = np.unique(np.concatenate([grid, np.sqrt(roots[1:] * roots[:-1])]))
-    with np.errstate(divide="ignore"):
-        level = np.log(np.abs(transfer(1j * w)))
+    count = max(2, int(PER_DECADE * math.log10(high / low)))
+    grid = np.exp(np.linspace(math.log(low), math.log(high), count))
+    w = np.sort(np.concatenate([grid, np.sqrt(roots[1:] * roots[:-1])]))
+    low_gain = np.abs(transfer(1j * w)) < 1.0
 
     found: list[float] = []
-    for i in np.nonzero((level[:-1] < 0.0) != (level[1:] < 0.0))[0]:
+    for i in np.nonzero(low_gain[:-1] != low_gain[1:])[0]:
         inside = roots[(roots > w[i]) & (roots <= w[i + 1])]
         if inside.size % 2:
             found += inside.tolist()
