@@ -7,8 +7,6 @@ the commands, so that ``replicate --help`` answers at once.
 
 from __future__ import annotations
 
-import atexit
-import gc
 import io
 import os
 import signal
@@ -52,7 +50,6 @@ app = typer.Typer(
 
 def main() -> None:
     """Run the command line; this is the console script ``replicate``."""
-    atexit.register(gc.freeze)  # nobody need look for garbage in what ends with the process
     with whole_output(BROKEN):
         _run()
 

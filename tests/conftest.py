@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import shutil
 import signal
@@ -151,6 +152,7 @@ def command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
         with pytest.raises(SystemExit) as exit_:
             cli.main()
         signal.signal(signal.SIGTERM, earlier)
+        gc.unfreeze()  # the process does not end with the command
         code = exit_.value.code
         assert isinstance(code, int)
         return code, *capsys.readouterr()

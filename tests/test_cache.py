@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import importlib
+import importlib.metadata
 import json
 import math
 import os
@@ -34,7 +35,7 @@ from replicate.run.cache import Cache, stored
 from replicate.run.costs import Costs
 from replicate.run.dependencies import Looked
 from replicate.run.library import Library
-from replicate.run.modules import modules_of
+from replicate.run.modules import file_of, installed, modules_of
 from replicate.run.parallel import Progress, run
 from replicate.run.storage import from_text, to_text
 from replicate.run.units import Unit
@@ -554,6 +555,45 @@ def test_a_module_of_another_paper_counts_where_it_is_imported(tmp_path: Path, m
         for name in names:
             sys.modules.pop(name, None)
     assert found == names - {"second_paper.alone"}
+
+
+def test_installed_modules_are_those_that_python_finds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    files = {
+        "listed-1.dist-info/RECORD": 'alone.py,,\n"listed_one/a,b.py",,\nlisted_two/deep/er.py,,\n../bin/tool.py,,\n',
+        "declared-1.dist-info/RECORD": "other.py,,\n",
+        "declared-1.dist-info/top_level.txt": "declared\nalone\n",
+        "older.egg-info/SOURCES.txt": "older/__init__.py\n",
+        "silent-1.dist-info/INSTALLER": "",
+    }
+    for name in ("listed-1.dist-info", "declared-1.dist-info", "silent-1.dist-info"):
+        files[f"{name}/METADATA"] = f"Metadata-Version: 2.1\nName: {name.partition('-')[0]}\nVersion: 1\n"
+    files |= {"older.egg-info/PKG-INFO": "Metadata-Version: 1.1\nName: older\nVersion: 1\n", "older/__init__.py": ""}
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
+    found, expected = installed.__wrapped__(), importlib.metadata.packages_distributions()
+    assert {"listed_one", "listed_two", "alone", "declared", "older", "numpy"} <= expected.keys()
+    assert {top: found.get(top) for top in expected if top != ".."} == {
+        top: names
+        for top, names in expected.items()
+        if top != ".."  # a program beside the modules
+    }
+    assert len(found["alone"]) == 2
+
+
+def test_what_a_module_defines_has_no_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(tmp_path)
+    (tmp_path / "lab_package").mkdir()
+    for name in ("__init__", "module", "unloaded"):
+        (tmp_path / "lab_package" / f"{name}.py").write_text("VALUE = 1\n")
+    try:
+        importlib.import_module("lab_package.module")
+        files = [file_of(f"lab_package.{name}") for name in ("module", "module.VALUE", "unloaded", "VALUE")]
+    finally:
+        for name in ("lab_package", "lab_package.module"):
+            sys.modules.pop(name, None)
+    assert files == [tmp_path / "lab_package" / "module.py", None, tmp_path / "lab_package" / "unloaded.py", None]
 
 
 def test_inner_parts_of_installed_packages_count_with_their_package() -> None:

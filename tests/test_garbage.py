@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import gc
-import subprocess
-import sys
 import weakref
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,7 +11,7 @@ import pytest
 import rogue
 
 from replicate.exhibits.results import TableResult
-from replicate.run.garbage import staying, uncollected
+from replicate.run.garbage import staying
 from replicate.run.library import Library
 from replicate.run.parallel import run
 
@@ -42,40 +40,30 @@ def _looked_through_again() -> Iterator[None]:
     gc.unfreeze()
 
 
-def _fail() -> None:
-    msg = "collecting" if gc.isenabled() else "not collecting"
-    raise ValueError(msg)
+def test_what_a_block_makes_stays_also_if_it_fails() -> None:
+    made: list[Circle] = []
 
+    def fail() -> None:
+        made.append(Circle())
+        raise KeyError
 
-def test_nothing_is_collected_inside_a_block_and_all_is_after_it() -> None:
-    with pytest.raises(ValueError, match="not collecting"), uncollected():
-        _fail()
+    with pytest.raises(KeyError), staying():
+        fail()
     assert gc.isenabled()
+    assert not any(one is made[0] for one in gc.get_objects())
+    after = weakref.ref(Circle())
+    gc.collect()
+    assert after() is None
 
 
 def test_who_collects_nothing_is_left_in_peace() -> None:
     gc.disable()
     try:
-        with uncollected():
-            pass
+        with staying():
+            assert not gc.isenabled()
         assert not gc.isenabled()
     finally:
         gc.enable()
-
-
-def test_what_a_block_makes_stays_and_no_garbage_from_before_it() -> None:
-    gc.disable()
-    try:
-        before = weakref.ref(Circle())
-        with staying():
-            made = Circle()
-        assert before() is None, "garbage must not be taken for what stays"
-        assert not any(one is made for one in gc.get_objects())
-    finally:
-        gc.enable()
-    after = weakref.ref(Circle())
-    gc.collect()
-    assert after() is None
 
 
 def test_workers_collect_garbage_but_do_not_look_through_papers_and_libraries(tmp_path: Path) -> None:
@@ -85,13 +73,3 @@ def test_workers_collect_garbage_but_do_not_look_through_papers_and_libraries(tm
     table = results["rogue", "table-1"]
     assert isinstance(table, TableResult)
     assert table.frames["looks"].loc["a"].to_dict() == {"on": 1.0, "found": 1.0, "paper": 0.0, "library": 0.0}
-
-
-def test_a_command_does_not_look_through_what_ends_with_it() -> None:
-    """Registered last, run first: what is frozen at the end of the program."""
-    code = (
-        "import atexit, gc; atexit.register(lambda: print(gc.get_freeze_count() > 1000));"
-        "from replicate.cli import main; main()"
-    )
-    done = subprocess.run([sys.executable, "-c", code, "--version"], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[1] == "True"

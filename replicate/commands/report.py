@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from replicate.commands.computing import Computing, computing
 from replicate.commands.options import BROKEN, DIFFERS, Accepted, Papers, SingleFile, accepted_folder, exit_with
 from replicate.errors import TemplateError
-from replicate.run.garbage import uncollected
+from replicate.run.garbage import staying
 from replicate.terminal.streams import echo
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @computing
-@uncollected()
+@staying()
 def report(
     run: Computing,
     papers: Papers = None,
@@ -139,7 +139,7 @@ def _stands(run: Computing, texts: Mapping[str, str], note: Standing) -> bool:
 
 
 @computing
-@uncollected()
+@staying()
 def check(
     run: Computing,
     papers: Papers = None,

@@ -12,21 +12,13 @@ from contextlib import contextmanager
 
 
 @contextmanager
-def uncollected() -> Iterator[None]:
-    """Look for no garbage inside a ``with`` block, whose circles are few."""
+def staying() -> Iterator[None]:
+    """Take all that is there after a ``with`` block for what stays: nothing looks through it, in the block or later."""
     was_on = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
+        gc.freeze()  # before it is looked through when the next object is made
         if was_on:
             gc.enable()
-
-
-@contextmanager
-def staying() -> Iterator[None]:
-    """Take all that is there after a ``with`` block for what stays: nothing looks through it any more."""
-    gc.collect()  # what is garbage before the block does not stay
-    with uncollected():
-        yield
-        gc.freeze()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import time
 from collections.abc import Callable, Collection
@@ -94,6 +95,7 @@ class Performer:
         changed = []
         if unit.package not in self._loaded:
             # Before anything is set: what a module changes when it is imported must not depend on which unit is first.
+            gc.collect()  # what earlier units have left does not stay
             with staying():
                 self._loaded[unit.package] = loaded(unit.package)
                 read_imports(unit.package)
