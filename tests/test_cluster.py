@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import os
+import shutil
 import socketserver
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -17,8 +19,11 @@ import installed_paper
 import pytest
 
 from replicate.errors import ReplicateError
-from replicate.run import backends
+from replicate.exhibits.vocabulary import Table
+from replicate.run import backends, same_program
 from replicate.run.backends import DaskCluster, LocalProcesses
+from replicate.run.cluster import ClusterPool
+from replicate.run.units import Unit
 from replicate.sweeps import read_sweep_file, run_sweep
 
 SWEEP = """
@@ -76,6 +81,19 @@ def test_report_and_check_on_a_cluster_are_those_of_this_machine(tmp_path: Path)
             tmp_path / "local" / path.relative_to(tmp_path / "cluster"): content
             for path, content in installed_paper.contents(tmp_path / "cluster").items()
         }
+        # Another project whose paper has the same package and other contents, on workers that know the first.
+        other = tmp_path / "other"
+        shutil.copytree(tmp_path / "site", other, ignore=shutil.ignore_patterns("__pycache__"))
+        exhibits = other / "lab_paper/exhibits.py"
+        text = exhibits.read_text(encoding="utf-8").replace("math.log(2)", "math.log(4)")
+        more = '@paper.figure("fig-3", "Another", alt="Another.", size=(3.0, 2.0))\ndef other(fig): draw(fig)'
+        exhibits.write_text(f"{text}\n\n{more}\n", encoding="utf-8")
+        environment["PYTHONPATH"] = str(other)
+        assert replicate("report", "lab", "--out", "local-2", "-j1", "--no-cache").returncode == 0
+        done = replicate("report", "lab", "--out", "cluster-2", *there)
+        assert done.returncode == 0, done.stderr
+        of_both = [(tmp_path / name / "results.csv").read_bytes() for name in ("local", "local-2", "cluster-2")]
+        assert of_both[0] != of_both[1] == of_both[2]
         environment["LAB_BREAKS"] = "1"  # here, not on the cluster: nothing raises where the work is done
         assert "kettle" not in replicate("check", "lab", "--accepted", "state", *there).stderr
 
@@ -110,13 +128,56 @@ def test_what_is_no_scheduler_but_takes_calls_is_one_line(nobody: str, monkeypat
         list(DaskCluster(nobody).unordered(abs, [1]))
 
 
-def test_a_loop_that_runs_already_hinders_no_cluster(tmp_path: Path) -> None:
-    async def in_a_notebook(address: str) -> list[tuple[int, int]]:
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Return the address of a scheduler with one worker."""
+    with dask_cluster.cluster(tmp_path_factory.mktemp("cluster"), workers=1) as cluster:
+        yield cluster.address
+
+
+def test_a_loop_that_runs_already_hinders_no_cluster(address: str) -> None:
+    async def in_a_notebook() -> list[tuple[int, int]]:
         return list(DaskCluster(address).unordered(abs, [-1]))
 
     # in a thread of its own: in this one, the tests in a browser may have left a loop that runs
+    with ThreadPoolExecutor(1) as thread:
+        assert thread.submit(lambda: asyncio.run(in_a_notebook())).result() == [(-1, 1)]
+
+
+@pytest.mark.parametrize(("key", "has"), [("scipy", r"scipy \S+, not 1\.0"), ("code", "other code of replicate")])
+def test_a_worker_with_another_program_computes_nothing(
+    address: str, monkeypatch: pytest.MonkeyPatch, key: str, has: str
+) -> None:
+    monkeypatch.setattr(backends, "program", lambda: {**same_program.program(), key: "1.0"})
+    with pytest.raises(ReplicateError, match=rf"^the worker tcp://\S+ has {has}: every machine needs the same version"):
+        list(DaskCluster(address).unordered(abs, [-1]))
+
+
+def test_a_worker_that_does_not_see_the_papers_is_named(address: str) -> None:
+    unit = Unit("lab", "no_such_paper", "table-1", "as-written")
+    exhibit = Table("table-1", "table", "Roots", rows=("2",), columns=("root",))
+    with pytest.raises(
+        ReplicateError, match=r"^lab/table-1 \(as-written\): the worker tcp://\S+ has no 'no_such_paper'"
+    ):
+        list(ClusterPool(DaskCluster(address), 60.0).run({unit: exhibit}))
+
+
+def test_a_cluster_that_has_lost_its_workers_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(backends, "ABSENCE", 1)
+    monkeypatch.setattr(backends, "_LOOK", 0.5)
+    begun = tmp_path / "begun"
+
+    def lose(cluster: dask_cluster.Cluster) -> None:
+        end = time.monotonic() + 60
+        while not begun.exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        cluster.kill_a_worker()
+
     with dask_cluster.cluster(tmp_path, workers=1) as cluster, ThreadPoolExecutor(1) as thread:
-        assert thread.submit(lambda: asyncio.run(in_a_notebook(cluster.address))).result() == [(-1, 1)]
+        lost = thread.submit(lose, cluster)
+        with pytest.raises(ReplicateError, match=r"has had no worker for 1 s: what ended them is in their logs"):
+            list(DaskCluster(cluster.address).unordered(subprocess.call, [["sh", "-c", f"touch '{begun}'; sleep 600"]]))
+        lost.result()
 
 
 def test_a_scheduler_without_workers_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,6 +7,7 @@ import math
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -68,7 +69,8 @@ def test_parquet_holds_the_same_as_csv(tmp_path: Path) -> None:
     sweep = written(tmp_path / "s.toml")
     for file_format in ("csv", "parquet"):
         run_sweep(sweep, tmp_path / file_format, file_format, LocalProcesses(1))
-    parquet = pd.concat([pd.read_parquet(path) for path in sorted((tmp_path / "parquet").glob("*.parquet"))])
+    (tmp_path / "parquet" / ".block-000009.parquet.partial").write_bytes(b"of a run that was killed")
+    parquet = pd.read_parquet(tmp_path / "parquet")  # the folder as a whole, whatever lies beside the blocks
     csv = read(tmp_path / "csv")
     assert list(parquet.columns) == list(csv.columns)
     np.testing.assert_allclose(parquet["iae"], csv["iae"], rtol=1e-11)
@@ -145,8 +147,78 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
     other = written(tmp_path / "s.toml", GRID.replace("0.2, 5.0", "0.3, 5.0"))
     with pytest.raises(OutputError, match="holds the blocks of another sweep"):
         run_sweep(other, tmp_path / "out", "csv", LocalProcesses(1))
-    about = json.loads((tmp_path / "out/sweep.json").read_text(encoding="utf-8"))
+    with pytest.raises(OutputError, match="out: holds this sweep as csv, not parquet: remove the folder"):
+        run_sweep(sweep, tmp_path / "out", "parquet", LocalProcesses(1))
+    about = json.loads((tmp_path / "out/_sweep.json").read_text(encoding="utf-8"))
     assert about["loops"] == 12
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ("numpy", "holds blocks that were computed by numpy 1.0, not "),
+        ("replicate", "holds blocks that were computed by replicate 1.0, not "),
+        ("code", "holds blocks that were computed by other code of replicate: remove the folder"),
+    ],
+)
+def test_blocks_of_another_program_are_not_continued(tmp_path: Path, key: str, message: str) -> None:
+    sweep = written(tmp_path / "s.toml")
+    run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    path = tmp_path / "out/_sweep.json"
+    about = json.loads(path.read_text(encoding="utf-8"))
+    about["program"][key] = "1.0"
+    path.write_text(json.dumps(about), encoding="utf-8")
+    (tmp_path / "out/block-000001.csv").unlink()
+    with pytest.raises(OutputError, match=message):
+        run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    assert not (tmp_path / "out/block-000001.csv").exists()
+
+
+def test_a_run_killed_at_its_first_write_is_continued(tmp_path: Path) -> None:
+    sweep = written(tmp_path / "s.toml")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out/._sweep.json.partial").write_text("{", encoding="utf-8")
+    run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
+    assert len(read(tmp_path / "out")) == 12
+    assert sorted(path.name for path in (tmp_path / "out").iterdir() if path.suffix != ".csv") == ["_sweep.json"]
+
+
+#: Workers that say who they are, and then have nothing to do.
+IDLE = """
+import os, sys, time
+from pathlib import Path
+from replicate.run.backends import LocalProcesses
+
+def work(item):
+    Path(sys.argv[1], str(os.getpid())).touch()
+
+def main():
+    for _ in LocalProcesses(2).unordered(work, range(8)):
+        pass
+    Path(sys.argv[1], "done").touch()
+    time.sleep(600)
+
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks at processes as Linux shows them")
+def test_workers_end_when_the_run_is_killed(tmp_path: Path) -> None:
+    def alive(pid: int) -> bool:
+        stat = Path(f"/proc/{pid}/stat")
+        return stat.exists() and stat.read_text(encoding="utf-8").rpartition(")")[2].split()[0] != "Z"
+
+    with subprocess.Popen([sys.executable, "-c", IDLE, str(tmp_path)]) as run:
+        end = time.monotonic() + 60
+        while not (tmp_path / "done").exists() and time.monotonic() < end:
+            time.sleep(0.05)
+        workers = [int(path.name) for path in tmp_path.iterdir() if path.name != "done"]
+        assert workers
+        assert all(map(alive, workers))
+        run.kill()  # nothing but the main process
+    while any(map(alive, workers)) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert not any(map(alive, workers))
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="no device that is always full")
@@ -154,7 +226,7 @@ def test_a_full_disk_is_one_line(tmp_path: Path) -> None:
     sweep = written(tmp_path / "s.toml")
     run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
     (tmp_path / "out/block-000002.csv").unlink()
-    (tmp_path / "out/block-000002.csv.partial").symlink_to("/dev/full")
+    (tmp_path / "out/.block-000002.csv.partial").symlink_to("/dev/full")
     with pytest.raises(OutputError, match=r"block-000002\.csv: cannot be written: No space left"):
         run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
     assert (tmp_path / "out/block-000001.csv").is_file()

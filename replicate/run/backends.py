@@ -10,17 +10,22 @@ from __future__ import annotations
 import asyncio
 import logging
 import os
+import threading
+import time
 import warnings
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache, partial
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import islice
+from queue import Empty, SimpleQueue
 from typing import Any, Protocol, TypeVar
 
 from replicate.errors import ReplicateError
+from replicate.run.same_program import difference, program
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -28,6 +33,8 @@ Made = TypeVar("Made")
 LOCAL, DASK = "local", "dask"
 NAMES = (LOCAL, DASK)
 ANSWER = 10  # seconds in which a scheduler must answer, and have a worker
+ABSENCE = 60  # seconds without any worker, after which none is waited for
+_LOOK = 5.0  # seconds between two looks whether there is one
 _ATTEMPTS = 3  # a local worker that dies takes joblib's pool with it: what is left is begun anew
 
 
@@ -68,7 +75,7 @@ class LocalProcesses:
         waiting = dict(enumerate(items))
         for attempt in range(1, _ATTEMPTS + 1):
             parallel = joblib.Parallel(self.jobs, return_as="generator_unordered", batch_size=1)
-            found = parallel(joblib.delayed(_numbered)(function, *each) for each in list(waiting.items()))
+            found = parallel(joblib.delayed(_numbered)(os.getpid(), function, *each) for each in list(waiting.items()))
             try:
                 for number, made in found:
                     yield waiting.pop(number), made
@@ -104,17 +111,19 @@ class DaskCluster:
         with _client(self.scheduler) as client:
             waiting = iter(enumerate(items))
             begun: dict[str, Item] = {}
-            done = distributed.as_completed(loop=client.loop)
+            ready: SimpleQueue[Any] = SimpleQueue()
+            there = partial(_by_the_same_program, program(), function)
 
             def give(most: int) -> None:
                 # A few more than there are cores, so that none waits for its next one; all would fill the memory.
                 for number, item in islice(waiting, max(0, most - len(begun))):
-                    future = client.submit(function, item, pure=False, priority=-number)
+                    future = client.submit(there, item, pure=False, priority=-number)
                     begun[future.key] = item
-                    done.add(future)
+                    future.add_done_callback(ready.put)
 
             give(self._ahead(client))
-            for future in done:
+            while begun:
+                future = self._next(ready, client)
                 item = begun.pop(future.key)
                 give(self._ahead(client))
                 try:
@@ -124,14 +133,27 @@ class DaskCluster:
                     raise ReplicateError(msg) from error
                 yield item, made
 
+    def _next(self, ready: SimpleQueue[Any], client: Any) -> Any:
+        """Return the next task that is done; while there is no worker, none will be."""
+        alone = 0.0
+        while alone < ABSENCE:
+            try:
+                return ready.get(timeout=_LOOK)
+            except Empty:
+                alone = 0.0 if self._cores(client) else alone + _LOOK
+        msg = f"the scheduler {self.scheduler} has had no worker for {ABSENCE} s: what ended them is in their logs"
+        raise ReplicateError(msg)
+
     def _ahead(self, client: Any) -> int:
         """Return how many tasks may be under way."""
+        return 2 * max(1, self._cores(client))
+
+    def _cores(self, client: Any) -> int:
         try:
-            cores: int = sum(client.ncores().values())
+            return sum(client.ncores().values())
         except OSError as error:
             msg = f"the scheduler {self.scheduler} was lost"
             raise ReplicateError(msg) from error
-        return 2 * max(1, cores)
 
 
 def backend_of(name: str, scheduler: str | None, jobs: int | None) -> Backend:
@@ -170,8 +192,38 @@ def cluster_of(name: str, scheduler: str | None) -> DaskCluster | None:
     return DaskCluster(scheduler)
 
 
-def _numbered(function: Callable[[Item], Made], number: int, item: Item) -> tuple[int, Made]:
+def _numbered(main: int, function: Callable[[Item], Made], number: int, item: Item) -> tuple[int, Made]:
+    _end_with(main)
     return number, function(item)
+
+
+@cache
+def _end_with(main: int) -> None:
+    """Have this worker process end when the main process is killed: joblib's would wait for work for ever."""
+
+    def watch() -> None:
+        while os.getppid() == main:
+            time.sleep(1.0)
+        os._exit(1)
+
+    if os.name == "posix" and os.getpid() != main:  # of one job, joblib makes no process
+        threading.Thread(target=watch, name="end with the main process", daemon=True).start()
+
+
+def _by_the_same_program(here: Mapping[str, str], function: Callable[[Item], Made], item: Item) -> Made:
+    """Apply a function in a worker of a cluster, if its program is the one that asks.
+
+    Raises
+    ------
+    ReplicateError
+        If it has other code or other libraries: its digits would be others.
+    """
+    why = difference(program(), here)
+    if why:
+        address = import_module("distributed").get_worker().address
+        msg = f"the worker {address} has {why}: every machine needs the same version of replicate and its libraries"
+        raise ReplicateError(msg)
+    return function(item)
 
 
 @contextmanager

@@ -94,7 +94,7 @@ def compute(unit: Unit, without: Collection[str] = (), before: Callable[[str], o
 
 def failed(unit: Unit, exhibit: Exhibit, why: str) -> Result:
     """Return the record of a unit of which nothing is left but the reason."""
-    if isinstance(exhibit, Table):
+    if unit.reading:
         return TableResult(unit.paper, unit.exhibit, errors={unit.reading: why})
     if isinstance(exhibit, Claims):
         return ClaimsResult(unit.paper, unit.exhibit, errors=dict.fromkeys(exhibit.claims, why))

@@ -48,9 +48,14 @@ def write(path: Path, content: bytes) -> Path:
     return path
 
 
+def partial_of(path: Path) -> Path:
+    """Return where a file is written before it is whole: hidden, so that who reads the folder passes over it."""
+    return path.with_name(f".{path.name}.partial")
+
+
 def write_safely(path: Path, content: bytes) -> None:
     """Write a file that is whole at every moment, and on the disk when this returns."""
-    partial = path.with_name(f"{path.name}.partial")
+    partial = partial_of(path)
     partial.write_bytes(content)
     flush([partial])
     partial.replace(path)

@@ -19,7 +19,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 from replicate.errors import OutputError
-from replicate.staging.files import flush, folders_of, keep, move, remove_empty, write_safely
+from replicate.staging.files import flush, folders_of, keep, move, partial_of, remove_empty, write_safely
 from replicate.staging.names import checked_name
 from replicate.staging.signals import deferred_signals
 
@@ -146,8 +146,8 @@ def throw_away(target: Path) -> None:
     if not (room / _JOURNAL).exists():
         for part in (_NEW, _OLD):
             shutil.rmtree(room / part, ignore_errors=True)
-        for name in (_UNDO, f"{_UNDO}.partial", f"{_JOURNAL}.partial"):
-            (room / name).unlink(missing_ok=True)
+        for path in (room / _UNDO, partial_of(room / _UNDO), partial_of(room / _JOURNAL)):
+            path.unlink(missing_ok=True)
 
 
 def is_interrupted(target: Path) -> bool:

@@ -7,7 +7,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from replicate.errors import OutputError
-from replicate.staging.files import write_safely
+from replicate.staging.files import partial_of, write_safely
 from replicate.staging.journal import ROOM, room_of
 from replicate.staging.lock import locked
 from replicate.staging.stage import LOCK, say, unwritable
@@ -44,6 +44,6 @@ def keep_file(path: Path, content: bytes) -> None:
     try:
         write_safely(path, content)
     except OSError as error:
-        path.with_name(f"{path.name}.partial").unlink(missing_ok=True)
+        partial_of(path).unlink(missing_ok=True)
         msg = f"{path}: cannot be written: {error.strerror or error}"
         raise OutputError(msg) from error

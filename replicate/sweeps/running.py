@@ -1,8 +1,9 @@
 """Run a sweep block by block into a folder; what is there already is not computed again.
 
 A block's file is written beside its place, flushed and renamed, so that a file with a block's name is a whole block:
-an interrupted run has lost at most the blocks it was at. The folder says which sweep it holds (``sweep.json``), and
-nothing but that sweep's blocks is ever written there.
+an interrupted run has lost at most the blocks it was at. The folder says which sweep it holds and which program has
+computed it (``_sweep.json``: readers of folders of Parquet files pass over such names), and nothing but that sweep's
+blocks is ever written there.
 """
 
 from __future__ import annotations
@@ -16,11 +17,12 @@ from pathlib import Path
 
 from replicate.errors import OutputError
 from replicate.run.backends import Backend
-from replicate.staging import keep_file, locked_folder
+from replicate.run.same_program import difference, program
+from replicate.staging import ROOM, keep_file, locked_folder, partial_of
 from replicate.sweeps.blocks import compute_block, file_name, rows_in, rows_of
 from replicate.sweeps.sweep_file import Block, SweepFile
 
-SPECIFICATION = "sweep.json"
+SPECIFICATION = "_sweep.json"
 
 
 @dataclass(frozen=True)
@@ -89,16 +91,30 @@ def _folder(folder: Path, sweep: SweepFile, file_format: str) -> Iterator[None]:
         try:
             there = json.loads(path.read_text(encoding="utf-8"))
         except FileNotFoundError:
-            foreign = sorted(entry.name for entry in folder.iterdir() if entry.name != ".replicate")
+            foreign = sorted(
+                entry.name for entry in folder.iterdir() if entry.name not in {ROOM, partial_of(path).name}
+            )
             if foreign:
                 msg = f"{folder}: holds {foreign[0]}, which belongs to no sweep: name another folder with --out"
                 raise OutputError(msg) from None
-            keep_file(path, (json.dumps(about, indent=1) + "\n").encode())
+            keep_file(path, (json.dumps({**about, "program": program()}, indent=1) + "\n").encode())
         except (OSError, ValueError, RecursionError) as error:
             msg = f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}"
             raise OutputError(msg) from error
         else:
-            if not isinstance(there, dict) or {**there, "sweep": sweep.name} != about:
-                msg = f"{folder}: holds the blocks of another sweep: remove the folder, or name another with --out"
+            why = _foreign(there, about)
+            if why:
+                msg = f"{folder}: holds {why}: remove the folder, or name another with --out"
                 raise OutputError(msg)
         yield
+
+
+def _foreign(there: object, about: dict[str, object]) -> str:
+    """Say what a folder holds if it is not what this run would write."""
+    if not isinstance(there, dict) or there.get("digest") != about["digest"]:
+        return "the blocks of another sweep"
+    if there.get("format") != about["format"]:
+        return f"this sweep as {there.get('format')}, not {about['format']}"
+    made_by = there.get("program")
+    why = difference(made_by, program()) if isinstance(made_by, dict) else "an unknown program"
+    return f"blocks that were computed by {why}" if why else ""

@@ -48,6 +48,9 @@ class Block:
     plants: tuple[int, int]
     controllers: tuple[int, int]
 
+    def __str__(self) -> str:
+        return f"block {self.number}"
+
 
 @dataclass(frozen=True)
 class SweepFile:
