@@ -51,4 +51,5 @@ def table_text(frame: pd.DataFrame) -> str:
 
 def curves_text(curves: pd.DataFrame) -> str:
     """Return the curves of a figure as CSV; they come rounded to nine significant digits."""
-    return csv_text(list(curves.columns), curves.itertuples(index=False, name=None))
+    # lists of Python's own: pandas makes an object of each text when it is asked for rows
+    return csv_text(list(curves.columns), zip(*(curves[name].tolist() for name in curves), strict=True))

@@ -42,6 +42,7 @@ def sources(functions: list[Callable[..., Any]]) -> list[Source]:
     return list(found.values())
 
 
+@functools.cache  # several exhibits show one module
 def highlight(code: str) -> Markup:
     """Return Python code as HTML: keywords, strings and comments in elements of their own.
 
