@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from loops.closed_forms import pi_foptd, rational_step
-from replicate.loops import PI, Loop, Plant
+from replicate.loops import PI, Loop, Plant, step_responses
 from replicate.loops.time_domain import many_pieces
+from replicate.loops.time_domain.method_of_steps import MOST_ALONE
 
 
 @pytest.mark.parametrize("most", [1, 5, 40, 2000])
@@ -30,6 +31,25 @@ def test_dead_time_of_several_pieces(lag: float, splits: int, until: float) -> N
     t = until * np.array([0.3, 0.77, 1.0])
     exact = [float(pi_foptd(1.0, lag, 1.0, k=0.2, ki=0.4, t=float(time))) for time in t]
     assert np.max(np.abs(y(t) - exact)) < 1e-12
+
+
+@pytest.mark.parametrize("dead_time", [0.0, 0.5])
+def test_integrators_without_feedback(dead_time: float) -> None:
+    # a pole at s = 0: the load is integrated once or twice, and nothing comes to rest
+    t = np.array([0.3, 7.7, 60.0])
+    for order in (1, 2):
+        y = Loop(Plant([1.0], [1.0, *[0.0] * order], dead_time), PI(0.0)).load_step(until=60.0)
+        exact = np.maximum(t - dead_time, 0.0) ** order / order
+        assert np.max(np.abs(y(t) - exact)) < 1e-12 * exact.max()
+
+
+def test_several_controllers_are_as_one_alone() -> None:
+    plant, t = Plant.foptd(1.0, 0.1, 1.0), np.array([3.0, 11.2])
+    gains = [(0.1 + 0.02 * j, 0.2 + 0.03 * j) for j in range(MOST_ALONE + 1)]
+    for count in (3, MOST_ALONE + 1):
+        found = step_responses(plant, [PI(k, ki) for k, ki in gains[:count]], until=11.2)
+        exact = [[float(pi_foptd(1.0, 0.1, 1.0, k=k, ki=ki, t=float(at))) for at in t] for k, ki in gains[:count]]
+        assert np.max(np.abs(np.array([y(t) for y in found]) - exact)) < 1e-12
 
 
 @pytest.mark.parametrize("until", [3.0, 40.0, 900.0])

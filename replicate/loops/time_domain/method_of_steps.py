@@ -42,7 +42,8 @@ STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 2000  # beyond, pieces that adapt are faster
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 TINY = float(np.finfo(float).tiny)
-FEW = 4  # dead times, up to which a single response goes on piece by piece
+FEW = 4  # dead times, up to which responses go on piece by piece
+MOST_ALONE = 8  # responses; more of them go on together, piece by piece
 
 
 @dataclass(frozen=True)
@@ -189,22 +190,16 @@ def _march(
     """Step through the pieces; returns node values of y and u, shape (2, controllers, pieces, points)."""
     fixed = piece_map(chain, length)
     points, n, sweep = DEGREE + 1, chain.e.size, gain_matrix.shape[1]
+    if sweep <= MOST_ALONE and pieces > FEW * splits and not (gain_matrix[3] * chain.setpoint_impulse).any():
+        alone = [np.concatenate([np.tensordot(g, fixed.basis, 1), fixed.output, fixed.state]) for g in gain_matrix.T]
+        start = chain.start * setpoint
+        return np.stack([march_together(rows, splits, start, pieces, setpoint, load) for rows in alone], axis=1)
     history = np.zeros((pieces + splits, points, sweep))  # u, shifted by one dead time
     output = np.empty((pieces, points, sweep))
-    single = sweep == 1
-    blocks = np.concatenate(
-        [
-            np.tensordot(gain_matrix[:, 0], fixed.basis, 1) if single else fixed.basis.reshape(4 * points, -1),
-            fixed.output,
-            fixed.state,
-        ]
-    )
+    blocks = np.concatenate([fixed.basis.reshape(4 * points, -1), fixed.output, fixed.state])
     inputs = np.zeros((points + n + 1, sweep))
     inputs[-1] = setpoint
     inputs[points:-1] = chain.start[:, None] * setpoint
-    if single and pieces > FEW * splits and not (gain_matrix[3] * chain.setpoint_impulse).any():
-        return march_together(blocks, splits, inputs[points:-1, 0], pieces, setpoint, load)[:, None]
-    n_basis = blocks.shape[0] - points - n
     impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
     feedback = gain_matrix[3] * chain.wv[3, 0]  # an impulse in v passes through the ideal derivative into u
     result = np.empty((blocks.shape[0], sweep))
@@ -217,12 +212,9 @@ def _march(
             inputs[points:-1] += chain.b * impulse
             impulse = feedback * impulse
         np.matmul(blocks, inputs, out=result)
-        if single:
-            history[j + splits] = result[:n_basis]
-        else:
-            history[j + splits] = np.einsum("ws,wps->ps", gain_matrix, result[:n_basis].reshape(4, points, sweep))
-        output[j] = result[n_basis : n_basis + points]
-        inputs[points:-1] = result[n_basis + points :]
+        history[j + splits] = np.einsum("ws,wps->ps", gain_matrix, result[: 4 * points].reshape(4, points, sweep))
+        output[j] = result[4 * points : 5 * points]
+        inputs[points:-1] = result[5 * points :]
     return np.stack([np.moveaxis(output, 2, 0), np.moveaxis(history[splits:], 2, 0)])
 
 
@@ -268,9 +260,7 @@ def _march_closed(
     u[:, n] += closed.ud * load + closed.ur * setpoint
     y += chain.d[0] * u
     y[:, n] += chain.d[0] * load
-    start = (chain.b[:, 0] * closed.impulse + chain.start) * setpoint
-    # what is constant is carried with the states, or taken off if it is small
-    rest = np.linalg.solve(closed.a, -drive)
-    starts = np.ones((n + 1, pieces))
-    starts[:n] = carried(flow[-1, :, :n], start - rest, pieces) + rest[:, None]
+    end = np.zeros((n + 1, n + 1))
+    end[:n], end[n, n] = flow[-1], 1.0
+    starts = carried(end, np.append((chain.b[:, 0] * closed.impulse + chain.start) * setpoint, 1.0), pieces)
     return (y @ starts).T, (u @ starts).T

@@ -23,6 +23,7 @@ from replicate.papers.khan.peaks import ROUNDING, Responses
 Array = NDArray[np.float64]
 
 HORIZON = 30.0  # dead times; the highest peak comes long before, which `sweep` checks
+ENOUGH = 20.0  # for gains up to 0.99 of the stability limit
 
 # The dense grid: finer in ph where the curves change most, with the edges of the paper's cases on it.
 PH = np.round(np.concatenate([np.arange(0.0, 0.5, 0.025), np.arange(0.5, 3.0, 0.05), np.arange(3.0, 10.1, 0.2)]), 3)
@@ -83,8 +84,8 @@ def stability_limit(ph: float) -> float:
     return float(np.hypot(w, ph))
 
 
-def sweep(ph: float, kh: Array) -> Sweep:
-    """Return exact overshoot and rise time of loops with one ph.
+def sweep(ph: float, kh: Array, horizon: float = HORIZON) -> Sweep:
+    """Return exact overshoot and rise time of loops with one ph, as seen over at least a horizon in dead times.
 
     Raises
     ------
@@ -95,7 +96,7 @@ def sweep(ph: float, kh: Array) -> Sweep:
     # below the breakpoint one real pole, s = W(-Kh e^ph) - ph, may be slow: the horizon must still hold the rise
     slow = kh < np.exp(-1.0 - ph)
     decay = ph - lambertw(-kh[slow] * np.exp(ph)).real
-    until = float(np.ceil(max(HORIZON, 2.0 + 3.5 / decay.min(initial=1.0))))
+    until = float(np.ceil(max(horizon, 2.0 + 3.5 / decay.min(initial=1.0))))
     gains = np.column_stack([kh, np.zeros_like(kh)])
     found = sweep_of_loops(_plant(ph), gains, ("overshoot", "peak_time", "rise_time"), until)
     highest, at, rise_time = (found[name][0] for name in found.metrics)
@@ -155,5 +156,5 @@ def _stable(ph: float, kh: Array) -> Array:
 @cache
 def dense() -> Sweep:
     """Return the dense grid of more than 10,000 stable loops, 0 <= ph <= 10, up to 0.99 of the stability limit."""
-    parts = [sweep(float(ph), SHARES * stability_limit(float(ph))).parts() for ph in PH]
+    parts = [sweep(float(ph), SHARES * stability_limit(float(ph)), ENOUGH).parts() for ph in PH]
     return Sweep(*(np.concatenate(column) for column in zip(*parts, strict=True)))

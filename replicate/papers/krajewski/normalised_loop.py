@@ -76,9 +76,9 @@ def phase(a: ArrayLike, b: ArrayLike, tau: ArrayLike, w: ArrayLike) -> Array:
     return np.asarray(np.arctan2(np.asarray(b) * w, np.asarray(a)) - 0.5 * np.pi - lag(tau, w))
 
 
-def phase_margin(a: ArrayLike, b: ArrayLike, tau: ArrayLike) -> Array:
-    """Return m_φ in degrees for a > 0; negative where the loop is unstable."""
-    return np.asarray(np.degrees(np.pi + phase(a, b, tau, crossover(a, b))))  # (9)
+def phase_margin(a: ArrayLike, b: ArrayLike, tau: ArrayLike, w: ArrayLike | None = None) -> Array:
+    """Return m_φ in degrees for a > 0, negative where the loop is unstable; w is the crossover if it is known."""
+    return np.asarray(np.degrees(np.pi + phase(a, b, tau, crossover(a, b) if w is None else w)))  # (9)
 
 
 @cache

@@ -19,7 +19,7 @@ def encirclements(a: float, b: float, tau: float) -> int:
     The curve is closed by the large arc on which s passes the pole at 0 on its right; the angle of 1 + G is
     followed from there to a frequency beyond which |G| < 1.
     """
-    w = np.geomspace(1e-6, 1e3, 400_001)
+    w = np.geomspace(1e-6, 1e3, 20_001)
     angle = np.unwrap(np.angle(1.0 + frequency_response(a, b, tau, w)))
     # Over the small half circle s = ε exp(jφ), φ from -π/2 to π/2, G ≈ a/s turns by -π (a > 0 or a < 0 alike).
     turn = 2.0 * (angle[-1] - angle[0]) - np.pi

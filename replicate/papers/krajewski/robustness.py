@@ -53,7 +53,8 @@ def changed(design: ArrayLike, K: ArrayLike, L: ArrayLike, T: ArrayLike) -> Chan
     a, b, tau = np.asarray(design, dtype=float)
     K, L, T = np.asarray(K, dtype=float), np.asarray(L, dtype=float), np.asarray(T, dtype=float)
     a_new, b_new, tau_new = a * K * T, b * K, tau * L / T  # (24)
-    return Changed(phase_margin(a_new, b_new, tau_new), crossover(a_new, b_new) / T)
+    w = crossover(a_new, b_new)
+    return Changed(phase_margin(a_new, b_new, tau_new, w), w / T)
 
 
 def at_vertices(design: ArrayLike, spread: float) -> Changed:
@@ -102,13 +103,11 @@ def designs() -> tuple[tuple[float, float, float], ...]:
 @cache
 def worst_vertices(spread: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """Return for every design the vertex with the least phase margin, and that with the largest |Δω_A| (26)."""
-    names = list(VERTICES)
-    by_margin, by_crossover = [], []
-    for design in designs():
-        there, nominal = at_vertices(design, spread), changed(design, 1.0, 1.0, 1.0)
-        by_margin.append(names[int(np.argmin(there.phase_margin))])
-        by_crossover.append(names[int(np.argmax(np.abs(there.crossover - nominal.crossover)))])
-    return tuple(by_margin), tuple(by_crossover)
+    names = np.array(list(VERTICES))
+    every = np.array(designs()).T[:, :, None]  # a row of vertices for each design
+    there, nominal = at_vertices(every, spread), changed(every, 1.0, 1.0, 1.0)
+    by_crossover = np.argmax(np.abs(there.crossover - nominal.crossover), axis=1)
+    return tuple(names[np.argmin(there.phase_margin, axis=1)].tolist()), tuple(names[by_crossover].tolist())
 
 
 robustness = paper.table(

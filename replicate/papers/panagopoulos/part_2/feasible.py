@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.optimize import root
 
 from replicate.loops import PID, Circle, Loop, Plant
-from replicate.loops.design.nyquist_constraints import Constraint, LoopJet, constraint_slope
+from replicate.loops.design.nyquist_constraints import LoopJet
 from replicate.loops.sweep.stability_counts import polynomial_roots
 from replicate.papers.panagopoulos.part_2.processes import G4
 
@@ -144,13 +144,10 @@ def _polish(gains: Array, touching: tuple[float, ...]) -> Best | None:
 
     def equations(x: Array) -> list[float]:
         now = np.array([x[0], x[1], gains[2]])
-        result = []
-        for w in x[2:]:
-            value, gradient = LoopJet.of(G4, np.array([w])).values("sensitivity", CIRCLE, now)
-            result += [float(value[0]), constraint_slope(G4, Constraint("sensitivity"), CIRCLE, now, float(w))]
-            if len(touching) == 1:
-                result.append(float(gradient[0, 0]))
-        return result
+        jet = LoopJet.of(G4, x[2:], order=1)
+        values, gradients = jet.values("sensitivity", CIRCLE, now)
+        result = [*values.tolist(), *jet.slopes("sensitivity", CIRCLE, now).tolist()]
+        return [*result, float(gradients[0, 0])] if len(touching) == 1 else result
 
     solution = root(equations, [gains[0], gains[1], *touching], options={"xtol": 1e-14})
     if np.max(np.abs(solution.fun)) > 1e-9 or abs(solution.x[1] / gains[1] - 1.0) > 0.02:

@@ -107,7 +107,7 @@ class Shaft:
         omega_a = self.omega_p * (half + np.sqrt(half**2 + 1.0))
         all_pass = allpass(omega_a, zeta_a)
         band = bandpass(self.omega_p, zeta_b, k_b * 2.0 * zeta_b * self.omega_p / self.p_max)
-        num, den = (np.asarray(np.polymul(a, b), dtype=float) for a, b in zip(all_pass, band, strict=True))
+        num, den = (np.convolve(a, b) for a, b in zip(all_pass, band, strict=True))
         return num, den
 
     def damped(self, k_b: float, *, zeta_a: float = ZETA_A, zeta_b: float = ZETA_B) -> Plant:
@@ -116,8 +116,9 @@ class Shaft:
             return self.plant
         num, den = self.filter(k_b, zeta_a=zeta_a, zeta_b=zeta_b)
         plant = self.plant
-        closed = np.polyadd(np.polymul(plant.den, den), np.polymul(plant.num, num))
-        return Plant(np.polymul(plant.num, den), closed)
+        closed, fed_back = np.convolve(plant.den, den), np.convolve(plant.num, num)
+        closed[closed.size - fed_back.size :] += fed_back
+        return Plant(np.convolve(plant.num, den), closed)
 
     def largest_stable_gain(self) -> float:
         """Return the k_b at which the inner loop becomes unstable: the least at which it has a pole on the axis.
