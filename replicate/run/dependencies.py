@@ -159,7 +159,8 @@ class Looked:
         changed = {name for name, known in unused.items() if name in present and known != f"{_UNUSED}{present[name]}"}
         ask = changed and exhibit in paper.exhibits
         used = changed - self._still_unused(paper, exhibit, recorded) if ask else set()
-        return {name: unused[name] if name in unused.keys() - used else digest for name, digest in present.items()}
+        still = unused.keys() - used
+        return {name: unused[name] if name in still else digest for name, digest in present.items()}
 
     def difference(self, paper: Paper, exhibit: str, recorded: Mapping[str, Mapping[str, str]]) -> str:
         """Return what has changed since, in words; empty if nothing has."""
