@@ -443,8 +443,9 @@ def test_one_property_of_two_figures_is_named(
         draw(figure.subplots(), value)
         return Record.from_json(capture(figure).to_json())
 
-    assert compare(shown(values[0]), shown(values[0])).changes == []
-    changes = compare(shown(values[0]), shown(values[1])).changes
+    first = shown(values[0])
+    assert compare(first, shown(values[0])).changes == []
+    changes = compare(first, shown(values[1])).changes
     assert any(re.search(said, text) for text in changes), changes
 
 

@@ -269,11 +269,12 @@ def processes() -> dict[int, tuple[int, str]]:
     return {int(pid): (int(parent), rest[0] if rest else "") for pid, parent, *rest in fields}
 
 
-def descendants(pid: int) -> set[int]:
-    found: set[int] = set()
-    while new := {child for child, (parent, _) in processes().items() if parent in found | {pid}} - found:
+def descendants(pid: int) -> dict[int, str]:
+    """Return the command lines of all processes below one."""
+    there, found = processes(), set[int]()
+    while new := {child for child, (parent, _) in there.items() if parent in found | {pid}} - found:
         found |= new
-    return found
+    return {child: there[child][1] for child in found}
 
 
 def until(holds: Callable[[], bool]) -> bool:
@@ -288,9 +289,15 @@ def busy(process: subprocess.Popen[str]) -> dict[int, str]:
     """Wait until the command's workers are there; return all its processes with their command lines."""
     assert process.stderr is not None
     assert "as-written" in process.stderr.readline()  # the other reading is at work now
-    assert until(lambda: len(descendants(process.pid)) == _PROCESSES)
-    there = processes()
-    return {pid: there[pid][1] for pid in descendants(process.pid)}
+    found: dict[int, str] = {}
+
+    def are_there() -> bool:
+        found.clear()
+        found.update(descendants(process.pid))
+        return len(found) == _PROCESSES
+
+    assert until(are_there)
+    return found
 
 
 def all_gone(workers: dict[int, str]) -> bool:
