@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
@@ -63,8 +64,13 @@ def modules() -> dict[str, Path]:
 MODULES = modules()
 
 
-def imports(path: Path, *, at_run_time: bool = False) -> Iterator[str]:
-    """Yield every module of ours that a file imports, wherever in the file it does."""
+@cache
+def imports(path: Path, *, at_run_time: bool = False) -> tuple[str, ...]:
+    """Return every module of ours that a file imports, wherever in the file it does."""
+    return tuple(imported(path, at_run_time=at_run_time))
+
+
+def imported(path: Path, *, at_run_time: bool) -> Iterator[str]:
     tree = ast.parse(path.read_text(encoding="utf-8"))
     for node in walk(tree, skip_types=at_run_time):
         if isinstance(node, ast.Import):
