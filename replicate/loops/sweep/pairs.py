@@ -37,7 +37,7 @@ def pair_metrics(
     >>> plant = Plant([1.0], [1.0, 1.0], dead_time=1.0)
     >>> [stable, unstable] = pair_metrics([(plant, PI(0.5, 0.4)), (plant, PI(9.0, 9.0))], ["load_iae", "ms_frequency"])
     >>> round(stable[0], 6), round(stable[1], 6), unstable
-    (2.5, 1.516106, None)
+    (2.5, 1.281281, None)
     """
     if not loops:
         return []

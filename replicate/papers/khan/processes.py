@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
+from math import isnan
 
 from replicate.loops import PI, Loop, Plant
+from replicate.loops.sweep import late_load
 from replicate.loops.sweep.pairs import pair_metrics
 from replicate.loops.tune import TuningRule, load_rules
 
@@ -89,11 +91,17 @@ def specifications(closed: Loop, load_at: float | None) -> tuple[float, float, f
 
 
 def specifications_of_many(
-    loops: Sequence[tuple[Plant, PI]], loads_at: Sequence[float]
+    p: float, h: float, controllers: Sequence[PI], load_at: float
 ) -> list[tuple[float, float, float, float] | None]:
-    """Return `specifications` for loads at finite times, of many loops; ``None`` for those that are not stable."""
-    found = pair_metrics(loops, ("overshoot", "settling_time", "ms"), 0.02)
+    """Return `specifications` of many loops around one process; ``None`` for those that are not stable."""
+    process = plant(p, h)
+    found = pair_metrics([(process, pi) for pi in controllers], ("overshoot", "settling_time", "ms"), 0.02)
+    settled = late_load.settling_after_load(process, controllers, load_at, 0.02)
+
+    def settling_time(pi: PI, known: float) -> float:
+        return settling_after_load(Loop(process, pi), load_at) if isnan(known) else known
+
     return [
-        (100.0 * one[0], one[1], settling_after_load(Loop(*pair), load_at), one[2]) if one else None
-        for pair, load_at, one in zip(loops, loads_at, found, strict=True)
+        (100.0 * one[0], one[1], settling_time(pi, time), one[2]) if one else None
+        for pi, one, time in zip(controllers, found, settled.tolist(), strict=True)
     ]

@@ -181,17 +181,14 @@ def _of_many_coefficients(
     dead_times: Mapping[str, float], points: Sequence[tuple[str, Given]]
 ) -> list[dict[str, float] | None]:
     """Return the rows of rules with other coefficients."""
-    asked = [
-        (place, prefix, h, (plant(1.0, h), PI(*_gains(rule, h, given))))
-        for place, (rule, given) in enumerate(points)
-        for prefix, h in _applying(dead_times, rule).items()
-    ]
-    numbers = specifications_of_many([loop for *_, loop in asked], [LOAD_AT[h] for _, _, h, _ in asked])
-    found: list[dict[str, float]] = [{} for _ in points]
-    unstable = {place for (place, *_), one in zip(asked, numbers, strict=True) if one is None}
-    for (place, prefix, *_), one in zip(asked, numbers, strict=True):
-        found[place] |= _named(prefix, one) if one else {}
-    return [None if place in unstable else row for place, row in enumerate(found)]
+    found: list[dict[str, float] | None] = [{} for _ in points]
+    for prefix, h in dead_times.items():
+        places = [place for place, (rule, _) in enumerate(points) if prefix in _applying(dead_times, rule)]
+        controllers = [PI(*_gains(points[place][0], h, points[place][1])) for place in places]
+        for place, numbers in zip(places, specifications_of_many(1.0, h, controllers, LOAD_AT[h]), strict=True):
+            row = found[place]
+            found[place] = row | _named(prefix, numbers) if row is not None and numbers else None
+    return found
 
 
 def _named(prefix: str, numbers: Iterable[float]) -> dict[str, float]:
