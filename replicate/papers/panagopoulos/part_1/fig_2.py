@@ -41,9 +41,15 @@ def ellipse(plant: str, w: float) -> tuple[np.ndarray, np.ndarray]:
 
 def largest_gain(plant: str, gains: np.ndarray) -> np.ndarray:
     """Return for each k the ki at which the first ellipse is met from below; nan where ki = 0 is inside one."""
-    circle = Circle.of(MS)
     w = np.geomspace(1e-3, 60.0, 6000)
     value = PLANTS[plant](1j * w)
+    some = np.array_split(gains, max(1, len(gains) // 20))  # all at once need more time for memory than for numbers
+    return np.concatenate([_first_met(w, value, part) for part in some])
+
+
+def _first_met(w: np.ndarray, value: np.ndarray, gains: np.ndarray) -> np.ndarray:
+    """Do so for a few gains, with the plant's ``value`` at the frequencies ``w``."""
+    circle = Circle.of(MS)
     r = np.abs(value)
     inside = circle.radius**2 - (gains[:, None] * r + circle.center * value.real / r) ** 2
     half = np.sqrt(np.maximum(inside, 0.0))
