@@ -6,9 +6,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from loops.references import ReferenceLoop
 from replicate.loops import PI, PID, Loop, Plant
 from replicate.loops.sweep.late_load import settling_after_load
-from tests.loops.references import ReferenceLoop
 
 BAND = 0.02
 CASES: dict[str, tuple[Plant, list[PID], float]] = {
