@@ -57,7 +57,7 @@ torture: $(VENV)/.developed ## attack every promise and count what held: killed,
 	$(BIN)/python -m pytest tests/torture --torture -n auto --dist load -q $(ARGS)
 
 .PHONY: bench
-bench: $(VENV)/.ready ## measure speed and error beside python-control and others: build/bench.md; a report, too: ARGS=--report
+bench: $(VENV)/.developed ## measure speed and error beside python-control and others: build/bench.md; a report, too: ARGS=--report
 	$(BIN)/python -m benchmarks $(ARGS)
 
 .PHONY: scaling
