@@ -50,3 +50,16 @@ def test_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch, *, colour: bool) -
     assert "sheets" in written
     assert "3/6" in written
     assert ("\x1b[3" in written) is colour  # the colours of a terminal
+
+
+def test_a_bar_estimates_the_end_of_what_goes_slowly(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("NO_COLOR", "1")
+    now = [0.0]
+    monkeypatch.setattr("rich.console.monotonic", lambda: now[0])
+    out = io.StringIO()
+    with counted_progress_on(Console(file=out, width=100, force_terminal=True), "loops") as report:
+        for done in range(5):
+            report(2 + done, 8, 2)
+            now[0] += 100.0
+        now[0] -= 100.0
+    assert "0:03:20" in out.getvalue()  # two more of 100 s

@@ -20,7 +20,8 @@ from replicate.errors import OutputError
 from replicate.loops import PI, PID, Loop, Plant
 from replicate.run.backends import LocalProcesses
 from replicate.sweeps import read_sweep_file, run_sweep
-from replicate.sweeps.sweep_file import SweepFile
+from replicate.sweeps.running import scattered
+from replicate.sweeps.sweep_file import Block, SweepFile
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -92,6 +93,17 @@ def test_blocks_hold_every_loop_once_in_order(tmp_path: Path, block: int, pairin
         else [(gain, gain / 10) for gain in range(1, 6)]
     )
     assert list(zip(rows["gain"], rows["k"], strict=True)) == expected
+
+
+@pytest.mark.parametrize("count", [60, 500])
+def test_the_first_blocks_that_are_computed_are_like_all(count: int) -> None:
+    blocks = [Block(number, (number, number + 1), (0, 1)) for number in range(count)]
+    order = scattered(blocks)
+    assert sorted(order, key=lambda block: block.number) == blocks
+    cost = np.array([block.number**2 for block in order], dtype=float)  # quick ones first, slow ones last
+    for done in range(count // 5, count):
+        told = cost[:done].mean() * (count - done)  # what progress says is left
+        assert told == pytest.approx(cost[done:].sum(), abs=0.2 * cost.sum()), done  # 0.96 in order
 
 
 #: A run that is ended after its third block, without a word.

@@ -9,7 +9,7 @@ blocks is ever written there.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -23,6 +23,7 @@ from replicate.sweeps.blocks import compute_block, file_name, rows_in, rows_of
 from replicate.sweeps.sweep_file import Block, SweepFile
 
 SPECIFICATION = "_sweep.json"
+_GOLDEN = (5**0.5 - 1) / 2  # its multiples fall evenly into the unit interval, however many they are
 
 
 @dataclass(frozen=True)
@@ -75,11 +76,21 @@ def run_sweep(
                 missing.append(block)
         done = kept
         progress(SweepProgress(kept, done, sweep.loops))
-        for block, content in backend.unordered(partial(compute_block, sweep, file_format=file_format), missing):
+        for block, content in backend.unordered(
+            partial(compute_block, sweep, file_format=file_format), scattered(missing)
+        ):
             keep_file(folder / file_name(block, file_format), content)
             done += rows_of(sweep, block)
             progress(SweepProgress(kept, done, sweep.loops))
     return len(missing)
+
+
+def scattered(blocks: Iterable[Block]) -> list[Block]:
+    """Return blocks in an order whose beginnings are like the whole, so that the time left can be told from them.
+
+    A grid has regions that are quick and regions that are slow, one after the other in the order of its rows.
+    """
+    return sorted(blocks, key=lambda block: block.number * _GOLDEN % 1.0)
 
 
 @contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -31,7 +32,7 @@ def counted_progress_on(console: Console, things: str) -> Iterator[Counted]:
 @contextmanager
 def _bar(console: Console, things: str) -> Iterator[Counted]:
     columns = (TextColumn(things), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
+    with Progress(*columns, console=console, transient=True, speed_estimate_period=math.inf) as bar:
         task = bar.add_task("", total=None)
 
         def report(done: int, total: int, kept: int) -> None:
