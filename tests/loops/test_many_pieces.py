@@ -52,6 +52,14 @@ def test_several_controllers_are_as_one_alone() -> None:
         assert np.max(np.abs(np.array([y(t) for y in found]) - exact)) < 1e-12
 
 
+@pytest.mark.parametrize("count", [1, MOST_ALONE + 1])
+@pytest.mark.parametrize("until", [2.0, 30.0])
+def test_controllers_without_gain(count: int, until: float) -> None:
+    found = step_responses(Plant.foptd(1.0, 2.0, 1.0), [PI(0.0)] * count, until=until, setpoint=0.0, load=1.0)
+    for y in found:
+        assert abs(float(y(until)) + np.expm1(0.5 - 0.5 * until)) < 1e-14
+
+
 @pytest.mark.parametrize("until", [3.0, 40.0, 900.0])
 def test_loop_without_dead_time(until: float) -> None:
     # (0.6 s + 0.4) / (s (s + 1) (s + 2) (s + 8) + 0.6 s + 0.4)

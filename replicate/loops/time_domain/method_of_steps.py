@@ -196,10 +196,10 @@ def _march(
         return np.stack([march_together(rows, splits, start, pieces, setpoint, load) for rows in alone], axis=1)
     history = np.zeros((pieces + splits, points, sweep))  # u, shifted by one dead time
     output = np.empty((pieces, points, sweep))
+    inputs = np.zeros((points + n + 1, sweep))
     used = gain_matrix.any(axis=1)
     own, size = gain_matrix[used], int(used.sum()) * points
-    blocks = np.concatenate([fixed.basis[used].reshape(size, -1), fixed.output, fixed.state])
-    inputs = np.zeros((points + n + 1, sweep))
+    blocks = np.concatenate([fixed.basis[used].reshape(size, inputs.shape[0]), fixed.output, fixed.state])
     inputs[-1] = setpoint
     inputs[points:-1] = chain.start[:, None] * setpoint
     impulse = gain_matrix[3] * chain.setpoint_impulse * setpoint
@@ -214,7 +214,7 @@ def _march(
             inputs[points:-1] += chain.b * impulse
             impulse = feedback * impulse
         np.matmul(blocks, inputs, out=result)
-        history[j + splits] = np.einsum("ws,wps->ps", own, result[:size].reshape(-1, points, sweep))
+        history[j + splits] = np.einsum("ws,wps->ps", own, result[:size].reshape(own.shape[0], points, sweep))
         output[j] = result[size : size + points]
         inputs[points:-1] = result[size + points :]
     return np.stack([np.moveaxis(output, 2, 0), np.moveaxis(history[splits:], 2, 0)])
