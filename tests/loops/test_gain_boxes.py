@@ -55,6 +55,20 @@ def test_a_divisor_that_may_be_zero_leaves_all_open() -> None:
     assert (found.low, found.high) == (-np.inf, np.inf)
 
 
+UNLIMITED = [Interval(-np.inf, np.inf), Interval(-np.inf, 1.9), Interval(-0.3, np.inf), Interval(0.0, np.inf)]
+
+
+@pytest.mark.parametrize("first", [*SIDES, *UNLIMITED])
+@pytest.mark.parametrize("second", UNLIMITED)
+def test_nothing_is_ruled_out_by_a_side_without_limits(first: Interval, second: Interval) -> None:
+    for found in (first * second, second * first, first / Interval(0.1, np.inf)):
+        assert found.low <= found.high
+    for a, b in product((first.low, first.high), (second.low, second.high)):
+        if np.isfinite([a, b]).all():
+            assert (first * second).holds(a * b)
+            assert (second * first).meets(a * b, a * b)
+
+
 @given(coefficients=st.lists(sides, min_size=1, max_size=5), w=st.floats(0.1, 3.0), place=st.floats(0, 1))
 def test_a_polynomial_and_its_derivative(coefficients: list[Interval], w: float, place: float) -> None:
     chosen = np.array([side.low + place * (side.high - side.low) for side in coefficients])

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import cos, exp, inf, nextafter, sin
+from math import cos, exp, inf, isnan, nextafter, sin
 
 _LIBRARY_ERROR = 1e-15  # more than that of a sine or cosine of the mathematical library
 
@@ -72,6 +72,8 @@ class Interval:
             low, high = b * c, a * c
         else:
             low, high = min(a * d, b * c), max(a * c, b * d)
+        if isnan(low) or isnan(high):  # zero times a number without limits
+            return Interval(-inf, inf)
         return Interval(nextafter(low, -inf), nextafter(high, inf))
 
     def __truediv__(self, other: Interval) -> Interval:
@@ -79,6 +81,8 @@ class Interval:
         if other.holds(0.0):
             return Interval(-inf, inf)
         ends = [a / b for a in (self.low, self.high) for b in (other.low, other.high)]
+        if any(map(isnan, ends)):
+            return Interval(-inf, inf)
         return _outward(min(ends), max(ends))
 
     def __neg__(self) -> Interval:
