@@ -236,6 +236,14 @@ def test_xarray_where_it_is_installed() -> None:
             result.to_xarray()
         return
     assert result.to_xarray()["ms"].dims == ("plant", "controller")
+    levels = pd.MultiIndex.from_tuples([("a", 1), ("a", 2)])
+    frame = pd.DataFrame({"k": [0.3, 0.4], "ki": 0.2}, index=levels)
+    for pairing, dims in (("grid", ("plant", "controller")), ("pairwise", ("pair",))):
+        found = sweep(FOPTD, frame, metrics="ms", pairing=pairing)
+        dataset = found.to_xarray()
+        assert dataset["ms"].dims == dims
+        assert dataset["controller"].to_numpy().tolist() == [("a", 1), ("a", 2)]
+        np.testing.assert_array_equal(dataset["ms"], found["ms"])
 
 
 def test_what_does_not_exist_has_a_reason() -> None:

@@ -91,10 +91,14 @@ class SweepResult(Record):
             raise LoopError(msg) from None
         if self.pairing == GRID:
             dims: tuple[str, ...] = ("plant", "controller")
-            coordinates: dict[str, Any] = {"plant": self.plants, "controller": self.controllers}
+            along = dims
         else:
             dims = ("pair",)
-            coordinates = {"plant": ("pair", self.plants), "controller": ("pair", self.controllers)}
+            along = dims * 2
+        coordinates = {
+            "plant": (along[0], _one_dimensional(self.plants)),
+            "controller": (along[1], _one_dimensional(self.controllers)),
+        }
         arrays: dict[str, Any] = {name: (dims, array) for name, array in self.values.items()}
         return xr.Dataset({**arrays, "reason": (dims, self.reason)}, coords=coordinates)
 
@@ -102,3 +106,12 @@ class SweepResult(Record):
         missing = int(np.sum(self.reason != ""))
         size = " x ".join(str(n) for n in self.shape)
         return f"SweepResult({self.pairing}, {size} loops, {missing} with values missing: {', '.join(self.metrics)})"
+
+
+def _one_dimensional(labels: list[Any]) -> Any:
+    """Return labels as xarray takes them for one dimension, also the tuples of a frame with several levels."""
+    if not any(isinstance(label, tuple) for label in labels):
+        return labels
+    array = np.empty(len(labels), dtype=object)
+    array[:] = labels
+    return array
