@@ -112,13 +112,15 @@ def test_a_step_reaches_many_lags_on_time(order: int) -> None:
         assert step(t) == pytest.approx(float(expected), rel=1e-10)
 
 
-@pytest.mark.parametrize("lag", [1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("lag", [1e-3, 1e-6, 1e-7, 1e-8, 1e-9])
 def test_a_short_filter_changes_little(lag: float) -> None:
     plain = Loop(FOPTD, PID(1.0, 0.7, 0.3))
     for controller in (PID(1.0, 0.7, 0.3, measurement_filter=lag), PID(1.0, 0.7, 0.3, derivative_filter=lag)):
         loop = Loop(FOPTD, controller)
         assert loop.is_stable()
-        assert abs(loop.step(until=6.0).overshoot() - plain.step(until=6.0).overshoot()) < lag
+        step = loop.step(until=6.0)
+        assert step.breaks.size < 2000  # not as many as filter constants fit in, whatever the kernels round
+        assert abs(step.overshoot() - plain.step(until=6.0).overshoot()) < lag
         assert abs(loop.sensitivity_peak() - plain.sensitivity_peak()) < 2.0 * lag
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import tracemalloc
+
 import mpmath as mp
 import numpy as np
 import pytest
 
 from loops.closed_forms import pi_foptd, rational_step
-from replicate.loops import PI, Loop, Plant, step_responses
+from replicate.loops import PI, PID, Loop, Plant, step_responses
 from replicate.loops.time_domain import many_pieces
 from replicate.loops.time_domain.method_of_steps import MOST_ALONE
 
@@ -24,13 +26,24 @@ def test_a_vector_is_carried_as_far_as_by_one_step_after_the_other(most: int, mo
 
 
 @pytest.mark.parametrize(("lag", "splits"), [(1.0, 1), (0.2, 2), (0.1, 3), (0.04, 8)])
-@pytest.mark.parametrize("until", [1.5, 4.0, 4.3, 11.2])
+@pytest.mark.parametrize("until", [1.5, 4.0, 4.3, 11.2, 30.5])
 def test_dead_time_of_several_pieces(lag: float, splits: int, until: float) -> None:
     y = Loop(Plant.foptd(1.0, lag, 1.0), PI(0.2, 0.4)).step(until=until)
     assert abs(y.breaks[1] - 1.0 / splits) < 1e-15
     t = until * np.array([0.3, 0.77, 1.0])
     exact = [float(pi_foptd(1.0, lag, 1.0, k=0.2, ki=0.4, t=float(time))) for time in t]
     assert np.max(np.abs(y(t) - exact)) < 1e-12
+
+
+def test_a_short_filter_takes_no_map_of_a_whole_dead_time() -> None:
+    # of 300 pieces, which would be 250 MB and take some hundred times as long as one piece after the other
+    loop = Loop(Plant.foptd(1.0, 1.0, 1.0), PID(0.3, 0.4, 0.25, derivative_filter=1e-3))
+    tracemalloc.start()
+    try:
+        assert loop.step(until=6.0).breaks.size > 1000
+        assert tracemalloc.get_traced_memory()[1] < 2e7
+    finally:
+        tracemalloc.stop()
 
 
 @pytest.mark.parametrize("dead_time", [0.0, 0.5])

@@ -107,7 +107,7 @@ class _March:
         """March to the horizon."""
         self._send(0.0, float(self.g[3]) * self.chain.setpoint_impulse * self.setpoint / self.algebraic)
         self.jumps.expect(0.0)
-        length = self._first_length()
+        length = self.resolution.fastest = self._first_length()
         previous = np.inf
         while self.breaks[-1] < until * (1.0 - SAME):
             start = self.breaks[-1]

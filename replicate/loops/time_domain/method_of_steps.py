@@ -42,7 +42,8 @@ STIFFNESS = 3.5  # largest (spectral radius x piece length) to start from
 MOST_PIECES = 2000  # beyond, pieces that adapt are faster
 LARGEST = 1e100  # size of a diverging response at which its metrics could overflow
 TINY = float(np.finfo(float).tiny)
-FEW = 4  # dead times, up to which responses go on piece by piece
+FEW = 4  # dead times, up to which responses go on piece by piece; also up to PAYS for each piece of a dead time, whose
+PAYS = 3  # map costs the square of their number
 MOST_ALONE = 8  # responses; more of them go on together, piece by piece
 
 
@@ -190,7 +191,8 @@ def _march(
     """Step through the pieces; returns node values of y and u, shape (2, controllers, pieces, points)."""
     fixed = piece_map(chain, length)
     points, n, sweep = DEGREE + 1, chain.e.size, gain_matrix.shape[1]
-    if sweep <= MOST_ALONE and pieces > FEW * splits and not (gain_matrix[3] * chain.setpoint_impulse).any():
+    many = pieces > max(FEW, PAYS * splits) * splits
+    if many and sweep <= MOST_ALONE and not (gain_matrix[3] * chain.setpoint_impulse).any():
         alone = [np.concatenate([np.tensordot(g, fixed.basis, 1), fixed.output, fixed.state]) for g in gain_matrix.T]
         start = chain.start * setpoint
         return np.stack([march_together(rows, splits, start, pieces, setpoint, load) for rows in alone], axis=1)
