@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable
 from contextlib import nullcontext
 from typing import Any
 
@@ -15,12 +14,11 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextToPath
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
-from numpy.typing import NDArray
 from PIL import Image
 
 from replicate.figures import capture, drawing, one_layout
 from replicate.figures.off_screen import pictures
-from replicate.figures.png import png
+from replicate.figures.style import PNG_DPI
 from replicate.figures.text_outlines import Outlines
 
 
@@ -96,30 +94,15 @@ def test_outlines_are_those_of_matplotlib(text: str, size: float) -> None:
         )
 
 
-def _drawing() -> NDArray[np.uint8]:
-    (content,) = pictures(_eventful(), "title", ("png",))
+@pytest.mark.parametrize(("alpha", "mode"), [(1.0, "RGB"), (0.5, "RGBA")])
+def test_a_png_has_opacities_only_where_there_are_some(alpha: float, mode: str) -> None:
+    figure = _eventful()
+    figure.patch.set_alpha(alpha)
+    (content,) = pictures(figure, "title", ("png",))
     with Image.open(io.BytesIO(content)) as drawn:
-        return np.array(drawn.convert("RGBA"))
-
-
-def _photograph() -> NDArray[np.uint8]:
-    across, up = np.meshgrid(np.arange(300), np.arange(200))
-    light = [128 + 100 * np.sin(across / 90 + up / 70), 128 + 90 * np.cos(across / 50), up / 4.0]
-    return np.dstack([*light, np.full(across.shape, 255)]).astype(np.uint8)
-
-
-def _glass() -> NDArray[np.uint8]:
-    pixels = _photograph()
-    pixels[10:50, 10:50, 3] = 77
-    return pixels
-
-
-@pytest.mark.parametrize("made", [_drawing, _photograph, _glass])
-def test_a_png_holds_the_pixels_and_is_as_small_as_that_of_pillow(made: Callable[[], NDArray[np.uint8]]) -> None:
-    pixels, usual = made(), io.BytesIO()
-    content = png(pixels, 160.0)
-    Image.fromarray(pixels).save(usual, format="png", dpi=(160.0, 160.0))
-    with Image.open(io.BytesIO(content)) as read, Image.open(usual) as there:
-        assert np.array_equal(np.asarray(read.convert("RGBA")), pixels)
-        assert read.info == there.info
-    assert len(content) <= len(usual.getvalue())
+        assert drawn.mode == mode
+        assert drawn.info.keys() == {"dpi"}
+        assert drawn.info["dpi"] == pytest.approx((PNG_DPI, PNG_DPI), rel=1e-4)
+        grey = np.asarray(drawn.convert("L"))
+    assert grey.min() < 50  # something is drawn
+    assert np.median(grey) == 255  # on white
