@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import subprocess
+import sys
 import weakref
 from collections.abc import Iterator
 from pathlib import Path
@@ -73,3 +75,9 @@ def test_workers_collect_garbage_but_do_not_look_through_papers_and_libraries(tm
     table = results["rogue", "table-1"]
     assert isinstance(table, TableResult)
     assert table.frames["looks"].loc["a"].to_dict() == {"on": 1.0, "found": 1.0, "paper": 0.0, "library": 0.0}
+
+
+def test_importing_what_workers_start_with_leaves_the_search_for_garbage_on() -> None:
+    code = "import gc, replicate.run.preload; print(gc.isenabled(), gc.get_freeze_count() > 0)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "True True\n"

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import gc
-
-gc.disable()  # all that is imported stays; workers look for garbage again
-
+from replicate.run.garbage import staying
 from replicate.run.isolation import isolate_matplotlib
 
 isolate_matplotlib()
 
-from replicate.run import performance  # which may import matplotlib
-from replicate.run.modules import installed
+with staying():
+    from replicate.run import performance  # which may import matplotlib
+    from replicate.run.modules import installed
+
+    installed()
 
 __all__ = ["performance"]
-
-installed()

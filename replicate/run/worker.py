@@ -93,7 +93,6 @@ def settled(surroundings: Surroundings) -> Output:
     isolate_matplotlib()
     gc.freeze()  # what comes from the process that workers are forked from stays
     gc.set_threshold(5000)  # a drawing makes many more objects than Python's 700 and throws nearly all away at once
-    gc.enable()
     return output
 
 
