@@ -40,11 +40,8 @@ def _flush(path: Path) -> None:
 
 def write(path: Path, content: bytes) -> Path:
     """Write a file and its folders, and return it."""
-    try:
-        path.write_bytes(content)
-    except FileNotFoundError:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
     return path
 
 

@@ -61,7 +61,7 @@ def kill_at(number: int, folder: Path) -> None:
         nonlocal count
         count += 1
         if count == number:
-            if event == "torn":
+            if event == "torn" and Path(path).parent.is_dir():  # else it cannot be opened, and nothing is written
                 Path(path).write_bytes(TORN)
             os.kill(os.getpid(), signal.SIGKILL)
 
