@@ -272,7 +272,7 @@ def test_curves_are_read_and_switched(report: Path, browser: Any) -> None:
           const q = new DOMPoint(p.x, p.y).matrixTransform(path.getScreenCTM());
           return [q.x, q.y];
         }""")
-        page.mouse.move(x, y)
+        page.mouse.move(x, y, steps=5)  # as a hand does: the first of them may come before the page has settled
         said = drawing.locator(".read-out").inner_text().replace("−", "-")
         match = re.search(r"(-?[\d.e-]+) at (-?[\d.e-]+)$", said)
         assert match is not None
