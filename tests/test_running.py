@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 
 import pytest
+
+from replicate.run.pool import started
+from replicate.run.worker import serve
 
 Run = Callable[..., tuple[int, str, str]]
 
@@ -54,6 +60,56 @@ def test_no_unit_depends_on_the_program_that_starts_the_run(
     assert replicate("report", "lab")[0] == 0
     assert sys.modules["__main__"] is program
     assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.skipif("forkserver" not in multiprocessing.get_all_start_methods(), reason="workers are not forked here")
+def test_threads_that_start_workers_together_leave_the_process_as_it_was(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from multiprocessing import forkserver
+
+    ensure_running = forkserver.ensure_running
+
+    def slowly() -> None:  # for the threads to overlap, and not to end in the order of their beginnings
+        time.sleep(0.2)
+        ensure_running()
+
+    monkeypatch.setattr(forkserver, "ensure_running", slowly)
+    monkeypatch.delenv("PYTHONSAFEPATH", raising=False)
+    before, program = dict(os.environ), sys.modules["__main__"]
+
+    def start(number: int) -> None:
+        time.sleep(0.1 * number)
+        process, connection = started(serve, tmp_path / f"output-{number}")
+        connection.close()
+        process.kill()
+        process.join()
+
+    with ThreadPoolExecutor(2) as threads:
+        list(threads.map(start, range(2)))
+    assert dict(os.environ) == before
+    assert sys.modules["__main__"] is program
+
+
+def test_the_folder_for_temporary_files_may_have_a_long_path(tmp_path: Path) -> None:
+    temporary = tmp_path / ("t" * 100)  # more than the path of a socket may have
+    temporary.mkdir()
+    code = (
+        "import os, tempfile\n"
+        "from pathlib import Path\n"
+        "from replicate.run.pool import started\n"
+        "from replicate.run.worker import serve\n"
+        "for number in range(2):\n"
+        "    process, connection = started(serve, Path(f'output-{number}'))\n"
+        "    connection.close()\n"
+        "    process.kill()\n"
+        "print(tempfile.gettempdir())\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env={**os.environ, "TMPDIR": str(temporary)},
+    )  # fmt: skip
+    assert (run.returncode, run.stdout, run.stderr) == (0, f"{temporary}\n", "")
 
 
 def test_a_unit_that_takes_too_long_breaks_the_run_by_name(folder: Path, replicate: Run) -> None:

@@ -13,6 +13,7 @@ import re
 import signal
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable, Collection, Generator, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -41,6 +42,9 @@ _HEAVY = (
     *_DRAWING,
 )
 _ATTEMPTS, _BETWEEN_ATTEMPTS = 4, 0.1  # seconds
+_STARTING = threading.Lock()  # what is changed for a start and put back after it belongs to all threads
+_LONGEST_FOLDER = 70  # bytes: of the 103 that the path of a socket may have everywhere, its name takes 32
+_SHORT_FOLDERS = ("/tmp", "/var/tmp", "/usr/tmp")  # noqa: S108  -- a folder of this user's is made in it
 _UNKNOWN = 255  # the process that watches over the workers is gone, too
 _FRAME = re.compile(r'File "([^"]+)", line (\d+) in ')
 _READERS: dict[bytes, Callable[[bytes], Any]] = {
@@ -202,16 +206,18 @@ def started(
     method = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
     context: Any = multiprocessing.get_context(method)
     here, there = context.Pipe(duplex=True)
-    surroundings = Surroundings(_folder(), dict(os.environ), output)
+    with _STARTING:
+        surroundings = Surroundings(_folder(), dict(os.environ), output)
     attempts = _ATTEMPTS
     while True:
         attempts -= 1
         process = context.Process(target=service, args=(there, surroundings), name="replicate worker")
         try:
-            if method == "forkserver":
-                _start_server(imported)
-            with _without_program():
-                process.start()
+            with _STARTING:
+                if method == "forkserver":
+                    _start_server(imported)
+                with _without_program():
+                    process.start()
         except (OSError, EOFError) as error:
             if not attempts:
                 msg = f"a worker process cannot be started: {str(error) or type(error).__name__}"
@@ -226,6 +232,7 @@ def _start_server(imported: Collection[str]) -> None:
     """Start the process that workers are forked from, if there is none: with what this process has imported, too."""
     from multiprocessing import forkserver  # Windows has none
 
+    _choose_folder_of_sockets()
     shared = [name for name in _HEAVY if name in sys.modules or name in imported]
     forkserver.set_forkserver_preload([f"{__package__}.preload", *shared])
     before = os.environ.get("PYTHONSAFEPATH")
@@ -237,6 +244,19 @@ def _start_server(imported: Collection[str]) -> None:
             del os.environ["PYTHONSAFEPATH"]
         else:
             os.environ["PYTHONSAFEPATH"] = before
+
+
+def _choose_folder_of_sockets() -> None:
+    """Have the standard library keep its sockets where their paths are short enough, as later versions do."""
+    from multiprocessing import util
+
+    before = tempfile.gettempdir()
+    if len(os.fsencode(before)) > _LONGEST_FOLDER:
+        tempfile.tempdir = next((place for place in _SHORT_FOLDERS if os.access(place, os.W_OK | os.X_OK)), before)
+    try:
+        util.get_temp_dir()
+    finally:
+        tempfile.tempdir = before
 
 
 @contextlib.contextmanager
