@@ -20,7 +20,7 @@ for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "multiprocessi
     sys.modules[name] = None
 sys.modules["msvcrt"] = types.SimpleNamespace(locking=None, LK_NBLCK=0)
 sys.platform = "win32"
-for name in ("run.pool", "run.worker", "run.ambience", "staging.lock", "baselines.scripts", "cli"):
+for name in ("run.starting", "run.pool", "run.worker", "run.ambience", "staging.lock", "baselines.scripts", "cli"):
     importlib.import_module(f"replicate.{name}")
 """
 

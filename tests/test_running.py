@@ -14,7 +14,7 @@ from types import ModuleType
 
 import pytest
 
-from replicate.run.pool import started
+from replicate.run.starting import started
 from replicate.run.worker import serve
 
 Run = Callable[..., tuple[int, str, str]]
@@ -97,7 +97,7 @@ def test_the_folder_for_temporary_files_may_have_a_long_path(tmp_path: Path) -> 
     code = (
         "import os, tempfile\n"
         "from pathlib import Path\n"
-        "from replicate.run.pool import started\n"
+        "from replicate.run.starting import started\n"
         "from replicate.run.worker import serve\n"
         "for number in range(2):\n"
         "    process, connection = started(serve, Path(f'output-{number}'))\n"

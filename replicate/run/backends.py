@@ -192,13 +192,18 @@ def cluster_of(name: str, scheduler: str | None) -> DaskCluster | None:
     return DaskCluster(scheduler)
 
 
+def worker_address() -> str:
+    """Return the address of the cluster's worker that this is."""
+    return str(import_module("distributed").get_worker().address)
+
+
 def _numbered(main: int, function: Callable[[Item], Made], number: int, item: Item) -> tuple[int, Made]:
-    _end_with(main)
+    _end_with_parent(main)
     return number, function(item)
 
 
 @cache
-def _end_with(main: int) -> None:
+def _end_with_parent(main: int) -> None:
     """Have this worker process end when the main process is killed: joblib's would wait for work for ever."""
 
     def watch() -> None:
@@ -220,8 +225,8 @@ def _by_the_same_program(here: Mapping[str, str], function: Callable[[Item], Mad
     """
     why = difference(program(), here)
     if why:
-        address = import_module("distributed").get_worker().address
-        msg = f"the worker {address} has {why}: every machine needs the same version of replicate and its libraries"
+        msg = f"the worker {worker_address()} has {why}:"
+        msg += " every machine needs the same version of replicate and its libraries"
         raise ReplicateError(msg)
     return function(item)
 

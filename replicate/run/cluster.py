@@ -18,7 +18,7 @@ from pathlib import Path
 
 from replicate.errors import ReplicateError
 from replicate.exhibits import Claims, Exhibit, NotComputable
-from replicate.run.backends import Backend
+from replicate.run.backends import Backend, worker_address
 from replicate.run.performance import Performance
 from replicate.run.pool import LocalPool
 from replicate.run.units import Unit
@@ -84,8 +84,8 @@ def _perform(order: Order, *, timeout: float, folder: str, path: tuple[str, ...]
     multiprocessing.current_process()._config["daemon"] = False  # type: ignore[attr-defined]  # noqa: SLF001
     unit = order.unit
     if find_spec(unit.package) is None:
-        address = importlib.import_module("distributed").get_worker().address
-        msg = f"{unit}: the worker {address} has no '{unit.package}': it must see the papers' folders at the same paths"
+        msg = f"{unit}: the worker {worker_address()} has no '{unit.package}':"
+        msg += " it must see the papers' folders at the same paths"
         raise ReplicateError(msg)
     done = next(performance for _, performance in LocalPool(1, timeout).run({unit: order.exhibit}))
     return replace(done, output="").to_bytes(), done.output

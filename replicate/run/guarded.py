@@ -24,7 +24,7 @@ from typing import Any
 from replicate.errors import ReplicateError
 from replicate.run.limits import MOST_OUTPUT
 from replicate.run.messages import WRITTEN, Messages, NoMessageError, packed, unpacked
-from replicate.run.pool import started
+from replicate.run.starting import started
 from replicate.run.worker import Surroundings, settled
 
 _FRAME = re.compile(r'File "([^"\n]+)", line (\d+) in ')

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import importlib.machinery
 import importlib.metadata
-import inspect
 import os
 import sys
 import sysconfig
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from pathlib import Path
 
@@ -138,29 +136,8 @@ def is_standard(name: str) -> bool:
 
 @cache
 def installed() -> Mapping[str, list[str]]:
-    """Return the distributions that hold each top-level module.
-
-    As `importlib.metadata.packages_distributions`, which makes an object of every file that is installed.
-    """
-    found: dict[str, list[str]] = {}
-    for distribution in importlib.metadata.distributions():
-        declared = (distribution.read_text("top_level.txt") or "").split()
-        for top in dict.fromkeys(declared or _listed(distribution)):
-            found.setdefault(top, []).append(distribution.metadata["Name"])
-    return found
-
-
-def _listed(distribution: importlib.metadata.Distribution) -> Iterator[str]:
-    """Yield the top-level modules of which a distribution lists a file, also some that are none, such as folders."""
-    record = distribution.read_text("RECORD")
-    files = (
-        map(str, distribution.files or ()) if record is None else (row[0] for row in csv.reader(record.splitlines()))
-    )
-    for file in files:
-        top, inside, _ = file.partition("/")
-        name = top if inside else inspect.getmodulename(top)
-        if name and "." not in name:
-            yield name
+    """Return the distributions that hold each top-level module."""
+    return importlib.metadata.packages_distributions()
 
 
 @cache

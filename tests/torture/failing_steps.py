@@ -26,7 +26,7 @@ from typing import Any
 from crash_states import snapshot_each, watch
 
 from replicate.run.isolation import isolate_matplotlib
-from replicate.run.pool import started
+from replicate.run.starting import started
 from replicate.run.worker import serve
 
 PROGRESS = re.compile(r"computed \d|\d+ of \d+ (results kept|sheets)|.*(removed|finished|put back) what a run")
@@ -121,7 +121,7 @@ def main() -> None:
     isolate_matplotlib()
     for name in IMPORTED:
         importlib.import_module(name)
-    # As `replicate.run.pool` starts it, which takes over what is imported here.
+    # As `replicate.run.starting` does, which takes over what is imported here.
     worker, pipe = started(serve, Path(os.devnull))
     pipe.close()
     worker.join()
