@@ -32,7 +32,7 @@ from replicate.exhibits import Finding, Paper
 from replicate.exhibits.results import ClaimsResult, FigureResult, TableResult
 from replicate.run import storage
 from replicate.run.cache import Cache, stored
-from replicate.run.costs import Costs
+from replicate.run.costs import Costs, user_folder
 from replicate.run.dependencies import Looked
 from replicate.run.library import Library
 from replicate.run.modules import file_of, installed, modules_of
@@ -435,6 +435,32 @@ def test_a_deep_or_huge_text_is_recognised(kept: tuple[Paper, Path]) -> None:
     assert refused(kept, "claims", lambda path: path.write_bytes(b'{"form": ' + b"9" * 10**5 + b"}"))
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="files have no such mode there")
+@pytest.mark.parametrize("mode", [0o620, 0o602, 0o666])
+def test_an_entry_that_others_can_write_is_not_used(kept: tuple[Paper, Path], mode: int) -> None:
+    path = entries(kept[1])["claims"]
+    try:
+        assert "by others" in refused_once(kept, lambda: path.chmod(mode))
+    finally:
+        path.chmod(0o600)
+    assert Cache(kept[1]).get(kept[0], unit_of("claims"))[0] is not None
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="files have no owner there")
+def test_an_entry_of_another_user_is_not_used(kept: tuple[Paper, Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    other = os.getuid() + 1
+    with monkeypatch.context() as patch:
+        assert "by others" in refused_once(kept, lambda: patch.setattr(os, "getuid", lambda: other))
+
+
+def refused_once(kept: tuple[Paper, Path], change: Callable[[], object]) -> str:
+    """Change what is around the entry of the claims and return why it is not used."""
+    change()
+    result, reason = Cache(kept[1]).get(kept[0], unit_of("claims"))
+    assert result is None
+    return reason
+
+
 # ---------------------------------------------------------------------------------------------------- the folder
 
 
@@ -522,6 +548,13 @@ def test_a_damaged_file_of_costs_is_no_loss(tmp_path: Path, content: str) -> Non
     (tmp_path / "costs.json").write_text(content)
     units = [Unit("lab", "lab_paper", id) for id in ("a", "b")]
     assert Costs(tmp_path).longest_first(units) == units
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the folder is another there")
+def test_a_home_that_depends_on_the_current_folder_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("XDG_CACHE_HOME", "HOME"):
+        monkeypatch.setenv(name, "here")
+    assert user_folder() is None
 
 
 def test_a_run_notes_what_units_cost(kept: tuple[Paper, Path], monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ _MOST_UNITS = 20_000
 
 
 def user_folder() -> Path | None:
-    """Return the folder for what the program keeps for a user, ``None`` if the user has no home.
+    """Return the folder for what the program keeps for a user, ``None`` if the user has no home or one without a root.
 
     That is the place each system has for it: ``$XDG_CACHE_HOME`` or ``~/.cache``, ``~/Library/Caches`` on macOS,
     ``%LOCALAPPDATA%`` on Windows.
@@ -37,7 +37,7 @@ def user_folder() -> Path | None:
             base = Path(given) if given.startswith("/") else Path.home() / ".cache"
     except RuntimeError:  # no home
         return None
-    return base / "replicate"
+    return base / "replicate" if base.is_absolute() else None
 
 
 class Costs:

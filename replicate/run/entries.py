@@ -1,7 +1,7 @@
 """Files of the cache: text of three lines, written whole, and of use only if it is whole and what was asked for.
 
 The lines are what it is (and a digest of the rest), what it depends on, and what was computed. Nothing in it is ever
-run.
+run. But pages show it, so that one which others could have written is of no use either.
 """
 
 from __future__ import annotations
@@ -14,12 +14,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from replicate.run.signing import is_own
+
 SUFFIX = ".result"
 
 NEVER = "it has not been computed before"
 DAMAGED = "its entry in the cache is damaged"
 OTHER = "its entry in the cache is that of another unit"
 OTHER_FORM = "its entry in the cache has another form"
+OTHERS = "its entry in the cache could have been written by others"
 
 _LONGEST_HEAD = 2**16
 
@@ -59,10 +62,12 @@ def read_entry(path: Path, identity: Mapping[str, object]) -> tuple[Any, bytes]:
     Raises
     ------
     UselessError
-        If there is none, or it is not whole, or something else.
+        If there is none, or it is not whole, or something else, or not this user's alone to write.
     """
     try:
         with path.open("rb") as file:
+            if not is_own(os.fstat(file.fileno())):
+                raise UselessError(OTHERS)
             head = json.loads(file.readline(_LONGEST_HEAD))
             digest = head.pop("digest")
             if head != identity:

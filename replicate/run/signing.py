@@ -31,6 +31,19 @@ def is_signed(content: bytes, given: object) -> bool:
     return bool(own) and isinstance(given, str) and hmac.compare_digest(own.encode(), given.encode())
 
 
+def is_own(stat: os.stat_result, closed: int = 0o022) -> bool:
+    """Say whether a file is this user's, and none that others may have written.
+
+    Parameters
+    ----------
+    stat
+        Of the file, once it is open: who may write into its folder could put another one in its place.
+    closed
+        The permissions that no one else must have; the default forbids to write. Windows has neither.
+    """
+    return os.name == "nt" or (stat.st_uid == os.getuid() and not stat.st_mode & closed)
+
+
 def _key() -> bytes:
     """Return the user's key, made at its first use; empty if there is none that is the user's alone."""
     folder = user_folder()
@@ -40,10 +53,10 @@ def _key() -> bytes:
     with contextlib.suppress(OSError):
         if not path.exists():
             _make(path)
-        stat = path.lstat()
-        is_private = os.name == "nt" or (stat.st_uid == os.getuid() and not stat.st_mode & 0o077)
-        content = path.read_bytes() if is_private and not path.is_symlink() else b""
-        return content if len(content) == _LENGTH else b""
+        with path.open("rb") as file:
+            stat = os.fstat(file.fileno())
+            is_private = is_own(stat, closed=0o077) and not path.is_symlink()
+            return file.read() if is_private and stat.st_size == _LENGTH else b""
     return b""
 
 
