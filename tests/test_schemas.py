@@ -130,6 +130,7 @@ def test_the_sweep_of_the_guide_fits() -> None:
         ("sweep", {"plants": "1/(s+1)", "controllers": {"kp": 1}}),
         ("sweep", {"plants": "1/(s+1)", "controllers": {"k": {"from": 1, "to": 2}}}),
         ("sweep", {"plants": "1/(s+1)", "controllers": {"k": {"from": 1, "to": 2, "points": sides.MOST_POINTS + 1}}}),
+        ("sweep", {"plants": "1/(s+1)", "controllers": "k=1", "block": sweep_file.MOST_IN_BLOCK + 1}),
     ],
 )
 def test_what_is_refused(name: str, data: dict[str, object]) -> None:

@@ -21,6 +21,7 @@ from replicate.loops import PI, PID, Loop, Plant
 from replicate.run.backends import LocalProcesses
 from replicate.sweeps import read_sweep_file, run_sweep
 from replicate.sweeps.running import scattered
+from replicate.sweeps.sides import Range
 from replicate.sweeps.sweep_file import Block, SweepFile
 
 Run = Callable[..., tuple[int, str, str]]
@@ -86,6 +87,7 @@ def test_blocks_hold_every_loop_once_in_order(tmp_path: Path, block: int, pairin
     run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1))
     rows = read(tmp_path / "out")
     assert len(rows) == sweep.loops
+    assert len(list((tmp_path / "out").glob("*.csv"))) == sweep.block_count
     assert max(len(pd.read_csv(path)) for path in (tmp_path / "out").glob("*.csv")) <= block
     expected = (
         [(gain, k) for gain in range(1, 6) for k in (0.1, 0.2, 0.3, 0.4, 0.5)]
@@ -93,6 +95,14 @@ def test_blocks_hold_every_loop_once_in_order(tmp_path: Path, block: int, pairin
         else [(gain, gain / 10) for gain in range(1, 6)]
     )
     assert list(zip(rows["gain"], rows["k"], strict=True)) == expected
+
+
+@pytest.mark.parametrize(("first", "last"), [(0.1, 3.7), (3.7, 0.1), (2.0, 2.0), (1e-300, 1e300)])
+@pytest.mark.parametrize("points", [1, 2, 3, 50])
+def test_a_range_has_the_values_of_numpy(first: float, last: float, points: int) -> None:
+    some = np.array([points - 1, 0, points // 2])
+    for scale, values in (("linear", np.linspace), ("log", np.geomspace)):
+        assert list(Range(first, last, points, scale)[some]) == list(values(first, last, points)[some])
 
 
 @pytest.mark.parametrize("count", [60, 500])
@@ -147,6 +157,36 @@ def test_a_damaged_block_is_computed_anew(tmp_path: Path) -> None:
     block.write_bytes(whole[:-20])
     assert run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1)) == 1
     assert block.read_bytes() == whole
+
+
+#: Five blocks of as many rows, of plants and controllers that are written in every way.
+ALIKE = """
+plants = ["e^{-s}/(s+1)", " e^{-s} / (2s+1)", "e^{-s}\\n/(3s+1)", "e^{-s}/(4s+1)", "e^{-s}/(5s+1)"]
+metrics = "ms"
+block = 4
+
+[controllers]
+k = { from = 0.1, to = 0.3, points = 2 }
+ki = { from = 1e-9, to = 0.1, points = 2, scale = "log" }
+"""
+
+
+@pytest.mark.parametrize("file_format", ["csv", "parquet"])
+@pytest.mark.parametrize("side", ["plant", "controller"])
+def test_a_block_that_is_another_one_is_computed_anew(tmp_path: Path, file_format: str, side: str) -> None:
+    sweep = written(tmp_path / "s.toml", ALIKE if side == "plant" else ALIKE.replace("block = 4", "block = 2"))
+
+    def computed() -> int:
+        return run_sweep(sweep, tmp_path / "out", file_format, LocalProcesses(1))
+
+    assert computed() == sweep.block_count
+    first, second, *others = sorted((tmp_path / "out").glob("block-*"))
+    assert computed() == 0
+    right = [path.read_bytes() for path in (first, second)]
+    first.write_bytes(second.read_bytes())
+    second.write_bytes(others[0].read_bytes())
+    assert computed() == 2
+    assert [path.read_bytes() for path in (first, second)] == right
 
 
 def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
@@ -248,7 +288,23 @@ def test_a_full_disk_is_one_line(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("block = 4", "block = 0", "s.toml:4: block is 0; expected: a whole number of loops, at least 1"),
+        ("block = 4", "block = 0", "s.toml:4: block is 0; expected: a whole number of loops, 1 to 1,000,000"),
+        ("block = 4", "block = 1_000_001", "s.toml:4: block is 1000001; expected: a whole number of loops, 1 to 1,000"),
+        (
+            "points = 3",
+            "points = 1_000_001",
+            "s.toml:4: 4,000,004 loops in blocks of at most 4 are 1,000,002 files; at",
+        ),
+        (
+            "ki = [0.2, 5.0]",
+            "ki = { from = 1, to = 2, points = 100_000_000 }\nb = { from = 0, to = 1, points = 10_000 }",
+            "s.toml:6: controllers: 3,000,000,000,000 combinations are too many; at most 1,000,000,000,000",
+        ),
+        (
+            "ki = [0.2, 5.0]",
+            "measurement_filter_order = { from = 1, to = 2, points = 3 }",
+            "s.toml:6: controllers[1]: the order of the ",
+        ),
         ("block = 4", "blocks = 4", "s.toml:4: 'blocks' is unknown; allowed: plants, controllers"),
         ('"iae"', '"iea"', "s.toml:3: unknown metric 'iea': allowed are overshoot"),
         ("ki = [0.2, 5.0]", "ki = []", "s.toml:8: ki must be a number, a list of numbers, or a range"),

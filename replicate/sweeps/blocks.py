@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,10 +14,12 @@ from replicate.sweeps.sweep_file import Block, SweepFile, as_axis
 
 if TYPE_CHECKING:
     import pandas as pd
+    from numpy.typing import NDArray
 
 FORMATS = ("csv", "parquet")
 #: As in results.csv.
 _DIGITS = "%.12g"
+_LOST = 1e-11  # what they leave of a number is nearer than that to it
 
 
 def checked_format(name: str) -> str:
@@ -60,36 +61,55 @@ def compute_block(sweep: SweepFile, block: Block, file_format: str) -> bytes:
     return buffer.getvalue()
 
 
-def rows_in(path: Path) -> int:
-    """Return the number of rows in a block's file; -1 if it is damaged."""
-    if path.suffix == ".csv":
-        content = path.read_bytes()
-        return content.count(b"\n") - 1 if content.endswith(b"\n") else -1
+def is_kept(path: Path, sweep: SweepFile, block: Block) -> bool:
+    """Say whether a file is this block, whole: as many rows, and in each its plant and its controller."""
+    import numpy as np
+    import pandas as pd
+
+    expected = _inputs(sweep, block)
     try:
-        return int(import_module("pyarrow.parquet").read_metadata(path).num_rows)
-    except Exception:  # noqa: BLE001  -- whatever the library says of a damaged file
-        return -1
+        if path.suffix == ".csv":
+            content = path.read_bytes()
+            there = pd.read_csv(io.BytesIO(content), usecols=list(expected)) if content.endswith(b"\n") else None
+        else:
+            there = pd.read_parquet(path, columns=list(expected), engine="pyarrow")
+        return there is not None and all(
+            np.array_equal(there[name], values)
+            if values.dtype == object
+            else there[name].shape == values.shape and np.allclose(there[name], values, rtol=_LOST, atol=0.0)
+            for name, values in expected.items()
+        )
+    except Exception:  # noqa: BLE001  -- whatever the libraries say of a damaged file
+        return False
+
+
+def _inputs(sweep: SweepFile, block: Block) -> dict[str, NDArray[Any]]:
+    """Return the plants and controllers of a block, a value for each row by column."""
+    import numpy as np
+
+    high, wide = block.plants[1] - block.plants[0], block.controllers[1] - block.controllers[0]
+    plants, controllers = sweep.plants.members(*block.plants), sweep.controllers.members(*block.controllers)
+    columns: dict[str, NDArray[Any]] = {}
+    for members, each, times in ((plants, wide, 1), (controllers, 1, high)):
+        for name, values in members.items():
+            array = np.array(values, dtype=object if isinstance(values[0], str) else float)
+            columns[name] = np.tile(np.repeat(array, each), times) if sweep.pairing == GRID else array
+    return columns
 
 
 def _frame(sweep: SweepFile, block: Block) -> pd.DataFrame:
     import numpy as np
     import pandas as pd
 
-    plants, controllers = sweep.plants.members(*block.plants), sweep.controllers.members(*block.controllers)
     found = compute(
-        as_axis(plants),
-        as_axis(controllers),
+        as_axis(sweep.plants.members(*block.plants)),
+        as_axis(sweep.controllers.members(*block.controllers)),
         metrics=sweep.metrics,
         until=sweep.until,
         pairing=sweep.pairing,
         band=sweep.band,
     )
-    high, wide = block.plants[1] - block.plants[0], block.controllers[1] - block.controllers[0]
-    columns: dict[str, Any] = {}
-    for members, each, times in ((plants, wide, 1), (controllers, 1, high)):
-        for name, values in members.items():
-            array = np.array(values, dtype=object if isinstance(values[0], str) else float)
-            columns[name] = np.tile(np.repeat(array, each), times) if sweep.pairing == GRID else array
+    columns: dict[str, Any] = dict(_inputs(sweep, block))
     for name in dict.fromkeys((*sweep.metrics, "stable")):
         result = found[name].ravel()
         if np.iscomplexobj(result):

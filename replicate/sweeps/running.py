@@ -19,7 +19,7 @@ from replicate.errors import OutputError
 from replicate.run.backends import Backend
 from replicate.run.same_program import difference, program
 from replicate.staging import ROOM, keep_file, locked_folder, partial_of
-from replicate.sweeps.blocks import compute_block, file_name, rows_in, rows_of
+from replicate.sweeps.blocks import compute_block, file_name, is_kept, rows_of
 from replicate.sweeps.sweep_file import Block, SweepFile
 
 SPECIFICATION = "_sweep.json"
@@ -70,7 +70,7 @@ def run_sweep(
         kept = 0
         for block in sweep.blocks():
             path = folder / file_name(block, file_format)
-            if path.is_file() and rows_in(path) == rows_of(sweep, block):
+            if path.is_file() and is_kept(path, sweep, block):
                 kept += rows_of(sweep, block)
             else:
                 missing.append(block)

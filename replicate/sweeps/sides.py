@@ -1,14 +1,14 @@
 """One side of a sweep file, its plants or its controllers: texts, or columns of numbers of which all are combined.
 
 A side is never written out: the members of a block are made when the block is computed, so that a billion loops take
-no more memory than a thousand.
+no more memory than a thousand, and a worker is sent the ends of a range.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -16,11 +16,39 @@ import numpy as np
 from numpy.typing import NDArray
 
 SCALES = ("linear", "log")
-MOST_POINTS = 100_000_000  # of one range: what a small machine keeps in memory
+MOST_POINTS = 100_000_000  # of one range
+MOST_MEMBERS = 10**12
 RANGE = "{ from = 0.1, to = 10, points = 50, scale = 'linear' or 'log' }"
 
 #: Called with a key and what is wrong there; raises.
 Refuse = Callable[[str, str], NoReturn]
+
+
+@dataclass(frozen=True)
+class Range:
+    """Values from ``first`` to ``last``, equally far apart, or those with equally distant logarithms.
+
+    Examples
+    --------
+    >>> Range(0.1, 10.0, 3, "log")[np.arange(3)]
+    array([ 0.1,  1. , 10. ])
+    """
+
+    first: float
+    last: float
+    points: int
+    scale: str = SCALES[0]
+
+    def __len__(self) -> int:
+        return self.points
+
+    def __getitem__(self, places: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Return the values at some places, as `numpy.linspace` or `numpy.geomspace` has them."""
+        log = self.scale != SCALES[0]
+        first, last = np.log10([self.first, self.last]) if log else (self.first, self.last)
+        inner = places * ((last - first) / max(self.points - 1, 1)) + first
+        values = 10.0**inner if log else inner
+        return np.where(places == 0, self.first, np.where(places == self.points - 1, self.last, values))
 
 
 @dataclass(frozen=True)
@@ -39,7 +67,7 @@ class Side:
 
     name: str
     texts: tuple[str, ...] = ()
-    columns: dict[str, NDArray[np.float64]] | None = None
+    columns: Mapping[str, NDArray[np.float64] | Range] | None = None
 
     def __len__(self) -> int:
         if self.columns is None:
@@ -76,10 +104,14 @@ def side_of(name: str, given: object, allowed: tuple[str, ...], refuse: Refuse) 
     for column in given:
         if column not in allowed:
             refuse(column, f"{key}: '{column}' is unknown; allowed: {', '.join(allowed)}")
-    return Side(name, columns={column: _values(column, value, refuse) for column, value in given.items()})
+    columns = {column: _values(column, value, refuse) for column, value in given.items()}
+    members = math.prod(map(len, columns.values()))
+    if members > MOST_MEMBERS:
+        refuse(key, f"{key}: {members:,} combinations are too many; at most {MOST_MEMBERS:,}")
+    return Side(name, columns=columns)
 
 
-def _values(column: str, given: object, refuse: Refuse) -> NDArray[np.float64]:
+def _values(column: str, given: object, refuse: Refuse) -> NDArray[np.float64] | Range:
     if isinstance(given, dict):
         return _range(column, given, refuse)
     values = given if isinstance(given, list) else [given]
@@ -88,7 +120,7 @@ def _values(column: str, given: object, refuse: Refuse) -> NDArray[np.float64]:
     return np.array(values, dtype=float)
 
 
-def _range(column: str, given: dict[str, Any], refuse: Refuse) -> NDArray[np.float64]:
+def _range(column: str, given: dict[str, Any], refuse: Refuse) -> Range:
     first: Any = given.get("from")
     last: Any = given.get("to")
     points: Any = given.get("points")
@@ -102,10 +134,9 @@ def _range(column: str, given: dict[str, Any], refuse: Refuse) -> NDArray[np.flo
     if scale == SCALES[0]:
         if not _is_number(last - first):
             refuse(column, f"{column}: the difference of 'from' and 'to' is too large")
-        return np.linspace(first, last, points)
-    if not (first > 0 and last > 0):
+    elif not (first > 0 and last > 0):
         refuse(column, f"{column}: a logarithmic range needs 'from' and 'to' above 0")
-    return np.geomspace(first, last, points)
+    return Range(float(first), float(last), points, scale)
 
 
 def _is_number(value: object) -> bool:

@@ -18,11 +18,12 @@ import json
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from replicate.errors import SweepFileError
 from replicate.loops.errors import LoopError
@@ -30,13 +31,15 @@ from replicate.loops.sweep.axes import CONTROLLER_COLUMNS, PLANT_COLUMNS, contro
 from replicate.loops.sweep.metric_names import checked_metrics
 from replicate.loops.sweep.sweep_result import GRID, PAIRWISE
 from replicate.plain_text import parse_toml, read_text
-from replicate.sweeps.sides import Refuse, Side, side_of
+from replicate.sweeps.sides import Range, Refuse, Side, side_of
 
 PLANT = PLANT_COLUMNS[0]
 ORDER = "measurement_filter_order"
 METRICS = ("overshoot", "settling_time", "iae", "ms")
 PAIRINGS = (GRID, PAIRWISE)
 BLOCK = 10_000
+MOST_IN_BLOCK = 1_000_000  # its loops are in memory together
+MOST_BLOCKS = 1_000_000  # files in one folder, with six digits in their names
 _KEYS = ("plants", "controllers", "metrics", "pairing", "until", "band", "block")
 
 
@@ -92,8 +95,7 @@ class SweepFile:
                 last = min(first + self.block, self.loops)
                 yield Block(number, (first, last), (first, last))
             return
-        wide = min(controllers, self.block)
-        high = max(1, self.block // controllers)
+        high, wide = self._rectangle
         number = 0
         for top in range(0, plants, high):
             for left in range(0, controllers, wide):
@@ -103,10 +105,28 @@ class SweepFile:
                 number += 1
 
     @property
+    def _rectangle(self) -> tuple[int, int]:
+        """How many plants and controllers a block of a grid has."""
+        controllers = len(self.controllers)
+        return max(1, self.block // controllers), min(controllers, self.block)
+
+    @property
+    def block_count(self) -> int:
+        """The number of blocks."""
+        if self.pairing == PAIRWISE:
+            return -(-self.loops // self.block)
+        high, wide = self._rectangle
+        return -(-len(self.plants) // high) * -(-len(self.controllers) // wide)
+
+    @property
     def digest(self) -> str:
         """Identify the sweep: what it computes and how it is cut into blocks."""
         sides = [
-            side.texts or {name: values.tolist() for name, values in (side.columns or {}).items()}
+            side.texts
+            or {
+                name: astuple(values) if isinstance(values, Range) else values.tolist()
+                for name, values in (side.columns or {}).items()
+            }
             for side in (self.plants, self.controllers)
         ]
         what = [sides, self.metrics, self.pairing, self.until, self.band, self.block]
@@ -165,8 +185,8 @@ def _check_settings(data: dict[str, Any], refuse: Refuse) -> None:
         if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value <= sys.float_info.max:
             refuse(key, f"{key} is {value!r}; expected: a number above 0")
     block = data.get("block", BLOCK)
-    if isinstance(block, bool) or not isinstance(block, int) or block < 1:
-        refuse("block", f"block is {block!r}; expected: a whole number of loops, at least 1")
+    if isinstance(block, bool) or not isinstance(block, int) or not 1 <= block <= MOST_IN_BLOCK:
+        refuse("block", f"block is {block!r}; expected: a whole number of loops, 1 to {MOST_IN_BLOCK:,}")
 
 
 def _check_sides(sweep: SweepFile, refuse: Refuse) -> None:
@@ -174,6 +194,9 @@ def _check_sides(sweep: SweepFile, refuse: Refuse) -> None:
     if sweep.pairing == PAIRWISE and len(sizes) > 1:
         counts = f"{len(sweep.plants)} plants and {len(sweep.controllers)} controllers"
         refuse("pairing", f"pairs need as many plants as controllers, not {counts}")
+    if sweep.block_count > MOST_BLOCKS:
+        count = f"{sweep.loops:,} loops in blocks of at most {sweep.block:,} are {sweep.block_count:,} files"
+        refuse("block", f"{count}; at most {MOST_BLOCKS:,}: name a larger 'block'")
     # A plant and a controller of each text, and the corners of each table, so that a slip is found at once.
     for side, axis in ((sweep.plants, plant_axis), (sweep.controllers, controller_axis)):
         try:
@@ -186,13 +209,20 @@ def _check_sides(sweep: SweepFile, refuse: Refuse) -> None:
 def _corners(side: Side) -> dict[str, list[Any]]:
     if side.columns is None:
         return side.members(0, len(side))
-    # What is allowed of a number is an interval, so that its ends tell; an order is one of two, and each is looked at.
-    ends = {
-        name: np.unique(values) if name == ORDER else values[[values.argmin(), values.argmax()]]
-        for name, values in side.columns.items()
-    }
+    ends = {name: _telling(name, values) for name, values in side.columns.items()}
     corners = Side(side.name, columns=ends)
     return corners.members(0, len(corners))
+
+
+def _telling(name: str, values: NDArray[np.float64] | Range) -> NDArray[np.float64]:
+    """Return values of a column of which one is wrong if any is.
+
+    What is allowed of a number is an interval, so that its ends tell; an order is one of two, and each is looked at, of
+    a range the second, too.
+    """
+    if isinstance(values, Range):
+        return values[np.unique([0, min(1, len(values) - 1), len(values) - 1])]
+    return np.unique(values) if name == ORDER else values[[values.argmin(), values.argmax()]]
 
 
 def as_axis(members: dict[str, list[Any]]) -> Any:
