@@ -180,6 +180,20 @@ def test_what_else_is_asked_for_is_done(
     assert pages == ["written"]
 
 
+def test_a_single_file_goes_when_it_is_no_longer_asked_for(
+    replicate: Run, written: tuple[list[str], Path], pages: list[str]
+) -> None:
+    command, out = written
+    before = _state(out)
+    (out / "mine.html").write_text("mine")
+    assert replicate(*command, "--single-file")[0] == 0
+    assert (out / "lab.html").is_file()
+    assert replicate(*command)[0] == 0
+    assert _state(out) == before | {"build/mine.html": b"mine"}
+    assert replicate(*command)[0] == 0
+    assert pages == ["written"] * 2
+
+
 def _replace(name: str, old: str, new: str) -> Change:
     def change(paper: Path, _out: Path) -> None:
         text = (paper / name).read_text()

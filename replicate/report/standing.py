@@ -27,6 +27,7 @@ from replicate.run.cache import Cache
 from replicate.run.entries import write_whole
 from replicate.run.signing import is_signed, signature
 from replicate.run.units import Unit, units_of
+from replicate.staging import files_of
 
 FILE = "report.json"
 _FORM = "replicate report 3"
@@ -141,8 +142,15 @@ def standing(folder: Path, papers: Sequence[Paper], texts: Mapping[str, str], no
         What `texts_of` returns.
     note
         What `read_note` returns.
+
+    Raises
+    ------
+    OutputError
+        If what is known of the files that earlier runs wrote is damaged.
     """
     if note is None or note.versions != versions(note.versions) or [*note.texts.items()] != [*texts.items()]:
+        return None
+    if note.files.keys() != {*files_of(folder, "report")}:  # a run with other options has left more
         return None
     if note.results != material(folder, papers, note.shown, texts).results:
         return None
