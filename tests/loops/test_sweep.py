@@ -211,7 +211,13 @@ def test_all_ways_to_give_plants_and_controllers_agree() -> None:
         plants.to_numpy().tolist(),
         np.array([Plant.foptd(*r) for r in plants.to_numpy()]),
     ):
-        for tuned in (gains, gains.to_numpy(), [(0.3, 0.2), (0.5, 0.1)], np.array([PI(0.3, 0.2), PI(0.5, 0.1)])):
+        for tuned in (
+            gains,
+            gains.to_numpy(),
+            [(0.3, 0.2), (0.5, 0.1)],
+            np.array([PI(0.3, 0.2), PI(0.5, 0.1)]),
+            np.array(["k=0.3,ki=0.2", "k=0.5,ki=0.1"]),
+        ):
             np.testing.assert_array_equal(sweep(given, tuned, metrics="ms")["ms"], expected)
 
 
@@ -339,6 +345,16 @@ NOT_A_SWEEP: dict[str, tuple[Callable[[], object], str]] = {
     "flat array": (lambda: sweep(FOPTD, np.array([1.0, 2.0])), r"one row for each, shape \(n, numbers\), not \(2,\)"),
     "number": (lambda: sweep(FOPTD, 1.0), "the controllers of a sweep must be"),
     "column": (lambda: sweep(FOPTD, pd.DataFrame({"k": [1.0], "Ti": [2.0]})), "no column Ti: allowed are k, ki"),
+    "a plant's column misspelt": (
+        lambda: sweep(pd.DataFrame({"gain": [1.0], "time_constant": [1.0], "deadtime": [5.0]}), PI(0.5)),
+        r"plants\[0\]: a table of plants has the columns .*, not gain, time_constant, deadtime",
+    ),
+    "a column beside plants": (
+        lambda: sweep(pd.DataFrame({"plant": ["1/(s+1)"], "dead_time": [3.0]}), PI(0.5)), "not plant, dead_time",
+    ),
+    "a column beside controllers": (
+        lambda: sweep(FOPTD, pd.DataFrame({"controller": ["k=1"], "k": [3.0]})), "has no column controller: .* alone",
+    ),
     "a mapping": (lambda: sweep({"gain": 1.0}, PI(1.0)), "the plants of a sweep must be"),
     "not asked for": (lambda: sweep(FOPTD, PI(0.5), metrics="ms")["mp"], "the sweep has no metric 'mp'"),
     "several names": (

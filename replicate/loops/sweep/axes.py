@@ -24,6 +24,7 @@ Flags = NDArray[np.bool_]
 T = TypeVar("T", Plant, PID)
 
 NUMBERS = (float, int, np.float64)
+OBJECTS_OR_TEXTS = "OTU"  # kinds of arrays whose elements are members
 
 PLANT_COLUMNS = (("gain", "time_constant", "dead_time"), ("num", "den", "dead_time"), ("plant",))
 CONTROLLER_COLUMNS = tuple(field.name for field in fields(PID))
@@ -131,7 +132,7 @@ def _axis(
     if isinstance(given, np.ma.MaskedArray):
         given = np.ma.filled(given.astype(float if given.dtype.kind in "fiu" else object), np.nan)  # is no number
     if isinstance(given, np.ndarray):
-        if given.dtype != object and given.ndim != 2:
+        if given.dtype.kind not in OBJECTS_OR_TEXTS and given.ndim != 2:
             msg = f"an array of {name}s must have one row for each, shape (n, numbers), not {given.shape}"
             raise LoopError(msg)
         members: Any = given if given.ndim == 2 else given.ravel()
@@ -183,15 +184,16 @@ def _plant(given: Any) -> Plant:
 
 def _plant_of_row(row: dict[str, Any]) -> Plant:
     names = set(row)
+    # dead_time alone may be missing, and nothing may be misspelt: the plant would silently be another one
+    if not any(set(columns) - {"dead_time"} <= names <= set(columns) for columns in PLANT_COLUMNS):
+        allowed = " or ".join(", ".join(columns) for columns in PLANT_COLUMNS)
+        msg = f"a table of plants has the columns {allowed}, not {', '.join(row)}"
+        raise LoopError(msg)
     if "plant" in names:
         return _plant(row["plant"])
-    if {"gain", "time_constant"} <= names:
+    if "gain" in names:
         return Plant.foptd(row["gain"], row["time_constant"], row.get("dead_time", 0.0))
-    if {"num", "den"} <= names:
-        return Plant(row["num"], row["den"], row.get("dead_time", 0.0))
-    allowed = " or ".join(", ".join(columns) for columns in PLANT_COLUMNS)
-    msg = f"a table of plants has the columns {allowed}, not {', '.join(row)}"
-    raise LoopError(msg)
+    return Plant(row["num"], row["den"], row.get("dead_time", 0.0))
 
 
 def _controller(given: Any) -> PID:
@@ -206,11 +208,11 @@ def _controller(given: Any) -> PID:
 
 
 def _controller_of_row(row: dict[str, Any]) -> PID:
-    if "controller" in row:
+    if list(row) == ["controller"]:
         return _controller(row["controller"])
     unknown = [name for name in row if name not in CONTROLLER_COLUMNS]
     if unknown or "k" not in row:
         wrong = f"has no column {', '.join(unknown)}" if unknown else "needs a column k"
-        msg = f"a table of controllers {wrong}: allowed are {', '.join(CONTROLLER_COLUMNS)}, or controller"
+        msg = f"a table of controllers {wrong}: allowed are {', '.join(CONTROLLER_COLUMNS)}, or controller alone"
         raise LoopError(msg)
     return PID(**row)
