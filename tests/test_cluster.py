@@ -144,7 +144,10 @@ def test_a_loop_that_runs_already_hinders_no_cluster(address: str) -> None:
         assert thread.submit(lambda: asyncio.run(in_a_notebook())).result() == [(-1, 1)]
 
 
-@pytest.mark.parametrize(("key", "has"), [("scipy", r"scipy \S+, not 1\.0"), ("code", "other code of replicate")])
+@pytest.mark.parametrize(
+    ("key", "has"),
+    [("scipy", r"scipy \S+, not 1\.0"), ("Python", r"Python 3\.\d+, not 1\.0"), ("code", "other code of replicate")],
+)
 def test_a_worker_with_another_program_computes_nothing(
     address: str, monkeypatch: pytest.MonkeyPatch, key: str, has: str
 ) -> None:

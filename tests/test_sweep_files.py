@@ -210,6 +210,7 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
     [
         ("numpy", "holds blocks that were computed by numpy 1.0, not "),
         ("replicate", "holds blocks that were computed by replicate 1.0, not "),
+        ("Python", rf"holds blocks that were computed by Python 1\.0, not 3\.{sys.version_info.minor}: remove"),
         ("code", "holds blocks that were computed by other code of replicate: remove the folder"),
     ],
 )

@@ -221,12 +221,12 @@ def _by_the_same_program(here: Mapping[str, str], function: Callable[[Item], Mad
     Raises
     ------
     ReplicateError
-        If it has other code or other libraries: its digits would be others.
+        If it has other code, another Python or other libraries: its digits would be others.
     """
     why = difference(program(), here)
     if why:
         msg = f"the worker {worker_address()} has {why}:"
-        msg += " every machine needs the same version of replicate and its libraries"
+        msg += " every machine needs the same version of replicate, Python and the libraries"
         raise ReplicateError(msg)
     return function(item)
 

@@ -1,8 +1,12 @@
-"""Whether two processes, or two runs, are of the same program: its code, and the libraries that decide about digits."""
+"""Whether two processes, or two runs, are of the same program: its code, and what else decides about digits.
+
+That is the libraries, and Python: from 3.12 on, ``sum`` of floats has other last digits.
+"""
 
 from __future__ import annotations
 
 import hashlib
+import platform
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -17,7 +21,7 @@ _CODE = "code"
 @cache
 def program() -> dict[str, str]:
     """Return what tells this program from another: versions by name, and a digest of its code."""
-    found = {"replicate": replicate.__version__}
+    found = {"replicate": replicate.__version__, "Python": ".".join(platform.python_version_tuple()[:2])}
     for library in _LIBRARIES:
         try:
             found[library] = version(library)
