@@ -21,8 +21,8 @@ _SHOWN = re.compile(
     r'<math(?P<attributes>(?: (?!alttext)[^ >]*| alttext="(?P<said>[^"]*)")*)>(?P<content>.*?)</math>', re.DOTALL
 )
 _BUILT = re.compile("<m(?:sup|subsup|frac|sqrt|root|over|space|table)\\b")
-_LONG = {"block": 45, "inline": 24}  # characters of TeX; a longer formula may be wider than a phone
-_VERY_LONG = 34
+_LONG = 45  # characters of TeX; a longer displayed formula may be wider than a phone
+_LONG_IN_LINE, _VERY_LONG_IN_LINE = 24, 34
 _BREAKS = {"=", "≤", "≥", "<", ">", "≈", "≠", "→", "+", "−"}  # a line may break before these, as in a printed text
 
 
@@ -87,12 +87,10 @@ def _tied(opens: str, formula: str, ends: str) -> str:
 
 def _formula(match: re.Match[str]) -> str:
     display, content, tex = match.groups()
-    long = len(html.unescape(tex)) > _LONG[display]
-    if display == "inline" and long:
-        inside = 1 if len(html.unescape(tex)) > _VERY_LONG else 0
-        return "".join(_element(piece, 'display="inline"') for piece in _pieces(content, inside))
-    reachable = ' tabindex="0"' if long else ""
-    return _element(content, f'display="{display}"{reachable}')
+    if display == "inline":
+        return "".join(_element(piece, 'display="inline"') for piece in breakable(content, html.unescape(tex)))
+    reachable = ' tabindex="0"' if len(html.unescape(tex)) > _LONG else ""
+    return _element(content, f'display="block"{reachable}')
 
 
 def _element(content: str, attributes: str) -> str:
@@ -104,8 +102,14 @@ def _element(content: str, attributes: str) -> str:
     return f"<math {attributes}{said}>{content}</math>"
 
 
-def _pieces(content: str, inside: int) -> list[str]:
-    """Cut a formula before its relations and signs outside fractions and roots, and in at most so many brackets."""
+def breakable(content: str, tex: str) -> list[str]:
+    """Return the content of a formula in a line, a long one in pieces between which the line may end.
+
+    It is cut before its relations and signs outside fractions and roots, and in at most one pair of brackets.
+    """
+    if len(tex) <= _LONG_IN_LINE:
+        return [content]
+    inside = 1 if len(tex) > _VERY_LONG_IN_LINE else 0
     row = ET.fromstring(content)  # noqa: S314 -- pandoc's, and sanitised
     if row.tag != "mrow":
         return [content]

@@ -40,7 +40,7 @@ _FORMULA = re.compile(r"Could not convert TeX math (.*?), rendering as TeX:?(.*)
 _TOKEN = re.compile("\ue000(block|inline|plain)(\\d+)\ue001")
 _VERBATIM = re.compile(r"(<(?:code|pre|math)\b.*?</(?:code|pre|math)>|<[^>]*>)", re.DOTALL)
 _SAID = re.compile(r'<math [^>]*?alttext="([^"]*)"[^>]*>.*?</math>', re.DOTALL)
-_PER_CENT = re.compile(r"(?<=\d)%(?!\w)")
+_PER_CENT = re.compile(r"(?<=\d)\s?%(?!\w)")
 _MARKS = re.compile("[\ue000-\ue007]")
 
 #: Rooms of the framework whose code has texts converted, and what converts them: what a `Keep` of them looks at.
@@ -177,8 +177,8 @@ def _typeset(document: str) -> str:
     --------
     >>> _typeset('<a href="x-1 -1">at -1</a> <code>a -1</code>')
     '<a href="x-1 -1">at −1</a> <code>a -1</code>'
-    >>> _typeset('5% of <code>5%</code>')
-    '5\N{NO-BREAK SPACE}% of <code>5%</code>'
+    >>> _typeset('5% or 5 % of <code>5%</code>')
+    '5\N{NO-BREAK SPACE}% or 5\N{NO-BREAK SPACE}% of <code>5%</code>'
     """
     parts = _VERBATIM.split(document)
     parts[::2] = [_PER_CENT.sub("\N{NO-BREAK SPACE}%", minus_signs(part)) for part in parts[::2]]

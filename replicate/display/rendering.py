@@ -120,13 +120,13 @@ _STYLE, _POLICY = "\ue006style\ue007", "\ue006policy\ue007"
 
 def style_sheet(theme: Mapping[str, str]) -> str:
     """Return the style sheet of all pages, in the colours of a project where it names some."""
-    style = (templates_dir() / "style.css").read_text(encoding="utf-8") + dark_curves() + _math_font()
+    style = (templates_dir() / "style.css").read_text(encoding="utf-8") + dark_curves() + math_font()
     colours = "".join(f"--{_COLOURS[name]}: {colour}; " for name, colour in theme.items())
     return f"{style}@media not (prefers-color-scheme: dark) {{ :root {{ {colours}}} }}\n" if colours else style
 
 
 @cache
-def _math_font() -> str:
+def math_font() -> str:
     """Return the rule that gives a page the font of its formulas."""
     font = base64.b64encode((templates_dir() / "fonts" / "math.woff").read_bytes()).decode()
     return f'@font-face {{ font-family: "Replicate Math"; src: url(data:font/woff;base64,{font}); }}\n'

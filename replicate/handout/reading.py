@@ -8,12 +8,14 @@ import tempfile
 from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
+from replicate.display.numbers import minus_signs
 from replicate.display.pandoc import PandocError, convert
 from replicate.display.safe_html import strays
 from replicate.errors import TemplateError
 from replicate.handout.formulas import line_of
-from replicate.handout.tree import Blocks, Element, classes, elements
+from replicate.handout.tree import Blocks, Element, classes, elements, string
 
 Lines = Sequence[tuple[str, int]]  # of a text, each with the line of the source that it stems from
 
@@ -65,7 +67,7 @@ def read(texts: Sequence[Lines], source: str) -> list[Blocks]:
         if not tree or _WORD_FENCE in tree:
             return [_read(lines, source) for lines in texts]  # one of them says where
     found: list[Blocks] = []
-    for block in json.loads(tree)["blocks"]:
+    for block in _typeset(json.loads(tree)["blocks"]):
         if block["t"] == "Para" and block["c"] == [{"t": "Str", "c": _MARK}]:
             found.append([])
         else:
@@ -91,9 +93,31 @@ def _read(lines: Lines, source: str) -> Blocks:
         place = f"{source}:{_joined_fence(lines)}"
         msg = f"{place}: '{_FENCE}' is part of a paragraph; leave a line blank before a block begins"
         raise TemplateError(msg)
-    blocks: Blocks = json.loads(tree)["blocks"]
+    blocks: Blocks = _typeset(json.loads(tree)["blocks"])
     _check(blocks, lines, source)
     return blocks
+
+
+def _typeset(node: Any) -> Any:
+    """Return a tree whose numbers have minus signs, and stay on one line with a "%" after them."""
+    if isinstance(node, dict):
+        return {**node, "c": _typeset(node["c"])} if isinstance(node.get("c"), list) else node
+    if not isinstance(node, list):
+        return node
+    out: list[Any] = []
+    for child in node:
+        if not (isinstance(child, dict) and child.get("t") == "Str"):
+            out.append(_typeset(child))
+            continue
+        text = minus_signs(child["c"])
+        match out[-2:]:
+            case [{"t": "Str", "c": number}, {"t": "Space" | "SoftBreak"}] if (
+                text.startswith("%") and number[-1].isdigit()
+            ):
+                out[-2:] = [string(f"{number}\N{NO-BREAK SPACE}{text}")]
+            case _:
+                out.append(string(text))
+    return out
 
 
 def _joined_fence(lines: Lines) -> int:

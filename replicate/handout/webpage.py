@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import html
+import re
 
 from markupsafe import Markup
 
 import replicate
-from replicate.display.formulas import in_place
+from replicate.display.formulas import breakable, in_place
+from replicate.display.function_names import references
 from replicate.display.inline_svg import inline_svg
-from replicate.display.rendering import html_environment
+from replicate.display.rendering import html_environment, math_font
 from replicate.display.source_code import highlight
 from replicate.figures.style import dark_curves
 from replicate.handout.edition import Document
 from replicate.handout.pandoc import written
+from replicate.handout.spoken_math import spoken
 from replicate.handout.tree import Element, attribute, classes, plain, raw_block, raw_inline, string, transform
 from replicate.plain_text import visible
 
@@ -37,9 +40,23 @@ def webpage(document: Document) -> str:
             date=document.sheet.date,
             form=document.form,
             dark_curves=dark_curves(),
+            math_font=Markup(math_font()),  # noqa: S704  -- the project's own
             body=Markup(body),  # noqa: S704  -- the project's own text
             software=f"replicate {replicate.__version__}",
         )
+    )
+
+
+def _in_line(mathml: str, tex: str) -> str:
+    """Return a formula in a line; a long one in pieces, each with its words, between which the line may end."""
+    (content,) = re.findall("<semantics>(.*?)<annotation", mathml, re.DOTALL)
+    pieces = breakable(content, tex)
+    if len(pieces) == 1:
+        return mathml
+    said = [html.escape(spoken(f"<math>{piece}</math>")) for piece in pieces]
+    return "".join(
+        references(f'<math alttext="{words}" display="inline">{piece}</math>')
+        for words, piece in zip(said, pieces, strict=True)
     )
 
 
@@ -48,7 +65,9 @@ def _for_html(element: Element, document: Document) -> list[Element] | None:
     match element["t"]:
         case "Math":
             kind, tex = element["c"]
-            return [raw_inline("html", document.formulas[kind["t"] == "DisplayMath", tex].mathml)]
+            displayed = kind["t"] == "DisplayMath"
+            mathml = document.formulas[displayed, tex].mathml
+            return [raw_inline("html", mathml if displayed else _in_line(mathml, tex))]
         case "CodeBlock":
             code, names = element["c"][1], classes(element)
             text = highlight(code) if "python" in names else html.escape(code, quote=False)
