@@ -21,13 +21,15 @@ from replicate.handout.tree import Element, attribute, classes, plain, raw_block
 from replicate.plain_text import visible
 
 TEMPLATE = "handout.html"
+_LONGEST_LINE = 80  # characters of a program; one with a longer line scrolls, so the keyboard has to reach it
+_EMPTY_HEAD = re.compile(r"<th\b([^>]*)></th>")
 
 
 def webpage(document: Document) -> str:
     """Return the page as HTML."""
     blocks = transform(document.blocks, lambda element: _for_html(element, document))
     (body,) = written([blocks], "html", "--shift-heading-level-by=1")
-    body = in_place(body)
+    body = _EMPTY_HEAD.sub(r"<td\1></td>", in_place(body))  # a head without a name is none
     return visible(
         html_environment()
         .get_template(TEMPLATE)
@@ -71,7 +73,8 @@ def _for_html(element: Element, document: Document) -> list[Element] | None:
         case "CodeBlock":
             code, names = element["c"][1], classes(element)
             text = highlight(code) if "python" in names else html.escape(code, quote=False)
-            return [raw_block("html", f'<pre class="{" ".join(names)}"><code>{text}</code></pre>')]
+            reach = ' tabindex="0"' if max(map(len, code.splitlines()), default=0) > _LONGEST_LINE else ""
+            return [raw_block("html", f'<pre{reach} class="{" ".join(names)}"><code>{text}</code></pre>')]
         case "Div" if "drawing" in classes(element):
             drawing = document.drawings[attribute(element, "name")]
             svg = inline_svg(drawing.svg, f"svg-{drawing.name}", drawing.name, drawing.alt)
