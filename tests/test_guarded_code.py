@@ -95,6 +95,7 @@ def test_a_lecturers_code_is_stopped_and_named(
 SET = ("handout", "lab", "--variants", "2", "--format", "html")
 
 
+@pytest.mark.usefixtures("lab_computed")  # what is computed has the same limit, and takes longer
 @pytest.mark.parametrize(
     ("where", "code", "command", "said"),
     [

@@ -114,7 +114,7 @@ def test_the_folder_for_temporary_files_may_have_a_long_path(tmp_path: Path) -> 
 
 def test_a_unit_that_takes_too_long_breaks_the_run_by_name(folder: Path, replicate: Run) -> None:
     add(folder, "\n@table.reading('slow', 'Slow')\ndef _slow():\n    import time\n    time.sleep(60)\n")
-    status, _, errors = replicate("report", "lab", "--unit-timeout", "3")
+    status, _, errors = replicate("report", "lab", "-j1", "--unit-timeout", "3")
     assert status == 2
     assert "lab/table-1 (slow): stopped after 3 s (--unit-timeout allows more) (lab_paper/exhibits.py:" in errors
 
