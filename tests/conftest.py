@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import gc
 import importlib
 import shutil
 import signal
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import installed_paper
 import pytest
 from attack import attack, table
+from command import status_of
 from hypothesis import HealthCheck, settings
+from surroundings import changed, surroundings
 
-from replicate import cli
 from replicate.run.library import Library
 from replicate.run.parallel import run
 
@@ -67,6 +66,14 @@ def _own_cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("user-cache")))
         yield
+
+
+@pytest.fixture(autouse=True)
+def _leaves_its_surroundings() -> Iterator[None]:
+    """Which tests run before which in a process is chance: none may notice it."""
+    before = surroundings()
+    yield
+    assert changed(before, surroundings()) == []
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -146,15 +153,7 @@ def command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[
         monkeypatch.delenv(name, raising=False)
 
     def run(*arguments: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["replicate", *arguments])
         capsys.readouterr()
-        earlier = signal.getsignal(signal.SIGTERM)
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        signal.signal(signal.SIGTERM, earlier)
-        gc.unfreeze()  # the process does not end with the command
-        code = exit_.value.code
-        assert isinstance(code, int)
-        return code, *capsys.readouterr()
+        return status_of(*arguments), *capsys.readouterr()
 
     return run

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+from command import status_of
 from matplotlib.figure import Figure as Canvas
 
-from replicate import cli
 from replicate.errors import OutputError, PaperDefinitionError, ReplicateError, UnknownPaperError
 from replicate.exhibits import Paper
 from replicate.run.charts import draw_chart, file_name, find_chart, read_parameters
@@ -88,13 +88,7 @@ def test_files(paper: Paper, tmp_path: Path) -> None:
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: str) -> int | str | None:
-        monkeypatch.setattr(sys, "argv", ["replicate", "chart", *arguments])
-        with pytest.raises(SystemExit) as exit_:
-            cli.main()
-        return exit_.value.code
-
+    run = partial(status_of, "chart")
     assert run("krajewski", "--chart", "design", "--tau", "0.35") == 0
     assert capsys.readouterr().out == "chart: build/charts/krajewski-design-tau-0.35.svg\n"
     assert (tmp_path / "build/charts/krajewski-design-tau-0.35.svg").is_file()

@@ -13,7 +13,6 @@ from pathlib import Path
 import pytest
 from installed_paper import contents
 
-from replicate import cli
 from replicate.staging import stage
 from replicate.staging.journal import throw_away
 
@@ -222,9 +221,8 @@ def test_a_malformed_file_is_named(replicate: Run, folder: Path) -> None:
 
 
 def test_debug_shows_where(replicate: Run, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys, "argv", ["replicate", "show", "lap", "table-1", "--debug"])
     with pytest.raises(Exception, match="no paper 'lap'"):
-        cli.main()
+        replicate("show", "lap", "table-1", "--debug")
     monkeypatch.setattr("replicate.run.library.Library.paper", lambda *_: 1 / 0)
     status, _, err = replicate("show", "lab", "table-1")
     assert status == 2

@@ -5,15 +5,14 @@ from __future__ import annotations
 import csv
 import io
 import shutil
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+from command import status_of
 from kept_results import kept_results
 
 from browser.sight import SEAM, SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
-from replicate import cli
 
 ROOT = Path(__file__).parents[2]
 
@@ -40,13 +39,9 @@ def page(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Path:
     rewritten(out / "accepted" / "khan" / "table-2.csv", "computed", 0.25, 3)
     rewritten(out / "accepted" / "khan" / "fig-3.csv", "y", 0.02, 100)
     names = ["khan/table-2", "khan/fig-3"]
-    with kept_results() as kept, pytest.MonkeyPatch.context() as patch:
+    with kept_results() as kept:
         (out / "cache").symlink_to(kept)
-        arguments = ["replicate", "diff", *names, "--accepted", str(out / "accepted"), "--out", str(out)]
-        patch.setattr(sys, "argv", arguments)
-        with pytest.raises(SystemExit) as ended:
-            cli.main()
-    assert ended.value.code == 1
+        assert status_of("diff", *names, "--accepted", str(out / "accepted"), "--out", str(out)) == 1
     return out / "diff" / "index.html"
 
 

@@ -8,15 +8,14 @@ from __future__ import annotations
 import csv
 import io
 import re
-import sys
 from pathlib import Path
 from typing import Any
 
 import pytest
+from command import status_of
 from kept_results import kept_results
 
 from browser.sight import BY_COLOURS, BY_WIDTH, FOLD, SETTLED, SIDEWAYS, SMALL, STOPS, UNFOLDED, Sight, violations
-from replicate import cli
 from replicate.report.pages import SEARCH
 from replicate.report.site import INDEX
 
@@ -29,11 +28,9 @@ def report(tmp_path_factory: pytest.TempPathFactory, browser: Any) -> Path:
     """Build the report of the bundled papers; without a browser nothing is built."""
     assert browser
     out = tmp_path_factory.mktemp("bundled")
-    with kept_results() as kept, pytest.MonkeyPatch.context() as patch:
+    with kept_results() as kept:
         (out / "cache").symlink_to(kept)
-        patch.setattr(sys, "argv", ["replicate", "report", "--bundled", "--out", str(out)])
-        with pytest.raises(SystemExit):
-            cli.main()
+        status_of("report", "--bundled", "--out", str(out))
     return out / "report"
 
 
@@ -48,6 +45,15 @@ def plain(text: str) -> str:
 
 def pages(report: Path) -> list[Path]:
     return sorted(report.glob("*.html"))
+
+
+def copied(page: Any, button: Any) -> str:
+    """Press a button that copies, and return what it has copied."""
+    page.evaluate("window.setTimeout = () => 0")  # so that it goes on saying what it says for a moment
+    button.click()
+    page.get_by_role("button", name="copied").wait_for()
+    text: str = page.evaluate("navigator.clipboard.readText()")
+    return text
 
 
 def test_no_page_is_heavy(report: Path) -> None:
@@ -165,9 +171,7 @@ def test_two_clicks_lead_a_newcomer_to_what_is_wrong_in_a_table(report: Path, br
             assert part in said
         assert clicks == 2
         assert page.url.endswith(one["address"])
-        card.get_by_role("button", name="copy address").click()
-        page.get_by_role("button", name="copied").wait_for()
-        assert page.evaluate("navigator.clipboard.readText()") == page.url
+        assert copied(page, card.get_by_role("button", name="copy address")) == page.url
 
 
 def test_every_cell_claim_and_error_has_one_address(report: Path) -> None:
@@ -266,13 +270,14 @@ def test_curves_are_read_and_switched(report: Path, browser: Any) -> None:
     with Sight(browser, report / "khan.html") as page:
         drawing = page.locator("#fig-4 .drawing")
         drawing.scroll_into_view_if_needed()
+        page.evaluate(SETTLED)
         line = page.locator("#fig-4 [data-curve]").first
         x, y = line.evaluate("""(line) => {
           const path = line.querySelector("path"), p = path.getPointAtLength(path.getTotalLength() / 2);
           const q = new DOMPoint(p.x, p.y).matrixTransform(path.getScreenCTM());
           return [q.x, q.y];
         }""")
-        page.mouse.move(x, y, steps=5)  # as a hand does: the first of them may come before the page has settled
+        page.mouse.move(x, y, steps=5)  # as a hand does
         said = drawing.locator(".read-out").inner_text().replace("−", "-")
         match = re.search(r"(-?[\d.e-]+) at (-?[\d.e-]+)$", said)
         assert match is not None
@@ -308,9 +313,8 @@ def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: P
         heads = page.locator("#table-2 thead th.over")
         assert [head.get_attribute("colspan") for head in heads.all()] == ["4", "4"]
         assert page.locator("#table-2 h3 .label").text_content() == "Table II"  # as the paper numbers it
-        page.locator("#table-2 .files").get_by_role("button", name="copy as CSV").click()
-        page.get_by_role("button", name="copied").wait_for()
-        names, *rows = csv.reader(io.StringIO(page.evaluate("navigator.clipboard.readText()")))
+        button = page.locator("#table-2 .files").get_by_role("button", name="copy as CSV")
+        names, *rows = csv.reader(io.StringIO(copied(page, button)))
         assert len(set(names)) == len(names) == 9
         assert [name.endswith("ph=1") for name in names[1:]] == [True] * 4 + [False] * 4
         assert {len(row) for row in rows} == {9}
@@ -327,9 +331,8 @@ def test_tables_have_heads_over_groups_and_are_copied_with_whole_names(report: P
 def test_formulas_are_copied_in_one_line(report: Path, browser: Any) -> None:
     with Sight(browser, report / "bayhan.html") as page:
         page.context.grant_permissions(["clipboard-read", "clipboard-write"])
-        page.locator("#table-1 .files").get_by_role("button", name="copy as CSV").click()
-        page.get_by_role("button", name="copied").wait_for()
-        rows = list(csv.reader(io.StringIO(page.evaluate("navigator.clipboard.readText()"))))
+        button = page.locator("#table-1 .files").get_by_role("button", name="copy as CSV")
+        rows = list(csv.reader(io.StringIO(copied(page, button))))
         names = [row[0] for row in rows]
         assert {len(row) for row in rows} == {5}
         assert "IAE for load disturbance (IAE): Kp=(0.984/K)(L/τ)^(-0.986), Ti=(τ/0.608)(L/τ)^0.707" in names
