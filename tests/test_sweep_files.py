@@ -20,7 +20,7 @@ from replicate.errors import OutputError
 from replicate.loops import PI, PID, Loop, Plant
 from replicate.run.backends import LocalProcesses
 from replicate.sweeps import read_sweep_file, run_sweep
-from replicate.sweeps.running import scattered
+from replicate.sweeps.running import SweepProgress, scattered
 from replicate.sweeps.sides import Range
 from replicate.sweeps.sweep_file import Block, SweepFile
 
@@ -147,6 +147,23 @@ def test_an_interrupted_sweep_goes_on_and_ends_as_one_that_was_not(tmp_path: Pat
     names = sorted(path.name for path in (tmp_path / "whole").iterdir())
     assert sorted(path.name for path in blocks.iterdir()) == names
     assert all((blocks / name).read_bytes() == (tmp_path / "whole" / name).read_bytes() for name in names)
+
+
+def test_an_interrupted_sweep_says_what_stays(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sweep = written(tmp_path / "s.toml")
+    seen: list[SweepProgress] = []
+
+    def interrupt(step: SweepProgress) -> None:
+        seen.append(step)
+        if len(seen) == 3:  # the beginning and two blocks
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1), interrupt)
+    there = len(read(tmp_path / "out"))
+    said = f"out: interrupted; {there} of 12 loops stay, and the next run goes on from there\n"
+    assert capsys.readouterr().err.endswith(said)
+    assert run_sweep(sweep, tmp_path / "out", "csv", LocalProcesses(1)) == sweep.block_count - 2
 
 
 def test_a_damaged_block_is_computed_anew(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ carried out, by this run or, if it is killed, by the next one.
 `keep_file`         one more file in a folder that a run holds with `locked_folder`, for sweeps
 `partial_of`        where such a file grows
 `unchanged`         a run that is interrupted before its files are staged says so
+`say`               a line on standard error for whoever waits
 `files_of`          what earlier runs wrote
 `write`             a file and its folders, in a folder that is thrown away if the run does not end
 `finish_interrupted` before reading a folder that another run may have been killed in
@@ -19,7 +20,7 @@ from replicate.staging.files import partial_of, write
 from replicate.staging.journal import ROOM
 from replicate.staging.kept import keep_file, locked_folder
 from replicate.staging.signatures import signed, write_signed
-from replicate.staging.stage import files_of, finish_interrupted, replace_files, staged, unchanged
+from replicate.staging.stage import files_of, finish_interrupted, replace_files, say, staged, unchanged
 
 __all__ = [
     "ROOM",
@@ -29,6 +30,7 @@ __all__ = [
     "locked_folder",
     "partial_of",
     "replace_files",
+    "say",
     "signed",
     "staged",
     "unchanged",

@@ -18,7 +18,7 @@ from pathlib import Path
 from replicate.errors import OutputError
 from replicate.run.backends import Backend
 from replicate.run.same_program import difference, program
-from replicate.staging import ROOM, keep_file, locked_folder, partial_of
+from replicate.staging import ROOM, keep_file, locked_folder, partial_of, say
 from replicate.sweeps.blocks import compute_block, file_name, is_kept, rows_of
 from replicate.sweeps.sweep_file import Block, SweepFile
 
@@ -75,13 +75,16 @@ def run_sweep(
             else:
                 missing.append(block)
         done = kept
-        progress(SweepProgress(kept, done, sweep.loops))
-        for block, content in backend.unordered(
-            partial(compute_block, sweep, file_format=file_format), scattered(missing)
-        ):
-            keep_file(folder / file_name(block, file_format), content)
-            done += rows_of(sweep, block)
+        compute = partial(compute_block, sweep, file_format=file_format)
+        try:
             progress(SweepProgress(kept, done, sweep.loops))
+            for block, content in backend.unordered(compute, scattered(missing)):
+                keep_file(folder / file_name(block, file_format), content)
+                done += rows_of(sweep, block)
+                progress(SweepProgress(kept, done, sweep.loops))
+        except KeyboardInterrupt:
+            say(f"{folder}: interrupted; {done} of {sweep.loops} loops stay, and the next run goes on from there")
+            raise
     return len(missing)
 
 
