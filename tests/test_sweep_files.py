@@ -206,6 +206,13 @@ def test_a_block_that_is_another_one_is_computed_anew(tmp_path: Path, file_forma
     assert [path.read_bytes() for path in (first, second)] == right
 
 
+@pytest.mark.parametrize("file_format", ["csv", "parquet"])
+def test_plants_whose_texts_are_numbers_are_kept(tmp_path: Path, file_format: str) -> None:
+    sweep = written(tmp_path / "s.toml", 'plants = ["1", "0.50"]\ncontrollers = ["k=0.3,ki=0.2"]\nmetrics = ["ms"]\n')
+    computed = [run_sweep(sweep, tmp_path / "out", file_format, LocalProcesses(1)) for _ in range(2)]
+    assert computed == [1, 0]
+
+
 def test_a_folder_of_something_else_is_left_alone(tmp_path: Path) -> None:
     sweep = written(tmp_path / "s.toml")
     (tmp_path / "mine").mkdir()
