@@ -86,21 +86,35 @@ def margins() -> dict[str, float]:
     """Return Ms, gain margin and phase margin, by Newton's method on the exact transfer function."""
 
     def loop(w: mp.mpf) -> mp.mpc:
-        s = mp.mpc(0, w)
-        return (mp.mpf(K) + mp.mpf(KI) / s) * mp.exp(-s) / (s + 1)
+        return _loop(w, K, KI, 0.0)
 
     def root(f: Callable[[mp.mpf], mp.mpf], near: float) -> mp.mpf:
         return mp.findroot(f, (near, near * 1.001))
 
     gain_crossover = root(lambda w: abs(loop(w)) - 1, 0.5)
     phase_crossover = root(lambda w: mp.im(loop(w)), 1.5)
-    closest = root(lambda w: mp.diff(lambda v: abs(1 + loop(v)), w), 1.2)
     return {
-        "ms": float(1 / abs(1 + loop(closest))),
+        "ms": sensitivity_peak(K, KI),
         "gain_margin": float(1 / abs(loop(phase_crossover))),
         "rightmost_pole": rightmost_pole(),
         "phase_margin": float(mp.degrees(mp.arg(loop(gain_crossover)) + mp.pi)),
     }
+
+
+def _loop(w: mp.mpf, k: float, ki: float, kd: float) -> mp.mpc:
+    s = mp.mpc(0, w)
+    return (mp.mpf(k) + mp.mpf(ki) / s + mp.mpf(kd) * s) * mp.exp(-s) / (s + 1)
+
+
+def sensitivity_peak(k: float, ki: float, kd: float = 0.0) -> float:
+    """Return the largest |S| of a PID controller on the same plant: the highest peak on a grid, polished."""
+
+    def distance(w: mp.mpf) -> mp.mpf:
+        return abs(1 + _loop(w, k, ki, kd))
+
+    s = 1j * np.linspace(0.01, 60.0, 20_000)
+    nearest = s[np.argmin(np.abs(1.0 + (k + ki / s + kd * s) * np.exp(-s) / (s + 1.0)))].imag
+    return float(1 / distance(mp.findroot(lambda w: mp.diff(distance, w), nearest)))
 
 
 def rightmost_pole() -> float:
