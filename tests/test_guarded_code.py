@@ -80,8 +80,8 @@ def test_a_lecturers_code_is_stopped_and_named(
     monkeypatch.setattr(guarded, "_PATIENCE", 1.0)
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
     (tmp_path / "temporary").mkdir()
-    home = tmp_path / "mine"
-    home.mkdir()
+    home = tmp_path / "Übungen 演習" / "mine"  # letters that a fault handler cannot write
+    home.mkdir(parents=True)
     (home / "exercise.md").write_text("## Title\nWhat?\n", encoding="utf-8")
     (home / "exercise.py").write_text(EXERCISE.format(**NOTHING | {where: code}), encoding="utf-8")
     floods = "written" in said

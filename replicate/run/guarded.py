@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import faulthandler
 import os
-import re
 import signal
 import tempfile
 import time
@@ -22,12 +21,12 @@ from types import TracebackType
 from typing import Any
 
 from replicate.errors import ReplicateError
+from replicate.run.fault_reports import frames
 from replicate.run.limits import MOST_OUTPUT
 from replicate.run.messages import WRITTEN, Messages, NoMessageError, packed, unpacked
 from replicate.run.starting import started
 from replicate.run.worker import Surroundings, settled
 
-_FRAME = re.compile(r'File "([^"\n]+)", line (\d+) in ')
 _OVERDUE, _FAULT = "Timeout (", "Fatal Python error"  # what the fault handler writes first
 _PATIENCE = 5.0  # seconds after which a process is ended whose fault handler is gone
 _TICK = 0.5
@@ -173,7 +172,7 @@ class GuardedProcess:
         if place == _NOWHERE:
             return ReplicateError(f"a process of this run {why}")
         report = output.rpartition(_OVERDUE if _OVERDUE in output else _FAULT)[2]
-        lines = [int(line) for file, line in _FRAME.findall(report) if file == place.file]
+        lines = [line for file, line in frames(report) if file == place.file]
         stopped = "; it was stopped in this line" if lines and why == self._too_long else ""
         return ReplicateError(f"{place.source}:{lines[0] if lines else place.line}: {place.what} {why}{stopped}")
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import re
 import signal
 import sys
 import tempfile
@@ -21,6 +20,7 @@ from typing import Any
 
 from replicate.exhibits import Claims, Exhibit, Figure
 from replicate.exhibits.file_names import display_name
+from replicate.run.fault_reports import frames
 from replicate.run.limits import MOST_OUTPUT
 from replicate.run.messages import WRITTEN, Messages, NoMessageError
 from replicate.run.performance import Performance, with_errors
@@ -33,7 +33,6 @@ _TICK = 0.5
 _PATIENCE = 2.0  # seconds in which a worker that is stopped may say where it was
 _SHOWN_OUTPUT = 20_000
 _UNKNOWN = 255  # the process that watches over the workers is gone, too
-_FRAME = re.compile(r'File "([^"]+)", line (\d+) in ')
 _READERS: dict[bytes, Callable[[bytes], Any]] = {
     BEGUN: bytes.decode,
     DONE: Performance.from_bytes,
@@ -229,7 +228,7 @@ def _kill(worker: _Worker) -> str:
 def _place(output: str) -> str:
     """Return the innermost line of a fault handler's report that is not in a library or here."""
     report = output.partition("Fatal Python error")[2]
-    for file, line in _FRAME.findall(report.partition("Current thread")[2] or report):
+    for file, line in frames(report.partition("Current thread")[2] or report):
         if "site-packages" not in file and not file.startswith((sys.base_prefix, "<", str(Path(__file__).parent))):
             return f" ({display_name(Path(file))}:{line})"
     return ""
