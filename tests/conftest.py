@@ -60,11 +60,17 @@ LONGEST = (
 )
 
 
+#: What tells of the terminal, which is that of the tests, and of the summary, which is that of the job that runs them.
+_OUTSIDE = ("COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "GITHUB_STEP_SUMMARY")
+
+
 @pytest.fixture(autouse=True, scope="session")
-def _own_cache_folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """What a run notes in the user's cache folder must not come from tests, nor change them."""
+def _own_surroundings(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """What a run notes in the user's cache folder must not come from tests, nor change them; nor do terminals."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("user-cache")))
+        for name in _OUTSIDE:
+            patch.delenv(name, raising=False)
         yield
 
 
@@ -148,9 +154,6 @@ def replicate(command_line: Run, folder: Path, tmp_path: Path, monkeypatch: pyte
 def command_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Run:
     """Run the command in this process and return exit status, output and error output."""
     monkeypatch.setenv("NO_COLOR", "1")
-    # The terminal is that of the tests, and the summary that of the job that runs them.
-    for name in ("COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "GITHUB_STEP_SUMMARY"):
-        monkeypatch.delenv(name, raising=False)
 
     def run(*arguments: str) -> tuple[int, str, str]:
         capsys.readouterr()

@@ -36,7 +36,7 @@ def cluster(folder: Path, workers: int = 2) -> Iterator[Cluster]:
         )
     ]
     try:
-        end = time.monotonic() + 60
+        end = time.monotonic() + 600
         while not file.exists() or not file.read_text(encoding="utf-8").strip():
             assert time.monotonic() < end, "the scheduler has not started"
             time.sleep(0.1)

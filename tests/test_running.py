@@ -137,7 +137,8 @@ def test_what_is_kept_is_counted_and_removed(folder: Path, replicate: Run) -> No
 
 
 def test_nothing_heavy_is_imported_for_what_is_kept(folder: Path, replicate: Run) -> None:
-    replicate("report", "lab")
+    status, _, errors = replicate("report", "lab")
+    assert status == 0, errors
     code = (
         "import sys; from replicate.cli import main; sys.argv = ['replicate', 'check', 'lab', '--accepted', '.']\n"
         "try:\n    main()\nexcept SystemExit:\n    pass\n"

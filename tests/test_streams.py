@@ -47,15 +47,13 @@ def computed(lab: Path, results: Path) -> Path:
 def run(lab: Path, arguments: tuple[str, ...], redirection: str) -> subprocess.CompletedProcess[str]:
     """Run the command through a shell, and end with its own status."""
     command = f'"$0" -m replicate "$@" {redirection}; exit ${{PIPESTATUS[0]}}'
-    environment = {**os.environ, "PYTHONPATH": str(lab / "site")}
-    environment.pop("GITHUB_STEP_SUMMARY", None)
     return subprocess.run(
         ["bash", "-c", command, sys.executable, *arguments],
         capture_output=True,
         text=True,
         check=False,
         cwd=lab / "here",
-        env=environment,
+        env={**os.environ, "PYTHONPATH": str(lab / "site")},
     )
 
 

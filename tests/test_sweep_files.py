@@ -286,7 +286,7 @@ def test_workers_end_when_the_run_is_killed(tmp_path: Path) -> None:
         return stat.exists() and stat.read_text(encoding="utf-8").rpartition(")")[2].split()[0] != "Z"
 
     with subprocess.Popen([sys.executable, "-c", IDLE, str(tmp_path)]) as run:
-        end = time.monotonic() + 60
+        end = time.monotonic() + 600
         while not (tmp_path / "done").exists() and time.monotonic() < end:
             time.sleep(0.05)
         workers = [int(path.name) for path in tmp_path.iterdir() if path.name != "done"]

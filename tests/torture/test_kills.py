@@ -40,9 +40,7 @@ def quick(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 def environment() -> dict[str, str]:
     """Return the environment of a process in which the modules of this folder are found."""
-    found = {**os.environ, "PYTHONPATH": str(HERE), "NO_COLOR": "1"}
-    found.pop("GITHUB_STEP_SUMMARY", None)
-    return found
+    return {**os.environ, "PYTHONPATH": str(HERE), "NO_COLOR": "1"}
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs a system with fork")
@@ -91,7 +89,6 @@ def left(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
         with installed_paper.installed(site) as paper, pytest.MonkeyPatch.context() as patch:
             patch.chdir(here)
             patch.setenv("NO_COLOR", "1")
-            patch.delenv("GITHUB_STEP_SUMMARY", raising=False)
             if command == "class set":
                 varied_handout.write(paper)
             for earlier in {"diff": ["accept", "diff"], "new": []}.get(command, [command]):
