@@ -29,6 +29,15 @@ Array = NDArray[np.float64]
 # closed forms
 
 
+@pytest.mark.parametrize("dead_time", [100.0, 300.0, 1000.0])
+def test_a_peak_that_lasts_a_dead_time_is_where_it_begins(dead_time: float) -> None:
+    # until the loop answers y = 1 - e^{-(t - L)}: one to within rounding long before t = 2 L
+    load = Loop(Plant([1.0], [1.0, 1.0], dead_time), PI(0.2, 0.2 / dead_time)).load_step()
+    rounding = -np.log(1e-14)
+    assert float(load.peak()) == pytest.approx(1.0, abs=1e-13)
+    assert 0.9 * rounding < load.peak().time - dead_time < 1.5 * rounding
+
+
 @given(st.floats(0.05, 20.0))
 def test_first_order_loop(k: float) -> None:
     # y = 1 - e^{-kt}

@@ -207,21 +207,19 @@ class Piecewise(SetOnce):
         highest = samples.max(axis=1)
         scale = float(np.max(np.abs(self._samples)))
         reserve = self._excess * (highest - samples.min(axis=1))
-        candidates = np.nonzero(highest + reserve >= highest.max())[0]
-        best = Peak(-np.inf, float("nan"))
+        level = highest.max() - FLAT * scale
+        candidates = np.nonzero(highest + reserve >= level)[0]
         # the settled tail of a slow loop is thousands of pieces that are constant to rounding: their samples say it all
         flat = np.ptp(samples[candidates], axis=1) <= FLAT * scale
-        if flat.any():
-            tail = candidates[flat]
-            # of values that are one to rounding the first counts, from the beginning of its piece on
-            same = highest[tail] >= highest[tail].max() - FLAT * scale
-            place = int(tail[np.argmax(same)])
-            best = Peak(float(highest[place]), self._time(place, -1.0))
-            candidates = candidates[~flat]
-        for value, time in self._summits(samples, candidates, sign, highest.max() - reserve[candidates]):
-            if value > best:
-                best = Peak(value, time)
-        return Peak(sign * float(best), best.time)
+        tail, candidates = candidates[flat], candidates[~flat]
+        found = self._summits(samples, candidates, sign, level - reserve[candidates])
+        if tail.size:
+            place = int(tail[np.argmax(highest[tail] >= level)])
+            found.append((float(highest[place]), self._time(place, -1.0)))
+        value = max((value for value, _ in found), default=-np.inf)
+        # of values that are one to rounding the first counts
+        times = (time for other, time in found if other >= value - FLAT * scale)
+        return Peak(sign * value, min(times, default=float("nan")))
 
     def _summits(
         self, samples: Array, pieces: NDArray[np.intp], sign: float, level: Array
