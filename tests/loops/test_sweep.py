@@ -508,3 +508,29 @@ def test_loops_whose_integral_action_is_slow_stay_together(monkeypatch: pytest.M
     for name in found.metrics:
         values = [getattr(y, name)() for y in expected]
         np.testing.assert_allclose(found[name][0], values, rtol=1e-9, err_msg=name)
+
+
+def test_load_responses_that_end_away_from_zero_go_together_and_the_others_have_no_relative_metrics(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delattr(running, "loop_metrics")
+    gains = np.array([[0.5, 0.0], [1.5, 0.0], [2.0, 0.0], [2.5, 0.0]])
+    result = sweep(
+        Plant([1.0], [1.0, 1.0, 1.0]), gains, metrics=["load_overshoot", "load_delay_time", "load_rise_time"]
+    )
+    # y/d = 1/(s^2 + s + 1 + k)
+    decay, frequency = 0.5, np.sqrt(0.75 + gains[:, 0])
+    np.testing.assert_allclose(result["load_overshoot"][0], np.exp(-np.pi * decay / frequency), rtol=1e-10)
+    for place, w in enumerate(frequency):
+
+        def share(t: float, w: float = w) -> float:
+            return float(1.0 - np.exp(-decay * t) * (np.cos(w * t) + decay / w * np.sin(w * t)))
+
+        low, half, high = (brentq(lambda t, at=at: share(t) - at, 0.0, np.pi / w, xtol=1e-15) for at in (0.1, 0.5, 0.9))
+        assert result["load_delay_time"][0, place] == pytest.approx(half, rel=1e-10)
+        assert result["load_rise_time"][0, place] == pytest.approx(high - low, rel=1e-10)
+
+    integral = sweep(FOPTD, [(0.3, 0.2), (0.4, 0.3), (0.5, 0.2), (0.6, 0.3)], metrics=["load_rise_time", "load_iae"])
+    assert np.isnan(integral["load_rise_time"]).all()
+    assert np.isfinite(integral["load_iae"]).all()
+    assert (integral.reason == "load_rise_time: rise time is relative to the final value, which is 0 here").all()

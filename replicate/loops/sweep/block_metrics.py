@@ -29,12 +29,12 @@ AT_A_TIME = 512
 SHORTER = (1, 2, 4)
 OF_THE_LOOP = ("ms", "mp", "ms_frequency", "mp_frequency", "gain_margin", "phase_margin", "delay_margin")
 IN_TIME = {"delay_margin": 1, "ms_frequency": -1, "mp_frequency": -1}  # the power of the unit of time in them
-OF_A_STEP = ("overshoot", "rise_time", "delay_time")  # relative to the final value
+RELATIVE = ("overshoot", "rise_time", "delay_time")  # to the final value
 OF_THE_SIZE = ("overshoot", "peak")  # no unit of time in them
 OF_A_SQUARE = ("itae", "itse")  # squares of the unit of time
 VARIATION = "total_variation"  # in the unit of the control signal
 ABOVE = "last_above"  # the band: of a load response, which ends at zero
-OF_A_RESPONSE = (*OF_A_STEP, "peak", "peak_time", "settling_time", "iae", "ise", "ie", *OF_A_SQUARE, VARIATION)
+OF_A_RESPONSE = (*RELATIVE, "peak", "peak_time", "settling_time", "iae", "ise", "ie", *OF_A_SQUARE, VARIATION)
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def answered(metrics: tuple[str, ...]) -> tuple[str, ...]:
         POLE,
         *OF_THE_LOOP,
         *OF_A_RESPONSE,
-        *(LOAD + name for name in (*OF_A_RESPONSE, ABOVE) if name not in OF_A_STEP),
+        *(LOAD + name for name in (*OF_A_RESPONSE, ABOVE)),
     }
     return tuple(name for name in metrics if name in known)
 
@@ -156,7 +156,10 @@ def _answer(found: ResponseMetrics, name: str, band: float, loops: LoopColumns) 
     """Return the values of a metric in the user's units, where they are missing, and why."""
     missing, why = np.zeros(found.count, dtype=bool), ""
     by = f"by t = {found.end * loops.time:g}"
-    if name in {"settling_time", ABOVE}:
+    if name in RELATIVE and not found.final.any():  # the load responses of loops with integral action
+        value, missing = np.full(found.count, np.nan), np.ones(found.count, dtype=bool)
+        why = f"{name.replace('_', ' ')} is relative to the final value, which is 0 here"
+    elif name in {"settling_time", ABOVE}:
         value, missing = found.settling_time(band, one_sided=name == ABOVE)
         why = f"the response has not settled within {band:g} of its final value {by}"
     elif name == "delay_time":
