@@ -13,11 +13,13 @@ from browser.sight import BY_COLOURS, SETTLED, Sight, violations
 from replicate import cli
 from replicate.whatif import NAME as WHATIF
 
+A4 = 612  # pixels between the margins
 # Where a page is wider than the window, and what of it is in nothing that scrolls by itself.
 SIDEWAYS = """() => document.documentElement.scrollWidth <= innerWidth ? [] :
   [...document.querySelectorAll("body *")].filter((e) => e.getBoundingClientRect().right > innerWidth + 1
     && !e.closest(".exhibit, pre, svg, math[display=block]")).map((e) => e.outerHTML.slice(0, 120))"""
-HIDDEN = """() => [...document.querySelectorAll(".exhibit, math[display=block]")]
+# Of programs, tables and formulas, those of which a part is behind a scroll bar; programs may be, but not on paper.
+HIDDEN = """(kinds) => [...document.querySelectorAll(kinds)]
   .filter((e) => e.scrollWidth > e.clientWidth + 1).map((e) => e.outerHTML.slice(0, 120))"""
 FONTS = """async () => { await document.fonts.ready;
   return [...document.fonts].filter((font) => font.status === "loaded").map((font) => font.family); }"""
@@ -52,7 +54,9 @@ def test_handouts_are_whole_and_accessible(handouts: list[Path], browser: Any, a
     for path in handouts:
         with Sight(browser, path) as page:
             found[f"{path.name}: fonts"] = {"Replicate Math"} - set(page.evaluate(FONTS))
-            found[f"{path.name}: behind a scroll bar at 1280 px"] = page.evaluate(HIDDEN)
+            found[f"{path.name}: behind a scroll bar at 1280 px"] = page.evaluate(
+                HIDDEN, ".exhibit, math[display=block]"
+            )
             found[f"{path.name}: signs at the numbers before them"] = page.evaluate(GAP) < 4
             found[f"{path.name}: axe, light"] = violations(page, axe)
             page.emulate_media(color_scheme="dark")
@@ -61,4 +65,8 @@ def test_handouts_are_whole_and_accessible(handouts: list[Path], browser: Any, a
                 page.set_viewport_size({"width": width, "height": 900})
                 page.evaluate(SETTLED)
                 found[f"{path.name}: wider than {width} px"] = page.evaluate(SIDEWAYS)
+            page.emulate_media(media="print", color_scheme="light")
+            page.set_viewport_size({"width": A4, "height": 900})
+            page.evaluate(SETTLED)
+            found[f"{path.name}: cut on paper"] = page.evaluate(HIDDEN, ".exhibit, math[display=block], pre")
     assert {name: what for name, what in found.items() if what} == {}
