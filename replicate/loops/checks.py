@@ -182,5 +182,6 @@ def exact(value: float) -> str:
 
 def shown(value: object) -> str:
     """Return a value as a message shows it: on one line, and not at length."""
-    text = " ".join((str(value) if isinstance(value, float | int) else repr(value)).split())
+    number = isinstance(value, float | int | np.number | np.bool_)
+    text = " ".join((str(value) if number else repr(value)).split())
     return text if len(text) <= 60 else text[:57] + "..."

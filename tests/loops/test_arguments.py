@@ -175,6 +175,13 @@ def test_what_is_added_to_a_plant_or_multiplied_with_it_is_a_number() -> None:
         Loop(PLANT, PI(0.2)).poles(True)
 
 
+def test_numbers_of_numpy_are_shown_as_one_types_them() -> None:
+    wrong: Any
+    for wrong, shown in ((np.int64(-1), "-1"), (np.True_, "True"), (np.float32(0.1), "0.1"), (np.float64(2.5), "2.5")):
+        with pytest.raises(LoopError, match=f"must be whole, from 1 to 10000, not {shown}$"):
+            Loop(PLANT, PI(0.2)).poles(wrong)
+
+
 def test_complex_times_and_frequencies_are_refused_and_the_past_is_at_rest() -> None:
     loop = Loop(PLANT, PI(0.2, 0.1))
     y = loop.step(until=5.0)

@@ -71,7 +71,7 @@ class Axis(Generic[T]):
         try:
             return self.make(place)
         except LoopError as error:
-            where = "" if self.single else f"{self.name}s[{self.labels[place]!r}]: "
+            where = "" if self.single else f"{self.name}s[{checks.shown(self.labels[place])}]: "
             msg = f"{where}{error}"
             raise LoopError(msg) from None
 
