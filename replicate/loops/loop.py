@@ -343,7 +343,7 @@ class Loop(LoopViews, SetOnce):
         system, steps = (self._plant, self._difference, self._controller), (setpoint, load)
         output, control = self.steady_state(setpoint, load / self._units.gain)
         rest = output, control * self._units.gain
-        return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps, rest)
+        return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps, rest, time)
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
         return responses(self._plant, [self._controller], end, setpoint=setpoint, load=load, unit=self._units.time)[0]

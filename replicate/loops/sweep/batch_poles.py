@@ -33,7 +33,7 @@ SAME = 1e-8  # relative distance of points that are one pole
 
 def rightmost_poles(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
     """Return the rightmost poles, Im >= 0, in the unit of time of the columns, and which of them are proven."""
-    poles = polished(loops, _starts(loops))
+    poles = polished(loops, rational_starts(loops))
     order = np.argsort(np.where(np.isfinite(poles), -poles.real, np.inf), axis=0)
     poles = np.take_along_axis(poles, order, axis=0)
     first, rest = poles[0], np.concatenate([poles[1:], np.full_like(poles[:1], np.nan)])  # there may be no other
@@ -53,7 +53,7 @@ def rightmost_poles(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
     return first, proven & ~doubtful & (count == np.where(first.imag > 0.0, 2.0, 1.0))
 
 
-def _starts(loops: LoopColumns) -> ComplexArray:
+def rational_starts(loops: LoopColumns) -> ComplexArray:
     """Return the rightmost poles of the loops with a rational function in place of the dead time."""
     top, bottom = dead_time_polynomials(1.0, ORDER) if loops.delay else (np.ones(1), np.ones(1))
     fed_back = column_products(loops.num, top)

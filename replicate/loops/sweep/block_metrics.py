@@ -134,7 +134,7 @@ def block_metrics(loops: LoopColumns, metrics: tuple[str, ...], until: float | N
             if part.size == 0:
                 break
             moved = any(name.endswith(VARIATION) for name in asked)
-            responses = march(loops.take(part), setpoint, step, end, band, shorter, control=moved)
+            responses = march(loops.take(part), setpoint, step, end, shorter, control=moved)
             if not responses.pieces:  # nothing here has a final value to settle to
                 alone[part] = True
                 break

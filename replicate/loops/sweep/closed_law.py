@@ -24,7 +24,7 @@ Flags = NDArray[np.bool_]
 
 TERMS = 48  # of the exponential's series
 LARGEST = 8.0  # norm of the matrix times the piece up to which these suffice, and cancel little
-RESOLVED = 1e-11  # last coefficients of a longer piece, relative to its own largest value
+RESOLVED = 1e-13  # last coefficients of a longer piece, relative to its own largest value; those that follow vary
 
 
 @dataclass(frozen=True)

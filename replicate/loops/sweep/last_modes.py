@@ -23,7 +23,7 @@ class LastModes:
     """For each loop the modes that are left from some time on.
 
     Either the first is real and larger than all others together, and so is its slope: the signal keeps its sign and
-    approaches zero steadily. Or it is the only one.
+    approaches zero steadily. Or it is the only one, which may be an oscillation.
 
     Attributes
     ----------
@@ -118,9 +118,16 @@ class LastModes:
         return self._steadily_at(level, (level < 0.0) & (self._now < level))
 
     def last_outside(self, width: Array, *, one_sided: bool = False) -> Array:
-        """Return when those that approach zero steadily are no longer outside (above) a band; ``nan`` if inside."""
+        """Return when the signals are outside (above) a band for the last time; ``nan`` if they are inside."""
         outside = self._now > width if one_sided else np.abs(self._now) > width
-        return self._steadily_at(np.copysign(width, self._now), outside)
+        steadily = self._steadily_at(np.copysign(width, self._now), outside)
+        return np.where(self.oscillates, self._oscillation_leaves(width, one_sided=one_sided), steadily)
+
+    def summit(self) -> tuple[Array, Array]:
+        """Return the value and the time of the first maximum of oscillations, which is their highest."""
+        wait = self._wait_for_extremum(2.0)
+        height = np.real(self.coefficient[0] * np.exp(self.pole[0] * wait))
+        return np.where(self.oscillates & self.found, height, -np.inf), self.start + wait
 
     @property
     def _now(self) -> Array:
@@ -142,10 +149,43 @@ class LastModes:
         time[at] = self.start[at] + later
         return time
 
+    def _oscillation_leaves(self, width: Array, *, one_sided: bool) -> Array:
+        """Return when oscillations leave a band (its upper side) for the last time; ``nan`` if never."""
+        turns = 2.0 if one_sided else 1.0
+        pole, c, wait = self.pole[0], self.coefficient[0], self._wait_for_extremum(turns)
+        apart = turns * np.pi / self._frequency
+        height = np.abs(np.real(c * np.exp(pole * wait)))
+        with np.errstate(all="ignore"):
+            # extrema fall by the same factor from one to the next: the last one outside
+            last = np.floor(np.log(height / width) / (-pole.real * apart))
+            base = np.where(height > width, wait + np.maximum(last, 0.0) * apart, 0.0)
+            value = c * np.exp(pole * base)
+            value = np.where((value.real < 0.0) & (not one_sided), -value, value)
+            size, phase = np.abs(value) / width, np.angle(value)
+            outside = value.real > width
+            # ln |value| is concave, so that Newton's method falls to the root from where it were without decay
+            turned = np.where(outside, np.arccos(np.minimum(1.0 / size, 1.0)) - phase, 0.0)
+            rate = -pole.real / self._frequency
+            for _ in range(STEPS):
+                excess = np.log(size * np.cos(turned + phase)) - rate * turned
+                step = np.where(outside, excess / (np.tan(turned + phase) + rate), 0.0)
+                turned = turned + step
+                if not np.any(np.abs(step) > CONVERGED):
+                    break
+            return np.where(outside & self.found, self.start + base + turned / self._frequency, np.nan)
+
+    def _wait_for_extremum(self, turns: float) -> Array:
+        """Return how far off an oscillation's next extremum is, or with two half turns its next maximum."""
+        slope = np.angle(self.coefficient[0] * self.pole[0])
+        return np.asarray(np.mod(0.5 * np.pi - slope, turns * np.pi) / self._frequency)
+
+    @property
+    def _frequency(self) -> Array:
+        return np.where(self.oscillates, self.pole[0].imag, 1.0)
+
     def _half_waves(self) -> tuple[ComplexArray, Array, Array]:
         """Return the value of an oscillation at its next zero, how far off that is, and how far apart zeros are."""
-        pole, c = self.pole[0], self.coefficient[0]
-        frequency = np.where(self.oscillates, pole.imag, 1.0)
+        pole, c, frequency = self.pole[0], self.coefficient[0], self._frequency
         # zero is where the phase arg c + w t is an odd multiple of a right angle
         wait = np.mod(0.5 * np.pi - np.angle(c), np.pi) / frequency
         return c * np.exp(pole * wait), wait, np.pi / frequency

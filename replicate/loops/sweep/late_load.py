@@ -77,8 +77,8 @@ def settling_after_load(plant: Plant, controllers: Sequence[PID], load_at: float
 
 def _settled(loops: LoopColumns, load_at: float, pole: ComplexArray, band: float) -> Array:
     lasting = 4.0 + ceil(SETTLED / float(np.min(-pole.real)))
-    after_step = march(loops, 1.0, 0.0, ceil(load_at) + lasting, band)
-    after_load = march(loops, 0.0, loops.gain, lasting, band)
+    after_step = march(loops, 1.0, 0.0, ceil(load_at) + lasting)
+    after_load = march(loops, 0.0, loops.gain, lasting)
     begins = load_at / after_load.lengths[0] if after_load.pieces else 0.5
     shift = round(begins)
     if abs(begins - shift) > ALIGNED or len(after_step.pieces) < shift + len(after_load.pieces):

@@ -111,7 +111,6 @@ def march(
     setpoint: float,
     load: float,
     until: float | None,
-    band: float,
     shorter: int = 1,
     *,
     control: bool = False,
@@ -124,8 +123,6 @@ def march(
         Heights of the steps, in the units of the columns.
     until
         Horizon in the unit of the columns; by default each loop is followed until it is at rest.
-    band
-        Half-width of the settling band: a response is followed at least until it is inside for good.
     shorter
         How many times shorter the pieces are than they usually need to be.
     control
@@ -134,7 +131,7 @@ def march(
     chain = build_chain(loops.plant, loops.form, integral=bool(loops.form.ki), derivative=bool(loops.form.kd))
     chain = chain.balanced(np.max(np.abs(loops.gains), axis=1))
     radius = float(np.max(np.abs(np.linalg.eigvals(chain.a)), initial=0.0)) if loops.delay else PACE
-    march = _March(loops, chain, setpoint, load, until, band, control)
+    march = _March(loops, chain, setpoint, load, until, control)
     return march.run(shorter * max(1, int(np.ceil(radius / STIFFNESS))))
 
 
@@ -146,13 +143,11 @@ class _March:
         setpoint: float,
         load: float,
         until: float | None,
-        band: float,
         control: bool,
     ) -> None:
         self.loops, self.chain, self.setpoint, self.load, self.until = loops, chain, setpoint, load, until
         self.control = control
         self.final, self.final_control = loops.final(setpoint, load)
-        self.band = band * np.where(self.final == 0.0, 1.0, np.abs(self.final))
 
     def run(self, splits: int) -> Responses:
         """Step through the pieces, of which ``splits`` make a dead time."""
@@ -178,8 +173,7 @@ class _March:
             if self.until is not None or done % splits or done <= DEAD_TIMES * splits:
                 continue
             leaving = state.at_rest()
-            # without dead time the unit is short beside slow modes: over it two of them pass for one
-            if self.loops.delay and done // splits >= look:
+            if done // splits >= look and state.alike >= DEAD_TIMES * splits:
                 look = int(np.ceil(look * LOOKS))
                 modes = state.last_modes(ends[-1])
                 modes.found &= ~(leaving | state.left)
@@ -206,7 +200,7 @@ class _Moving:
 
     What enters a piece is one array: the plant's input one dead time ago at the nodes, the state, the set-point. Those
     of the pieces of a dead time wait in ``entering``; as soon as one has been used, its rows of the plant's input are
-    overwritten with those that leave. Pieces are ``longer`` than at first by this factor.
+    overwritten with those that leave. Pieces are ``longer`` than at first by this factor, the last ``alike`` of them.
     """
 
     def __init__(self, march: _March, splits: int, columns: Places) -> None:
@@ -217,14 +211,14 @@ class _Moving:
             self.loops, chain, 1.0 / splits, march.setpoint, march.load
         )
         self.search = ModeSearch(self.loops, march.setpoint, march.load)
-        self.band, self.count, self.longer = march.band[columns], 0, 1.0
+        self.count, self.alike, self.longer = 0, 0, 1.0
         self.state = self.law.begun(np.repeat(chain.start[:, None] * march.setpoint, columns.size, axis=1))
         self.entering = deque(np.zeros((POINTS + chain.e.size + 1, columns.size)) for _ in range(splits))
         for inputs in self.entering:
             inputs[-1] = march.setpoint
         self.recent: deque[Array] = deque(maxlen=DEAD_TIMES * splits)
         self.impulse = self.law.gains[3] * chain.setpoint_impulse * march.setpoint
-        self.size, self.high, self.input_size, self.tail = (np.zeros(columns.size) for _ in range(4))
+        self.size, self.input_size, self.tail = (np.zeros(columns.size) for _ in range(3))
         self.left = np.zeros(columns.size, dtype=bool)
         self.room: list[Array] = []
 
@@ -239,7 +233,7 @@ class _Moving:
         if self.count >= self.splits and self.count % self.splits == 0 and self.impulse.any():
             self.state += chain.b * self.impulse
             self.impulse = self.impulse * self.law.gains[3] * chain.wv[3, 0]
-        self.count += 1
+        self.count, self.alike = self.count + 1, self.alike + 1
         inputs[POINTS:-1] = self.state
         v, values = inputs[:POINTS], self._room()
         self.state, area, tail = self.law.apply(inputs, v, values)
@@ -247,7 +241,6 @@ class _Moving:
         control = v - march.load if march.control else None
         piece = Piece(self.columns, values, values.min(axis=0), values.max(axis=0), area, control)
         self.recent.append(values)
-        np.maximum(self.high, piece.high, out=self.high)
         np.maximum(self.size, np.maximum(piece.high, -piece.low), out=self.size)
         np.maximum(self.input_size, np.abs(v[::SPARSE]).max(axis=0), out=self.input_size)
         np.maximum(self.tail, np.abs(tail).max(axis=0), out=self.tail)
@@ -264,8 +257,8 @@ class _Moving:
         assert isinstance(self.law, ClosedLaw)  # noqa: S101  -- with dead time its pieces are what they are
         law = self.law.doubled()
         resolved = law.resolves(self.state) | self.left
-        if resolved.mean() >= ENOUGH:
-            self.law, self.longer = law, 2.0 * self.longer
+        if resolved.mean() >= (1.0 if self.march.until is None else ENOUGH):
+            self.law, self.longer, self.alike = law, 2.0 * self.longer, 0
             self.tail[~resolved] = np.inf
             self.keep(np.nonzero(resolved & ~self.left)[0], found)
 
@@ -286,7 +279,7 @@ class _Moving:
         return np.asarray(resting)
 
     def last_modes(self, elapsed: float) -> LastModes:
-        return self.search.look(list(self.recent), elapsed, self.size, self.band, self.high, control=self.march.control)
+        return self.search.look(list(self.recent), elapsed, self.size, unit=self.longer, control=self.march.control)
 
     def leave(self, leaving: Flags, found: Responses) -> Flags:
         """Note which loops leave now; return all that have left but still move along."""
@@ -304,7 +297,7 @@ class _Moving:
         found.unresolved[self.columns[unresolved]] = True
         found.failed[self.columns[unusable]] = True
         self.columns, self.search, self.law = self.columns[stay], self.search.take(stay), self.law.take(stay)
-        for name in ("band", "impulse", "size", "high", "input_size", "tail", "left"):
+        for name in ("impulse", "size", "input_size", "tail", "left"):
             setattr(self, name, getattr(self, name)[stay])
         self.state, self.room = self.state.take(stay, axis=1), []
         self.entering = deque(inputs.take(stay, axis=1) for inputs in self.entering)

@@ -3,8 +3,9 @@ r"""Which modes are left of a response: when all others have decayed to rounding
 After some dead times a response is a sum of few modes, :math:`e(t) = \sum_i \mathrm{Re}\, c_i e^{s_i t}`. Three poles,
 conjugates counted, show in four dead times of the response, which obey :math:`e_j = p e_{j-1} + q e_{j-2} + r e_{j-3}`
 (Prony): the roots of :math:`z^3 = p z^2 + q z + r` say where they are, Newton's method on the characteristic function
-makes them exact, and c is the residue of the response there. From then on it is known when the sum will be simple
-enough. The last two dead times prove that it is all, because the output over two dead times is the whole state.
+makes them exact, and c is the residue of the response there. Without dead time the roots of a polynomial say where they
+are. From then on it is known when the sum will be simple enough. The last two dead times prove that it is all, because
+the output over two dead times is the whole state.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from replicate.loops.numerics import chebyshev
-from replicate.loops.sweep.batch_poles import polished
+from replicate.loops.sweep.batch_poles import polished, rational_starts
 from replicate.loops.sweep.block_series import DEGREE
 from replicate.loops.sweep.last_modes import MOST, LastModes
 from replicate.loops.sweep.loop_columns import LoopColumns, Places
@@ -62,9 +63,7 @@ class ModeSearch:
         part.pole, part.residue = self.pole.take(columns, axis=1), self.residue.take(columns, axis=1)
         return part
 
-    def look(
-        self, recent: Sequence[Array], elapsed: float, size: Array, band: Array, high: Array, *, control: bool
-    ) -> LastModes:
+    def look(self, recent: Sequence[Array], elapsed: float, size: Array, *, unit: float, control: bool) -> LastModes:
         """Return the last modes of loops where they are known to be all that is left.
 
         Parameters
@@ -75,8 +74,8 @@ class ModeSearch:
             Dead times since the steps.
         size
             The largest deviation so far.
-        band, high
-            What an oscillation must not exceed any more: the settling band, and the highest deviation so far.
+        unit
+            Length of what counts as a dead time in ``recent``.
         control
             Whether the control signal must approach its final value steadily, too.
         """
@@ -88,10 +87,10 @@ class ModeSearch:
                 c = self.residue[:, at] * np.exp(pole * elapsed)
                 others, amplitude = np.abs(c[1:]).sum(axis=0), np.abs(c[0])
                 c[1:, others <= limit] = 0.0
-                rest = _rest(recent, at, pole, c)
+                rest = _rest(recent, at, np.asarray(unit * pole), c)
                 self.due[at] = elapsed * np.where(rest <= limit, 1.0, PATIENCE)
                 self.known[at] = rest <= EXPLAINED * np.maximum(amplitude, others)
-                proven = (rest <= limit) & ((pole[0].imag == 0.0) | (amplitude <= high[at]))
+                proven = rest <= limit
                 places = at[proven]
                 found.found[places], found.error[places], found.beyond[places] = (
                     True,
@@ -100,7 +99,7 @@ class ModeSearch:
                 )
                 found.pole[:, places], found.coefficient[:, places] = pole[:, proven], c[:, proven]
             if unknown.size:
-                self._search(unknown, recent, elapsed, PROVEN * size, 0.99 * band, control=control)
+                self._search(unknown, recent, elapsed, PROVEN * size, control=control)
         return found
 
     def _beyond(self, places: Places) -> Array:
@@ -121,11 +120,9 @@ class ModeSearch:
             beyond[some] = np.where(alone, line, slow)
         return np.asarray(beyond)
 
-    def _search(
-        self, places: Places, recent: Sequence[Array], elapsed: float, limit: Array, band: Array, *, control: bool
-    ) -> None:
+    def _search(self, places: Places, recent: Sequence[Array], elapsed: float, limit: Array, *, control: bool) -> None:
         """Look for the modes of some loops."""
-        start, seen = _starts(recent, places)
+        start, seen = _starts(recent, places) if self.loops.delay else _rightmost(self.loops.take(places))
         places, start = places[seen], start[:, seen]
         slot, column = np.nonzero(np.isfinite(_distinct(start)))  # a pair needs but one of its two
         found = np.full(start.shape, complex(np.nan))
@@ -143,20 +140,27 @@ class ModeSearch:
         poles, residues = np.take_along_axis(poles, order, axis=0), np.take_along_axis(residues, order, axis=0)
         self.pole[:, places], self.residue[:, places], self.known[places] = poles, residues, True
         now = residues * np.exp(poles * elapsed)
-        self.due[places] = elapsed + self._wait(places, poles, now, limit[places], band[places], control)
+        self.due[places] = elapsed + self._wait(places, poles, now, limit[places], control)
 
-    def _wait(self, at: Places, pole: ComplexArray, c: ComplexArray, limit: Array, band: Array, control: bool) -> Array:
-        """Return how long it takes until an oscillation is alone and low, or a real mode leads."""
+    def _wait(self, at: Places, pole: ComplexArray, c: ComplexArray, limit: Array, control: bool) -> Array:
+        """Return how long it takes until an oscillation is alone, or a real mode leads."""
         rate, size = -pole.real, np.abs(c)
         alone = np.max(np.log(size[1:] / limit) / rate[1:], axis=0)
-        low = np.log(size[0] / band) / rate[0]
         against = np.maximum(size, np.abs(c * pole / pole[0]))  # of the signals themselves and of their slopes
         if control:
             passed = np.abs(c * pole * self.loops.take(at).feedback(pole))
             against = np.maximum(against, passed * (size[0] / passed[0]))
         leads = np.log((MOST - 1) / CLEARLY * against[1:] / size[0]) / (rate[1:] - rate[0])
         leads = np.max(np.where(size[1:] == 0.0, -np.inf, leads), axis=0)
-        return np.asarray(np.where(pole[0].imag > 0.0, np.maximum(low, alone), np.minimum(leads, alone)))
+        return np.asarray(np.where(pole[0].imag > 0.0, alone, np.minimum(leads, alone)))
+
+
+def _rightmost(loops: LoopColumns) -> tuple[ComplexArray, Flags]:
+    """Return the rightmost poles of loops without dead time as `_starts` does: the roots of their polynomials."""
+    found = np.full((MOST, len(loops)), complex(np.nan))
+    starts = rational_starts(loops)
+    found[: starts.shape[0]] = starts
+    return found, np.ones(len(loops), dtype=bool)
 
 
 def _distinct(pole: ComplexArray) -> ComplexArray:

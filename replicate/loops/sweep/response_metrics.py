@@ -55,6 +55,9 @@ class ResponseMetrics(ResponseIntegrals):
         value, time = np.full(self.count, -np.inf), np.full(self.count, np.nan)
         order = np.lexsort((-piece, reached))  # the highest last, of equal ones the first
         value[column[order]], time[column[order]] = reached[order], self._time(piece, x)[order]
+        later, its_time = self.responses.modes.summit()
+        self.doubtful |= np.abs(later - value) <= self.responses.modes.error
+        value, time = np.maximum(value, later), np.where(later > value, its_time, time)
         return np.where(self.responses.modes.found, np.maximum(value, 0.0), value), time
 
     def peak(self) -> Array:

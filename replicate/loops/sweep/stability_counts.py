@@ -22,7 +22,9 @@ Flags = NDArray[np.bool_]
 
 REAL = 1e-8  # imaginary part, relative to the modulus, of a root in w^2 that is real
 DOUBTFUL = 1e-3  # and below which it may be one of a double root
-CLEAR = 1e-4  # distance of L from -1 at a crossover that leaves no doubt; of |L| at rest from one
+CLEAR = 1e-4  # distance of |L| at rest from one, and of L from -1, that leaves no doubt
+APART = 1e-6  # distance of L from -1 at a crossover that leaves none, where |L| is one there; if it is not,
+OFF = 1e4  # so many times the difference more: between crossovers that are no double root the phase turns no faster
 UNSTABLE, STABLE, UNDECIDED = 0, 1, 2
 
 
@@ -92,7 +94,8 @@ def unstable_poles(function: Characteristic) -> tuple[Array, Flags, Array]:
     finite = np.isfinite(crossovers)
     w = np.where(finite, crossovers, 1.0)
     value = horner(function.num, 1j * w) / horner(function.den, 1j * w) * np.exp(-1j * function.delay * w)
-    doubtful |= np.any(finite & (np.abs(1.0 + value) < CLEAR), axis=0)
+    off = OFF * (1.0 + function.delay * w) * np.abs(np.abs(value) - 1.0)
+    doubtful |= np.any(finite & ~(np.abs(1.0 + value) > APART + off), axis=0)
     principal = np.angle(1.0 + value)  # where |L| = 1 the argument of 1 + 1/L is the opposite
     small_side = _argument(function.poles, w) + principal
     large_side = _argument(function.zeros, w) - function.delay * w - principal

@@ -37,6 +37,7 @@ from replicate.loops.time_domain.piece_flow import (
     delayed_values,
     nominal,
     piece_flow,
+    too_many_pieces,
 )  # fmt: skip
 from replicate.loops.time_domain.resolution import START, Resolution, as_good_as_it_gets, coefficients
 
@@ -132,9 +133,7 @@ class _March:
             self.x = end
             length = 2.0 * h if smooth else max(h, length if pieces <= 1.0 else h)
             if len(self.output) > MOST_PIECES:
-                stop = until * self.unit
-                msg = f"the response needs more than {MOST_PIECES} pieces up to t = {stop:g}: choose a shorter horizon"
-                raise LoopError(msg)
+                raise too_many_pieces(MOST_PIECES, until * self.unit)
 
     def _first_length(self) -> float:
         a = self.chain.a

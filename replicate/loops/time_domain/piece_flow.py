@@ -13,6 +13,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from replicate.loops.errors import LoopError
 from replicate.loops.numerics import chebyshev
 from replicate.loops.time_domain.chain import Chain
 
@@ -48,6 +49,11 @@ class PieceFlow:
     y: Array
     v: Array
     x: Array
+
+
+def too_many_pieces(most: int, until: float) -> LoopError:
+    """Return the error of a response up to a time, in the user's unit, that needs too many pieces."""
+    return LoopError(f"the response needs more than {most} pieces up to t = {until:g}: choose a shorter horizon")
 
 
 def piece_flow(chain: Chain, row: Row, delays: Array, h: float, *, closed: bool = True) -> PieceFlow:

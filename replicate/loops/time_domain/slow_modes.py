@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from replicate.loops.controller import PID
 from replicate.loops.numerics import chebyshev
 from replicate.loops.plant import Plant
+from replicate.loops.time_domain.piece_flow import too_many_pieces
 from replicate.loops.time_domain.piecewise import Piecewise
 
 Array = NDArray[np.float64]
@@ -32,7 +33,8 @@ System = tuple[Plant, Plant | None, PID]
 Pieces = tuple[Array, Array, Array]  # breaks, and the Chebyshev coefficients of output and control signal
 
 SETTLED = 34.0  # time constants of a mode until it has decayed to rounding, exp(-34) = 2e-15
-GAP = 30.0  # least ratio of the rates of fast and slow modes: with less, a march takes few pieces, and errs little
+GAP = 10.0  # least ratio of the rates of fast and slow modes: with less, a march takes few pieces more
+MOST_PIECES = 400_000  # of these modes
 REACH = 4.0  # length of a piece, in units of one over the largest modulus of a mode that is left
 CIRCLE_RADIUS, CIRCLE_POINTS = 0.3, 32  # of the distance of the nearest pole; the rule's error is 0.3^32
 CLOSE = 0.5  # deviation from rest, relative to it, that is small
@@ -51,10 +53,9 @@ def slow_group(poles: ComplexArray, fastest: float) -> tuple[ComplexArray, float
         A rate of decay that is the slowest of poles that are not among them.
     """
     rates = np.minimum(np.append(-poles.real, np.inf), fastest)
-    for count in range(1, poles.size):
-        if rates[count] > GAP * float(np.max(np.abs(poles[:count]))):
-            return poles[:count], float(rates[count])
-    return poles[:0], np.inf
+    gaps = np.nonzero(rates[1:-1] > GAP * rates[:-2])[0]
+    count = int(gaps[-1]) + 1 if gaps.size else 0
+    return poles[:count], float(rates[count]) if count else np.inf
 
 
 def with_slow_end(
@@ -65,6 +66,7 @@ def with_slow_end(
     system: System,
     steps: tuple[float, float],
     rest: tuple[float, float],
+    unit: float = 1.0,
 ) -> Pieces:
     """Return a response up to ``end``, of which the slow modes alone are left from the time ``alone`` on.
 
@@ -82,12 +84,19 @@ def with_slow_end(
         Heights of the steps of set-point and load.
     rest
         Output and control signal in the end; ``nan`` where there is none.
+    unit
+        Of time, in the user's: for messages.
+
+    Raises
+    ------
+    LoopError
+        If the modes need too many pieces: one that hardly decays while it oscillates.
     """
     start = LONGER * alone
+    ends = np.array(_breaks(modes, start, end, unit))
     found = march(start)
     breaks, *signals = found
     times = np.linspace(alone, start, COMPARED)
-    ends = np.array(_breaks(modes, start, end))
     tails = []
     rest = np.where(np.isfinite(rest), rest, 0.0).tolist()
     for final, residues, pieces in zip(rest, _residues(modes, system, steps, rest), signals, strict=True):
@@ -162,7 +171,7 @@ def _residues(
     return -np.mean(missing * around, axis=1) * pairs, -np.mean(more * around, axis=1) * pairs
 
 
-def _breaks(modes: ComplexArray, start: float, end: float) -> list[float]:
+def _breaks(modes: ComplexArray, start: float, end: float, unit: float) -> list[float]:
     """Return the ends of pieces on which the modes that are left are polynomials to rounding."""
     ends = [start]
     for mode in modes[np.argsort(modes.real)]:
@@ -170,5 +179,7 @@ def _breaks(modes: ComplexArray, start: float, end: float) -> list[float]:
         fastest = float(np.max(np.abs(modes[modes.real >= mode.real])))
         if stop > ends[-1]:
             count = int(np.ceil((stop - ends[-1]) * fastest / REACH))
+            if count > MOST_PIECES:
+                raise too_many_pieces(MOST_PIECES, end * unit)
             ends += np.linspace(ends[-1], stop, count + 1)[1:].tolist()
     return [*ends, end] if end > ends[-1] else ends
