@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from loops.closed_forms import pi_foptd, rational_step
-from replicate.loops import PI, PID, Loop, Plant, step_responses
+from replicate.loops import PI, PID, Loop, LoopError, Plant, step_responses
 from replicate.loops.time_domain import many_pieces
 from replicate.loops.time_domain.method_of_steps import MOST_ALONE
 
@@ -80,3 +80,12 @@ def test_loop_without_dead_time(until: float) -> None:
     t = until * np.array([0.01, 0.1, 0.33, 0.72, 1.0])
     exact = [float(mp.re(rational_step([0.6, 0.4], [1.0, 11.0, 26.0, 16.6, 0.4], float(time)))) for time in t]
     assert np.max(np.abs(y(t) - exact)) < 1e-13
+
+
+@pytest.mark.parametrize("until", [1500.0, 5000.0])
+def test_an_unstable_loop_that_nothing_excites_stays_at_rest(until: float) -> None:
+    growing = Loop(Plant([1.0], [1.0, -1.0]), PID(0.5, 0.0, b=0.0))
+    assert not growing.is_stable()
+    assert not growing.step(until=until).coefficients.any()
+    with pytest.raises(LoopError, match="the response grows beyond"):
+        growing.load_step(until=until)

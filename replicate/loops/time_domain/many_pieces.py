@@ -71,7 +71,9 @@ def carried(flow: Array, first: Array, count: int) -> Array:
         np.matmul(flow, columns[:, done - step : done - step + most], out=columns[:, done : done + most])
         done += most
         if done < count and done == 2 * step and done * first.size <= TOGETHER:
-            flow, step = flow @ flow, done
+            squared = flow @ flow
+            if np.isfinite(squared).all():  # what grows beyond all numbers would make no number of what stays zero
+                flow, step = squared, done
     return columns
 
 
