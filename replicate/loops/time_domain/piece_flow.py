@@ -128,7 +128,9 @@ def delayed_values(
     if times[0] >= breaks[central] - slack and times[-1] <= breaks[central + 1] + slack:
         read = _read(breaks, control, central, times)
     else:
-        pieces = np.clip(np.searchsorted(breaks, times, side="right") - 1, max(first, 0), max(last, 0))
+        first, last = max(first, 0), max(last, 0)
+        between = breaks[first + 1 : last + 1]  # the few that matter: a list is made an array as a whole
+        pieces = first + np.searchsorted(between, times, side="right")
         parts = [_read(breaks, control, int(piece), times[pieces == piece]) for piece in np.unique(pieces)]
         read = np.concatenate(parts)
     values[earlier] = np.where(times >= -slack, read, 0.0) if times[0] < -slack else read
