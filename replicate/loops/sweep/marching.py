@@ -31,7 +31,9 @@ SPARSE = 7  # every so many nodes show how large a signal is
 AT_REST = 1e-12  # of the largest deviation: a response that deviates less, with its control signal, is at rest
 RESOLVED = 1e-12  # size of the last coefficients of the plant's input, relative to its largest value
 STIFFNESS = 2.0  # largest (spectral radius x piece length) to start from
-MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop
+MOST_PIECES = 1200  # a loop that is not at rest by then is left to the single loop; but
+MANY, LONGEST = 16, 6000  # so many go on together up to here,
+MOST_KEPT = 5_000_000  # as far as there is memory for pieces times loops
 ROUNDED = 1e-14  # of a horizon: what is shorter is no piece
 AT_ONCE = 16  # pieces for which there is memory at once: many small pieces of it would be asked for again and again
 FIRST_LOOK, LOOKS = 8, 1.2  # dead times after which modes are first looked for, and the factor to the next look
@@ -163,7 +165,10 @@ class _March:
             np.zeros(count, dtype=bool), failed, self.until is None,
         )  # fmt: skip
         look, ends = FIRST_LOOK, [0.0]
-        while state.columns.size and len(found.pieces) < MOST_PIECES and ends[-1] < until * (1.0 - ROUNDED):
+        while state.columns.size and ends[-1] < until * (1.0 - ROUNDED):
+            most = MOST_PIECES if state.columns.size < MANY else min(LONGEST, max(MOST_PIECES, MOST_KEPT // count))
+            if len(found.pieces) >= most:
+                break
             found.pieces.append(state.advance())
             done = len(found.pieces)
             # of equal pieces the ends are multiples: no sum of roundings
