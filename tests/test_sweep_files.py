@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -260,17 +261,14 @@ def test_a_run_killed_at_its_first_write_is_continued(tmp_path: Path) -> None:
     assert sorted(path.name for path in (tmp_path / "out").iterdir() if path.suffix != ".csv") == ["_sweep.json"]
 
 
-#: Workers that say who they are, and then have nothing to do.
+#: Workers of which one may never have had anything to do, and none has any more.
 IDLE = """
-import os, sys, time
+import sys, time
 from pathlib import Path
 from replicate.run.backends import LocalProcesses
 
-def work(item):
-    Path(sys.argv[1], str(os.getpid())).touch()
-
 def main():
-    for _ in LocalProcesses(2).unordered(work, range(8)):
+    for _ in LocalProcesses(2).unordered(abs, [-1]):
         pass
     Path(sys.argv[1], "done").touch()
     time.sleep(600)
@@ -285,12 +283,21 @@ def test_workers_end_when_the_run_is_killed(tmp_path: Path) -> None:
         stat = Path(f"/proc/{pid}/stat")
         return stat.exists() and stat.read_text(encoding="utf-8").rpartition(")")[2].split()[0] != "Z"
 
+    def is_worker_of(main: int, pid: int) -> bool:
+        with suppress(OSError):
+            own = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[1] == str(main)
+            return own and b"LokyProcess" in Path(f"/proc/{pid}/cmdline").read_bytes()
+        return False
+
     with subprocess.Popen([sys.executable, "-c", IDLE, str(tmp_path)]) as run:
         end = time.monotonic() + 600
         while not (tmp_path / "done").exists() and time.monotonic() < end:
             time.sleep(0.05)
-        workers = [int(path.name) for path in tmp_path.iterdir() if path.name != "done"]
-        assert workers
+        workers: list[int] = []
+        while len(workers) < 2 and time.monotonic() < end:
+            processes = [int(path.name) for path in Path("/proc").glob("[0-9]*")]
+            workers = [pid for pid in processes if is_worker_of(run.pid, pid)]
+        assert len(workers) == 2
         assert all(map(alive, workers))
         run.kill()  # nothing but the main process
     while any(map(alive, workers)) and time.monotonic() < end:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import cache, partial
+from functools import partial
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import islice
@@ -74,8 +74,14 @@ class LocalProcesses:
 
         waiting = dict(enumerate(items))
         for attempt in range(1, _ATTEMPTS + 1):
-            parallel = joblib.Parallel(self.jobs, return_as="generator_unordered", batch_size=1)
-            found = parallel(joblib.delayed(_numbered)(os.getpid(), function, *each) for each in list(waiting.items()))
+            parallel = joblib.Parallel(
+                self.jobs,
+                return_as="generator_unordered",
+                batch_size=1,
+                initializer=_end_with_parent,
+                initargs=(os.getpid(),),
+            )
+            found = parallel(joblib.delayed(_numbered)(function, *each) for each in list(waiting.items()))
             try:
                 for number, made in found:
                     yield waiting.pop(number), made
@@ -197,12 +203,10 @@ def worker_address() -> str:
     return str(import_module("distributed").get_worker().address)
 
 
-def _numbered(main: int, function: Callable[[Item], Made], number: int, item: Item) -> tuple[int, Made]:
-    _end_with_parent(main)
+def _numbered(function: Callable[[Item], Made], number: int, item: Item) -> tuple[int, Made]:
     return number, function(item)
 
 
-@cache
 def _end_with_parent(main: int) -> None:
     """Have this worker process end when the main process is killed: joblib's would wait for work for ever."""
 
@@ -211,7 +215,7 @@ def _end_with_parent(main: int) -> None:
             time.sleep(1.0)
         os._exit(1)
 
-    if os.name == "posix" and os.getpid() != main:  # of one job, joblib makes no process
+    if os.name == "posix":
         threading.Thread(target=watch, name="end with the main process", daemon=True).start()
 
 
