@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Self
 
 import numpy as np
@@ -28,7 +28,7 @@ from replicate.loops.time_domain import function_responses
 from replicate.loops.time_domain.chain import OpenLoop, open_loop_of
 from replicate.loops.time_domain.responses import held, responses
 from replicate.loops.time_domain.signal import Response, Signal
-from replicate.loops.time_domain.slow_modes import SETTLED, Pieces, slow_group, with_slow_end
+from replicate.loops.time_domain.slow_modes import SETTLED, Pieces, slow_groups, with_slow_end
 from replicate.loops.time_domain.slow_signal import SlowSignal
 from replicate.loops.time_domain.steady_state import steady_state
 from replicate.loops.units import Units
@@ -336,14 +336,15 @@ class Loop(LoopViews, SetOnce):
         """Return a response over a horizon that is long in units of the loop's time."""
         time, filters = self._units.time, self._filter_poles
         all_poles = poles.merged(self._poles, filters[filters.imag >= 0.0] * time, self._poles.size + filters.size)
-        modes, rate = slow_group(all_poles, self._crowd * time)
-        alone = SETTLED / rate + 4.0 * self._longest / time
-        if not modes.size or alone > end:
-            return self._marched(setpoint, load, end)
         system, steps = (self._plant, self._difference, self._controller), (setpoint, load)
-        output, control = self.steady_state(setpoint, load / self._units.gain)
-        rest = output, control * self._units.gain
-        return with_slow_end(lambda until: self._marched(*steps, until), end, modes, alone, system, steps, rest, time)
+        march = partial(self._marched, *steps)
+        for modes, rate in slow_groups(all_poles, self._crowd * time):
+            alone = SETTLED / rate + 4.0 * self._longest / time
+            output, control = self.steady_state(setpoint, load / self._units.gain)
+            rest = output, control * self._units.gain
+            if found := with_slow_end(march, end, modes, alone, system, steps, rest, time):
+                return found
+        return march(end)
 
     def _marched(self, setpoint: float, load: float, end: float) -> Pieces:
         return responses(self._plant, [self._controller], end, setpoint=setpoint, load=load, unit=self._units.time)[0]

@@ -14,7 +14,7 @@ at their poles; M is what a predictor adds to the measurement. The march up to t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -42,8 +42,8 @@ LONGER, COMPARED = 1.25, 9  # how far the march goes on beyond, and the number o
 AGREE = 1e-12  # of the largest value: difference of the two that is rounding
 
 
-def slow_group(poles: ComplexArray, fastest: float) -> tuple[ComplexArray, float]:
-    """Return the modes that are much slower than all others, and the rate at which the next one decays.
+def slow_groups(poles: ComplexArray, fastest: float) -> Iterator[tuple[ComplexArray, float]]:
+    """Yield modes that are much slower than all others, and the rate at which the next one decays, the most first.
 
     Parameters
     ----------
@@ -53,9 +53,8 @@ def slow_group(poles: ComplexArray, fastest: float) -> tuple[ComplexArray, float
         A rate of decay that is the slowest of poles that are not among them.
     """
     rates = np.minimum(np.append(-poles.real, np.inf), fastest)
-    gaps = np.nonzero(rates[1:-1] > GAP * rates[:-2])[0]
-    count = int(gaps[-1]) + 1 if gaps.size else 0
-    return poles[:count], float(rates[count]) if count else np.inf
+    for gap in np.nonzero(rates[1:-1] > GAP * rates[:-2])[0][::-1]:
+        yield poles[: gap + 1], float(rates[gap + 1])
 
 
 def with_slow_end(
@@ -67,10 +66,11 @@ def with_slow_end(
     steps: tuple[float, float],
     rest: tuple[float, float],
     unit: float = 1.0,
-) -> Pieces:
+) -> Pieces | None:
     """Return a response up to ``end``, of which the slow modes alone are left from the time ``alone`` on.
 
-    Where that is not so, as with a multiple slow pole, the march goes on to the end.
+    There is none where that cannot be seen: before the end, with a multiple slow pole, or while the response is still
+    far below what these modes will be.
 
     Parameters
     ----------
@@ -92,6 +92,8 @@ def with_slow_end(
     LoopError
         If the modes need too many pieces: one that hardly decays while it oscillates.
     """
+    if alone > end:
+        return None
     start = LONGER * alone
     ends = np.array(_breaks(modes, start, end, unit))
     found = march(start)
@@ -103,7 +105,7 @@ def with_slow_end(
         marched = Piecewise(breaks, pieces)(times)
         left = _SlowEnd(modes, residues, final, start, float(marched[-1]))
         if not np.max(np.abs(left(times) - marched)) <= AGREE * np.max(np.abs(pieces)):
-            return march(end)
+            return None
         tails.append(left.pieces(ends, pieces.shape[1] - 1))
     y, u = (np.concatenate(both) for both in zip(signals, tails, strict=True))
     return np.concatenate([breaks, ends[1:]]), y, u
